@@ -1,0 +1,59 @@
+/* Which instruction sets this machine can run, and which one to use. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "kernels.h"
+
+#define RG_KERNEL_SET(isa, label)                                                                            \
+    void rg_bulk_##isa(const rg_bulk_args *, size_t, size_t);                                                \
+    void rg_interface_##isa(const rg_interface_args *, size_t, size_t);                                      \
+    void rg_update_##isa(const rg_update_args *, size_t, size_t);                                            \
+    void rg_bulk_state_##isa(const rg_bulk_state_args *, size_t, size_t);                                    \
+    void rg_kinetic_##isa(const rg_kinetic_args *, size_t, size_t);                                          \
+    void rg_interface_state_##isa(const rg_interface_state_args *, size_t, size_t);                          \
+    static const rg_kernels set_##isa = {label,           rg_bulk_##isa,    rg_interface_##isa,              \
+                                         rg_update_##isa, rg_bulk_state_##isa, rg_kinetic_##isa,             \
+                                         rg_interface_state_##isa}
+
+#ifdef RG_X86
+RG_KERNEL_SET(v4, "x86-64-v4");
+RG_KERNEL_SET(v3, "x86-64-v3");
+RG_KERNEL_SET(v2, "x86-64-v2");
+#else
+RG_KERNEL_SET(generic, "generic");
+#endif
+
+int rg_kernels_available(const rg_kernels *sets[], int capacity) {
+    const rg_kernels *all[3];
+    int n = 0;
+#ifdef RG_X86
+    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
+        __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw")) {
+        all[n++] = &set_v4;
+    }
+    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) {
+        all[n++] = &set_v3;
+    }
+    all[n++] = &set_v2;
+#else
+    all[n++] = &set_generic;
+#endif
+    n = n < capacity ? n : capacity;
+    memcpy(sets, all, (size_t)n * sizeof *sets);
+    return n;
+}
+
+const rg_kernels *rg_kernels_select(void) {
+    const rg_kernels *sets[3];
+    int n = rg_kernels_available(sets, 3);
+    const char *wanted = getenv("RHEGMA_ISA");
+    if (wanted == NULL || *wanted == '\0') {
+        return sets[0];
+    }
+    for (int i = 0; i < n; i++) {
+        if (strcmp(sets[i]->name, wanted) == 0) {
+            return sets[i];
+        }
+    }
+    return NULL;
+}

@@ -1,0 +1,18 @@
+/* Names of the kernels of one instruction set: each source is compiled once per set with RG_ISA defined. */
+#ifndef RG_ISA_H
+#define RG_ISA_H
+
+#include "kernels.h"
+
+#define RG_PASTE_(name, isa) name##_##isa
+#define RG_PASTE(name, isa)  RG_PASTE_(name, isa)
+#define RG_ISA_NAME(name)    RG_PASTE(name, RG_ISA)
+
+void RG_ISA_NAME(rg_bulk)(const rg_bulk_args *args, size_t begin, size_t end);
+void RG_ISA_NAME(rg_interface)(const rg_interface_args *args, size_t begin, size_t end);
+void RG_ISA_NAME(rg_update)(const rg_update_args *args, size_t begin, size_t end);
+void RG_ISA_NAME(rg_bulk_state)(const rg_bulk_state_args *args, size_t begin, size_t end);
+void RG_ISA_NAME(rg_kinetic)(const rg_kinetic_args *args, size_t begin, size_t end);
+void RG_ISA_NAME(rg_interface_state)(const rg_interface_state_args *args, size_t begin, size_t end);
+
+#endif

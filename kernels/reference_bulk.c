@@ -1,0 +1,234 @@
+/* Reference bulk: tet10, neo-Hookean, at F plus the lifted jumps R (Ten Eyck & Lew 2006). */
+#include <math.h>
+#include <string.h>
+#include "reference.h"
+
+/* One element, gathered. */
+typedef struct {
+    double grad[4][3]; /* of the barycentric coordinates */
+    double volume;
+    double u[RG_NODES][3];
+    double jump[RG_FACES][RG_POINTS][3]; /* other side minus own; 0 where the point is out of the lift */
+} element;
+
+/* Ends of node a's edge; both ends are the corner itself for a corner. */
+static void node_ends(int a, int *i, int *j) {
+    for (*i = 0; *i < 4; ++*i)
+        for (*j = *i; *j < 4; ++*j)
+            if (rg_edge_node[*i][*j] == a)
+                return;
+}
+
+/* Coordinates of the quadrature points: b on the diagonal, a elsewhere. */
+static double gauss_coordinate(int g, int corner) {
+    double root = sqrt(5);
+    return g == corner ? (5 + 3 * root) / 20 : (5 - root) / 20;
+}
+
+/* Coefficient that extends values at the quadrature points linearly to a corner. */
+static double extend(int corner, int g) {
+    double a = (5 - sqrt(5)) / 20, b = (5 + 3 * sqrt(5)) / 20;
+    return ((g == corner) - a) / (b - a);
+}
+
+static void load_jumps(const rg_bulk_args *args, size_t e, element *el) {
+    for (int f = 0; f < RG_FACES; f++) {
+        int32_t other = args->neighbour[rg_link_index(e, f)];
+        unsigned out = args->unlinked[args->interface[rg_link_index(e, f)] >> 1];
+        for (int q = 0; q < RG_POINTS; q++) {
+            double l[3], n[RG_FNODES];
+            rg_reference_face_point(q, l);
+            rg_reference_face_shape(l, n);
+            if (out >> q & 1)
+                continue;
+            for (int a = 0; a < RG_FNODES; a++)
+                for (int c = 0; c < 3; c++) {
+                    double theirs = args->u[rg_node_index((size_t)other / 4, rg_face_node[other % 4][a], c)];
+                    el->jump[f][q][c] += n[a] * (theirs - el->u[rg_face_node[f][a]][c]);
+                }
+        }
+    }
+}
+
+static void load(const rg_bulk_args *args, size_t e, element *el) {
+    memset(el, 0, sizeof *el);
+    el->volume = args->geom[rg_geom_index(e, RG_GEOM_VOLUME)];
+    for (int k = 0; k < 3; k++)
+        for (int c = 0; c < 3; c++) {
+            el->grad[k][c] = args->geom[rg_geom_index(e, RG_GEOM_GRAD + 3 * k + c)];
+            el->grad[3][c] -= el->grad[k][c];
+        }
+    for (int a = 0; a < RG_NODES; a++)
+        for (int c = 0; c < 3; c++)
+            el->u[a][c] = args->u[rg_node_index(e, a, c)];
+    if (args->lift)
+        load_jumps(args, e, el);
+}
+
+/* Outward normal of face f times its area. */
+static void area_normal(const element *el, int f, double an[3]) {
+    for (int c = 0; c < 3; c++)
+        an[c] = -3 * el->volume * el->grad[f][c];
+}
+
+/* Gradient of node a's shape function at quadrature point g. */
+static void shape_gradient(const element *el, int a, int g, double dn[3]) {
+    int i, j;
+    node_ends(a, &i, &j);
+    double li = gauss_coordinate(g, i), lj = gauss_coordinate(g, j);
+    for (int c = 0; c < 3; c++)
+        dn[c] = i == j ? (4 * li - 1) * el->grad[i][c] : 4 * (li * el->grad[j][c] + lj * el->grad[i][c]);
+}
+
+/* Adds R at quadrature point g. */
+static void add_lift(const element *el, int g, double f[3][3]) {
+    for (int face = 0; face < RG_FACES; face++) {
+        double an[3];
+        area_normal(el, face, an);
+        for (int q = 0; q < RG_POINTS; q++) {
+            double l[3], extended = 0;
+            double weight = rg_reference_face_point(q, l);
+            for (int i = 0; i < RG_FCORNERS; i++)
+                extended += l[i] * extend(rg_face_node[face][i], g);
+            for (int r = 0; r < 3; r++)
+                for (int c = 0; c < 3; c++)
+                    f[r][c] += 2 / el->volume * weight * extended * el->jump[face][q][r] * an[c];
+        }
+    }
+}
+
+/* F + R at quadrature point g. */
+static void deformation(const element *el, int g, double f[3][3]) {
+    for (int r = 0; r < 3; r++)
+        for (int c = 0; c < 3; c++)
+            f[r][c] = r == c;
+    for (int a = 0; a < RG_NODES; a++) {
+        double dn[3];
+        shape_gradient(el, a, g, dn);
+        for (int r = 0; r < 3; r++)
+            for (int c = 0; c < 3; c++)
+                f[r][c] += el->u[a][r] * dn[c];
+    }
+    add_lift(el, g, f);
+}
+
+/* Inverse of a 3x3 matrix; returns the determinant. */
+static double invert(double f[3][3], double inv[3][3]) {
+    double cofactor[3][3];
+    for (int r = 0; r < 3; r++)
+        rg_reference_cross(f[(r + 1) % 3], f[(r + 2) % 3], cofactor[r]);
+    double det = rg_reference_dot(f[0], cofactor[0]);
+    for (int r = 0; r < 3; r++)
+        for (int c = 0; c < 3; c++)
+            inv[c][r] = cofactor[r][c] / det;
+    return det;
+}
+
+/* First Piola-Kirchhoff stress. */
+static void stress(const rg_material *m, double f[3][3], double p[3][3]) {
+    double inv[3][3];
+    double log_j = log(invert(f, inv));
+    for (int r = 0; r < 3; r++)
+        for (int c = 0; c < 3; c++)
+            p[r][c] = m->mu * f[r][c] + (m->lambda * log_j - m->mu) * inv[c][r];
+}
+
+/* Bound of the acoustic tensor relative to its value at F = I; NaN unless det F > 0. */
+static double stiffening(const rg_material *m, double f[3][3]) {
+    double inv[3][3], largest = 0;
+    double det = invert(f, inv);
+    if (!(det > 0))
+        return NAN;
+    for (int r = 0; r < 3; r++) {
+        double sum = 0;
+        for (int c = 0; c < 3; c++)
+            sum += fabs(rg_reference_dot(inv[r], inv[c]));
+        largest = fmax(largest, sum);
+    }
+    double slope = m->lambda + m->mu - m->lambda * log(det);
+    return (m->mu + fmax(0, slope) * largest) / (m->lambda + 2 * m->mu);
+}
+
+static void add_force(const element *el, int g, double p[3][3], double force[RG_NODES][3]) {
+    for (int a = 0; a < RG_NODES; a++) {
+        double dn[3];
+        shape_gradient(el, a, g, dn);
+        for (int r = 0; r < 3; r++)
+            force[a][r] -= el->volume / 4 * rg_reference_dot(p[r], dn);
+    }
+}
+
+static void add_traction(const element *el, int g, double p[3][3],
+                         double traction[RG_FACES][RG_FCORNERS][3]) {
+    for (int f = 0; f < RG_FACES; f++) {
+        double an[3];
+        area_normal(el, f, an);
+        for (int i = 0; i < RG_FCORNERS; i++)
+            for (int r = 0; r < 3; r++)
+                traction[f][i][r] += extend(rg_face_node[f][i], g) * rg_reference_dot(p[r], an);
+    }
+}
+
+static void bulk_element(const rg_bulk_args *args, size_t e) {
+    element el;
+    double force[RG_NODES][3] = {{0}}, traction[RG_FACES][RG_FCORNERS][3] = {{{0}}}, worst = 0;
+    load(args, e, &el);
+    for (int g = 0; g < RG_GAUSS; g++) {
+        double f[3][3], p[3][3];
+        deformation(&el, g, f);
+        stress(&args->material, f, p);
+        add_force(&el, g, p, force);
+        add_traction(&el, g, p, traction);
+        double here = stiffening(&args->material, f);
+        worst = isnan(here) || isnan(worst) ? NAN : fmax(worst, here);
+    }
+    for (int a = 0; a < RG_NODES; a++)
+        for (int c = 0; c < 3; c++)
+            args->force[rg_node_index(e, a, c)] = force[a][c];
+    for (int f = 0; f < RG_FACES; f++)
+        for (int i = 0; i < RG_FCORNERS; i++)
+            for (int c = 0; c < 3; c++)
+                args->traction[rg_traction_index(e, f, i, c)] = traction[f][i][c];
+    args->stiffening[e] = worst;
+}
+
+void rg_reference_bulk(const rg_bulk_args *args, size_t begin, size_t end) {
+    for (size_t e = begin * RG_LANES; e < end * RG_LANES; e++)
+        bulk_element(args, e);
+}
+
+static double energy_density(const rg_material *m, double f[3][3]) {
+    double inv[3][3], trace = 0;
+    double log_j = log(invert(f, inv));
+    for (int r = 0; r < 3; r++)
+        trace += rg_reference_dot(f[r], f[r]);
+    return (m->lambda / 2 * log_j - m->mu) * log_j + m->mu / 2 * (trace - 3);
+}
+
+/* Cauchy stress P F^T / J, six components. */
+static void cauchy_stress(const rg_material *m, double f[3][3], double s[6]) {
+    static const int row[6] = {0, 1, 2, 1, 0, 0}, column[6] = {0, 1, 2, 2, 2, 1};
+    double p[3][3], inv[3][3];
+    double det = invert(f, inv);
+    stress(m, f, p);
+    for (int k = 0; k < 6; k++)
+        s[k] = rg_reference_dot(p[row[k]], f[column[k]]) / det;
+}
+
+void rg_reference_bulk_state(const rg_bulk_state_args *args, size_t begin, size_t end) {
+    for (size_t e = begin * RG_LANES; e < end * RG_LANES; e++) {
+        element el;
+        double energy = 0;
+        load(args->bulk, e, &el);
+        for (int g = 0; g < RG_GAUSS; g++) {
+            double f[3][3], s[6];
+            deformation(&el, g, f);
+            energy += el.volume / 4 * energy_density(&args->bulk->material, f);
+            cauchy_stress(&args->bulk->material, f, s);
+            for (int k = 0; args->cauchy && k < 6; k++)
+                args->cauchy[(e / RG_LANES * 24 + (size_t)(g * 6 + k)) * RG_LANES + e % RG_LANES] = s[k];
+        }
+        if (args->energy)
+            args->energy[e] = energy;
+    }
+}

@@ -1,0 +1,236 @@
+/* Reference interface: DG terms where a point holds, the cohesive law and contact where it broke. */
+#include <math.h>
+#include "reference.h"
+
+/* One quadrature point, gathered. */
+typedef struct {
+    double weight, shape[RG_FNODES];
+    double area, iso, norm; /* reference area and the two penalty factors, area-weighted */
+    double jump[3];
+    double traction[3]; /* average of both sides, area-weighted */
+    double dg[3];       /* traction plus penalty, area-weighted */
+    double normal[3];   /* unit normal of the deformed mid-surface; zero in padding */
+    double current;     /* deformed area */
+} point;
+
+/* Opening of a broken point. */
+typedef struct {
+    double normal, shear[3]; /* normal opening (signed) and sliding */
+    double effective;
+} opening;
+
+static double side_value(const rg_interface_args *args, size_t i, int side, int a, int c) {
+    int32_t link = args->side[side][i];
+    return args->u[rg_node_index((size_t)link / 4, rg_face_node[link % 4][a], c)];
+}
+
+static double side_traction(const rg_interface_args *args, size_t i, int side, int corner, int c) {
+    int32_t link = args->side[side][i];
+    return args->traction[rg_traction_index((size_t)link / 4, link % 4, corner, c)];
+}
+
+/* Derivatives of the shape functions by xi and eta, l = (1 - xi - eta, xi, eta). */
+static void shape_derivatives(const double l[3], double dxi[RG_FNODES], double deta[RG_FNODES]) {
+    const double by_l[RG_FNODES][3] = {
+        {4 * l[0] - 1, 0, 0},    {0, 4 * l[1] - 1, 0},    {0, 0, 4 * l[2] - 1},
+        {4 * l[1], 4 * l[0], 0}, {0, 4 * l[2], 4 * l[1]}, {4 * l[2], 0, 4 * l[0]},
+    };
+    for (int a = 0; a < RG_FNODES; a++) {
+        dxi[a] = by_l[a][1] - by_l[a][0];
+        deta[a] = by_l[a][2] - by_l[a][0];
+    }
+}
+
+/* Normal and area of the deformed mid-surface. */
+static void sample_surface(const rg_interface_args *args, size_t i, const double l[3], point *p) {
+    double dxi[RG_FNODES], deta[RG_FNODES], edge[2][3], tangent[2][3], reference[3], unit[3];
+    shape_derivatives(l, dxi, deta);
+    for (int c = 0; c < 3; c++) {
+        unit[c] = args->geom[rg_igeom_index(i, RG_IGEOM_NORMAL + c)];
+        for (int k = 0; k < 2; k++)
+            tangent[k][c] = edge[k][c] = args->geom[rg_igeom_index(i, RG_IGEOM_EDGE + 3 * k + c)];
+        for (int a = 0; a < RG_FNODES; a++) {
+            double mean = (side_value(args, i, 0, a, c) + side_value(args, i, 1, a, c)) / 2;
+            tangent[0][c] += dxi[a] * mean;
+            tangent[1][c] += deta[a] * mean;
+        }
+    }
+    rg_reference_cross(edge[0], edge[1], reference);
+    rg_reference_cross(tangent[0], tangent[1], p->normal);
+    double length = sqrt(rg_reference_dot(p->normal, p->normal));
+    double sign = rg_reference_dot(reference, unit) > 0 ? 1 : -1;
+    for (int c = 0; c < 3; c++)
+        p->normal[c] = length > 0 ? sign * p->normal[c] / length : 0;
+    p->current = length / 2;
+}
+
+static void sample(const rg_interface_args *args, size_t i, int q, point *p) {
+    double l[3], unit[3];
+    *p = (point){.weight = rg_reference_face_point(q, l)};
+    p->area = args->geom[rg_igeom_index(i, RG_IGEOM_AREA)];
+    p->iso = args->geom[rg_igeom_index(i, RG_IGEOM_PEN_ISO)];
+    p->norm = args->geom[rg_igeom_index(i, RG_IGEOM_PEN_NORM)];
+    rg_reference_face_shape(l, p->shape);
+    for (int c = 0; c < 3; c++) {
+        unit[c] = args->geom[rg_igeom_index(i, RG_IGEOM_NORMAL + c)];
+        for (int a = 0; a < RG_FNODES; a++)
+            p->jump[c] += p->shape[a] * (side_value(args, i, 1, a, c) - side_value(args, i, 0, a, c));
+    }
+    double across = rg_reference_dot(unit, p->jump);
+    for (int c = 0; c < 3; c++)
+        p->dg[c] = p->iso * p->jump[c] + p->norm * across * unit[c];
+    sample_surface(args, i, l, p);
+}
+
+/* Completes a point by the average traction. */
+static void sample_traction(const rg_interface_args *args, size_t i, int q, point *p) {
+    double l[3];
+    rg_reference_face_point(q, l);
+    for (int c = 0; c < 3; c++) {
+        for (int k = 0; k < RG_FCORNERS; k++)
+            p->traction[c] += l[k] * (side_traction(args, i, 0, k, c) - side_traction(args, i, 1, k, c)) / 2;
+        p->dg[c] += p->traction[c];
+    }
+}
+
+/* Whether an unbroken point breaks now; if so, `direction` is that of its first opening. */
+static bool breaks(const rg_cohesive *law, const point *p, double direction[3]) {
+    double beta2 = law->beta * law->beta, shear[3];
+    double weight = law->beta > 0 ? fmax(1, 1 / beta2) : 1;
+    double limit = law->strength * p->area;
+    if (p->area == 0 || !isfinite(law->strength))
+        return false;
+    if (!(rg_reference_dot(p->traction, p->traction) * weight > 0.25 * limit * limit))
+        return false;
+    double across = rg_reference_dot(p->traction, p->normal) / p->current;
+    double pull = fmax(0, across);
+    for (int c = 0; c < 3; c++)
+        shear[c] = p->traction[c] / p->current - across * p->normal[c];
+    double effective = pull;
+    if (law->beta > 0)
+        effective = sqrt(pull * pull + rg_reference_dot(shear, shear) / beta2);
+    for (int c = 0; c < 3; c++)
+        direction[c] = law->beta > 0 ? (shear[c] / beta2 + pull * p->normal[c]) / effective : p->normal[c];
+    return effective > law->strength;
+}
+
+/* First crack state of a point. */
+static void activate(const rg_interface_args *args, const point *p, const double direction[3],
+                     double *crack[RG_CRACK]) {
+    double onset = RG_ONSET * args->law.strength * p->area / (p->iso + p->norm);
+    *crack[RG_CRACK_OPENING] = args->law.total ? 0 : onset;
+    for (int c = 0; c < 3; c++)
+        *crack[RG_CRACK_ORIGIN + c] = args->law.total ? 0 : p->jump[c] - onset * direction[c];
+    *crack[RG_CRACK_TIME] = args->time;
+}
+
+static opening measure(const rg_cohesive *law, const point *p, double *const crack[RG_CRACK]) {
+    opening o = {0};
+    double w[3];
+    for (int c = 0; c < 3; c++)
+        w[c] = p->jump[c] - *crack[RG_CRACK_ORIGIN + c];
+    o.normal = rg_reference_dot(w, p->normal);
+    for (int c = 0; c < 3; c++)
+        o.shear[c] = w[c] - o.normal * p->normal[c];
+    double open = fmax(0, o.normal);
+    o.effective = sqrt(law->beta * law->beta * rg_reference_dot(o.shear, o.shear) + open * open);
+    return o;
+}
+
+/* Slope of the line from the origin to the envelope at the largest opening (Pa/m). */
+static double secant(const rg_cohesive *law, double largest) {
+    return law->strength * fmax(0, 1 / fmax(largest, 1e-30) - 1 / law->opening);
+}
+
+/* Cohesive traction and contact, area-weighted; keeps the largest opening. */
+static void cohesive(const rg_cohesive *law, const point *p, const opening *o, double *largest, double t[3]) {
+    *largest = fmax(*largest, o->effective);
+    double s = secant(law, *largest);
+    for (int c = 0; c < 3; c++) {
+        t[c] = p->area * s * (law->beta * law->beta * o->shear[c] + fmax(0, o->normal) * p->normal[c]);
+        if (!law->flux && o->normal < law->contact_below)
+            t[c] += (p->iso + p->norm) * o->normal * p->normal[c];
+    }
+}
+
+static void crack_pointers(const rg_interface_args *args, size_t i, int q, double *crack[RG_CRACK]) {
+    double *block = args->crack + i / RG_LANES * args->crack_stride;
+    for (int k = 0; k < RG_CRACK; k++)
+        crack[k] = block + rg_crack_index(i % RG_LANES, q, k);
+}
+
+static void set_bit(uint8_t *mask, int q, bool on) {
+    *mask = (uint8_t)(on ? *mask | 1 << q : *mask & ~(1 << q));
+}
+
+/* Traction of point q, area-weighted; advances its state. */
+static void point_traction(const rg_interface_args *args, size_t i, int q, const point *p, double t[3]) {
+    double direction[3], *crack[RG_CRACK];
+    bool broken = args->broken[i] >> q & 1;
+    for (int c = 0; c < 3; c++)
+        t[c] = p->dg[c];
+    if (!broken && !breaks(&args->law, p, direction))
+        return;
+    crack_pointers(args, i, q, crack);
+    if (!broken) {
+        activate(args, p, direction, crack);
+        set_bit(&args->broken[i], q, true);
+        args->active[i / RG_LANES] = 1;
+    }
+    opening o = measure(&args->law, p, crack);
+    bool closed = args->law.flux && o.normal < 0;
+    if (!closed)
+        cohesive(&args->law, p, &o, crack[RG_CRACK_OPENING], t);
+    set_bit(&args->unlinked[i], q, !closed);
+}
+
+void rg_reference_interface(const rg_interface_args *args, size_t begin, size_t end) {
+    for (size_t i = begin * RG_LANES; i < end * RG_LANES; i++) {
+        double g[RG_FNODES][3] = {{0}};
+        for (int q = 0; q < RG_POINTS; q++) {
+            point p;
+            double t[3];
+            sample(args, i, q, &p);
+            sample_traction(args, i, q, &p);
+            point_traction(args, i, q, &p, t);
+            for (int a = 0; a < RG_FNODES; a++)
+                for (int c = 0; c < 3; c++)
+                    g[a][c] += p.weight * p.shape[a] * t[c];
+        }
+        for (int a = 0; a < RG_FNODES; a++)
+            for (int c = 0; c < 3; c++)
+                args->force[rg_iforce_index(i, a, c)] = g[a][c];
+    }
+}
+
+/* Adds the energies of point q. */
+static void point_energy(const rg_interface_args *args, size_t i, int q, double energy[RG_E_INTERFACE]) {
+    const rg_cohesive *law = &args->law;
+    bool broken = args->broken[i] >> q & 1, unlinked = args->unlinked[i] >> q & 1;
+    double *crack[RG_CRACK];
+    point p;
+    sample(args, i, q, &p); /* without the traction dg is the penalty alone */
+    if (!unlinked)
+        energy[RG_E_PENALTY] += p.weight * rg_reference_dot(p.dg, p.jump) / 2;
+    if (!broken)
+        return;
+    crack_pointers(args, i, q, crack);
+    double largest = *crack[RG_CRACK_OPENING];
+    opening o = measure(law, &p, crack);
+    if (unlinked)
+        energy[RG_E_COHESIVE] += p.weight * p.area * secant(law, largest) * o.effective * o.effective / 2;
+    if (!law->flux && o.normal < law->contact_below)
+        energy[RG_E_CONTACT] += p.weight * (p.iso + p.norm) * o.normal * o.normal / 2;
+    energy[RG_E_DISSIPATED] +=
+        p.weight * p.area * law->strength * law->opening / 2 * fmin(1, largest / law->opening);
+}
+
+void rg_reference_interface_state(const rg_interface_state_args *args, size_t begin, size_t end) {
+    for (size_t i = begin * RG_LANES; args->energy && i < end * RG_LANES; i++) {
+        double energy[RG_E_INTERFACE] = {0};
+        for (int q = 0; q < RG_POINTS; q++)
+            point_energy(args->interface, i, q, energy);
+        for (int k = 0; k < RG_E_INTERFACE; k++)
+            args->energy[(i / RG_LANES * RG_E_INTERFACE + (size_t)k) * RG_LANES + i % RG_LANES] = energy[k];
+    }
+}

@@ -1,0 +1,75 @@
+/* Constants of the 10-node tetrahedron and its six-node faces (method: thesis chapter 4), and the gather of a
+ * neighbour's face. */
+#ifndef RG_TET10_H
+#define RG_TET10_H
+
+#include "vec.h"
+
+/* Four-point rule: barycentric coordinate RG_GAUSS_B at the own corner, RG_GAUSS_A at the others; weight 1/4. */
+#define RG_GAUSS_A 0.13819660112501051518
+#define RG_GAUSS_B 0.58541019662496845446
+#define RG_GAUSS_BA (RG_GAUSS_B - RG_GAUSS_A)
+
+/* Six-point rule of a triangle: points 0-2 have 1 - 2p at corner i and p at the others, points 3-5 likewise. */
+#define RG_TRI_P0 0.445948490915965
+#define RG_TRI_W0 0.223381589678011
+#define RG_TRI_P1 0.091576213509771
+#define RG_TRI_W1 0.109951743655322
+
+/* Shape functions of a six-node triangle at a point with coordinate r = 1 - 2p at its corner and p at the others. */
+typedef struct {
+    double p, r, weight;
+    double corner, other;     /* N of the point's own corner, of the other corners: l (2 l - 1) */
+    double adjacent, facing;  /* N of the two mid-edges at the own corner, of the one facing it: 4 l l' */
+} rg_tri_rule;
+
+#define RG_TRI_RULE(P, W)                                                                                    \
+    {P,                                                                                                      \
+     1 - 2 * (P),                                                                                            \
+     W,                                                                                                      \
+     (1 - 2 * (P)) * (1 - 4 * (P)),                                                                          \
+     (P) * (2 * (P)-1),                                                                                      \
+     4 * (P) * (1 - 2 * (P)),                                                                                \
+     4 * (P) * (P)}
+
+static const rg_tri_rule rg_tri[2] = {RG_TRI_RULE(RG_TRI_P0, RG_TRI_W0), RG_TRI_RULE(RG_TRI_P1, RG_TRI_W1)};
+
+/* Face node (3-5) on the edge facing face corner i. */
+static const int rg_facing[3] = {4, 5, 3};
+
+/* Offsets of face node a within a block of nodal values, for local faces 0-3 (padded to eight). */
+#define RG_NODE_ROW(n) ((n)*3 * RG_LANES)
+static const int32_t rg_face_offset[RG_FNODES][8] = {
+    {RG_NODE_ROW(1), RG_NODE_ROW(0), RG_NODE_ROW(0), RG_NODE_ROW(0)},
+    {RG_NODE_ROW(2), RG_NODE_ROW(2), RG_NODE_ROW(1), RG_NODE_ROW(1)},
+    {RG_NODE_ROW(3), RG_NODE_ROW(3), RG_NODE_ROW(3), RG_NODE_ROW(2)},
+    {RG_NODE_ROW(5), RG_NODE_ROW(6), RG_NODE_ROW(4), RG_NODE_ROW(4)},
+    {RG_NODE_ROW(9), RG_NODE_ROW(9), RG_NODE_ROW(8), RG_NODE_ROW(5)},
+    {RG_NODE_ROW(8), RG_NODE_ROW(7), RG_NODE_ROW(7), RG_NODE_ROW(6)},
+};
+
+/* Six nodal vectors of the faces that `link` (4 * element + face) names. */
+RG_INLINE void rg_gather_face(const double *u, rg_int link, rg_vec out[RG_FNODES][3]) {
+    rg_int base = rg_lane_offset(link >> 2, RG_NODE_BLOCK), face = link & 3;
+    for (int a = 0; a < RG_FNODES; a++) {
+        rg_int index = base + rg_lookup4(rg_face_offset[a], face);
+        for (int c = 0; c < 3; c++) {
+            out[a][c] = rg_gather(u + c * RG_LANES, index);
+        }
+    }
+}
+
+/* Values at the six points of one component of a field given at the six face nodes. */
+RG_INLINE void rg_face_to_points(rg_vec node[RG_FNODES][3], rg_vec point[RG_POINTS][3]) {
+    for (int c = 0; c < 3; c++) {
+        rg_vec corners = node[0][c] + node[1][c] + node[2][c], edges = node[3][c] + node[4][c] + node[5][c];
+        for (int q = 0; q < RG_POINTS; q++) {
+            const rg_tri_rule *n = &rg_tri[q / 3];
+            int i = q % 3;
+            point[q][c] = n->other * corners + n->adjacent * edges + (n->corner - n->other) * node[i][c] +
+                          (n->facing - n->adjacent) * node[rg_facing[i]][c];
+        }
+    }
+}
+
+#endif

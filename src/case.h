@@ -1,0 +1,104 @@
+/* The case file: what a run computes. Strict YAML; every problem is reported at once with its place. */
+#ifndef RG_CASE_H
+#define RG_CASE_H
+
+#include <stdbool.h>
+#include <stdint.h>
+#include <stdio.h>
+
+/* A value that may be a number or an expression in x, y, z (reference position, m) and t (s). */
+typedef struct rg_expr rg_expr;
+
+typedef enum { RG_MATERIAL_NEO_HOOKEAN } rg_material_model;
+typedef enum { RG_FORM_VARIATIONAL, RG_FORM_INCOMPLETE } rg_form;
+typedef enum { RG_PENALTY_ELASTIC, RG_PENALTY_ISOTROPIC } rg_penalty;
+typedef enum { RG_LAW_NONE, RG_LAW_LINEAR } rg_law;
+typedef enum { RG_ACTIVATION_CONTINUOUS, RG_ACTIVATION_TOTAL } rg_activation;
+typedef enum { RG_CONTACT_PENALTY, RG_CONTACT_FLUX } rg_contact;
+typedef enum { RG_MASS_CONSISTENT, RG_MASS_LUMPED } rg_mass;
+
+/* output.fields, as bits */
+enum {
+    RG_FIELD_DISPLACEMENT = 1,
+    RG_FIELD_VELOCITY = 2,
+    RG_FIELD_STRESS = 4,    /* Cauchy stress, mean per element */
+    RG_FIELD_MEAN = 8,      /* mean stress */
+    RG_FIELD_PRINCIPAL = 16, /* principal stresses, largest first */
+    RG_FIELD_CRACK = 32,    /* crack surface */
+};
+
+typedef struct {
+    char *set;            /* named set of faces */
+    int component;        /* 0, 1, 2 for x, y, z */
+    bool is_displacement; /* prescribed displacement (m), else velocity (m/s) */
+    rg_expr *value;
+} rg_boundary;
+
+typedef struct {
+    char *name; /* column prefix in history.csv */
+    double at[3]; /* reference position (m) */
+} rg_probe;
+
+typedef struct {
+    char *path; /* as given on the command line */
+    char *name; /* its file name without directory and extension */
+    struct {
+        int64_t cells[3];
+        double size[3], origin[3];
+        double jitter; /* fraction of the smallest cell edge */
+        int64_t seed;
+        char *file; /* NULL: built-in box */
+    } mesh;
+    struct {
+        rg_material_model model;
+        double young, poisson, density;
+    } material;
+    struct {
+        rg_form form;
+        double beta_s;
+        rg_penalty penalty;
+        rg_law law;
+        double strength, energy, beta;
+        rg_activation activation;
+        rg_contact contact;
+    } interface;
+    rg_mass mass;
+    struct {
+        rg_expr *displacement[3], *velocity[3]; /* NULL: zero */
+    } initial;
+    int boundaries;
+    rg_boundary *boundary;
+    struct {
+        double end;    /* s */
+        double safety; /* fraction of the critical time step */
+        int64_t steps; /* limit on the number of steps; 0: none */
+    } time;
+    struct {
+        char *dir;
+        double interval_time;   /* s; 0 if given in steps */
+        int64_t interval_steps; /* 0 if given in time */
+        int probes;
+        rg_probe *probe;
+        unsigned fields;
+        double energy_limit; /* the run stops when energy_error_rel passes this */
+    } output;
+} rg_case;
+
+/* Reads the case file at `path`, applies `overrides` (each "a.b=value", value in YAML syntax) and checks it all.
+ * Returns NULL after printing every problem to `errors`, one a line (file:line:column: key: value: what is wrong,
+ * the allowed range, the nearest known key); for overrides the place is "--set a.b=value". The caller owns the result
+ * and frees it with rg_case_free. Reads nothing but the file, writes nothing but `errors`. */
+rg_case *rg_case_read(const char *path, int overrides, const char *const override[], FILE *errors);
+
+/* Writes the full set of values used, defaults included, as a YAML case file that reads back to the same case. */
+void rg_case_echo(const rg_case *c, FILE *out);
+
+void rg_case_free(rg_case *c);
+
+/* Expression as its source text, whether it depends on position or on time, and its value. Not thread-safe. */
+const char *rg_expr_text(const rg_expr *e);
+bool rg_expr_uses_position(const rg_expr *e);
+bool rg_expr_uses_time(const rg_expr *e);
+double rg_expr_value(const rg_expr *e, const double x[3], double t);
+
+#endif

@@ -1,0 +1,231 @@
+/* Walks the tree: finds each key of a table, reports unknown, missing and repeated ones, reads the others. */
+#include "case_check.h"
+
+#include <string.h>
+
+#include "mem.h"
+
+/* One mapping being checked against one table. */
+typedef struct {
+    rg_check *ck;
+    const rg_key_table *table;
+    const rg_node *top;                /* the mapping */
+    const char *path;                  /* its own path with a dot behind it, or "" */
+    const rg_node *found[RG_MAX_KEYS]; /* by key; NULL: absent */
+} scan;
+
+static bool check_table(rg_check *ck, const rg_key_table *table, const rg_node *node, const char *path,
+                        void *base);
+
+/* ---- which keys are there ---- */
+
+static void report_key(const scan *s, const rg_node *node, const char *name, const char *nearest,
+                       const char *what) {
+    char *path = rg_text_format("%s%s", s->path, name);
+    rg_subject subject = {.key = path, .nearest = nearest};
+    rg_problem_add(s->ck->problems, node->key_at, &subject, "%s", what);
+    rg_free(path);
+}
+
+static void report_unknown(const scan *s, const rg_node *node, const char *name) {
+    char nearest[64];
+    report_key(s, node, name, rg_key_nearest(s->table, name, nearest, sizeof nearest), "unknown key");
+}
+
+static void report_repeated(const scan *s, const rg_node *node, const char *name, rg_place first) {
+    char *what = rg_text_format("given twice, first at line %d column %d", first.line, first.column);
+    report_key(s, node, name, NULL, what);
+    rg_free(what);
+}
+
+static void collect(scan *s, const rg_node *mapping, const char *prefix);
+
+static void collect_one(scan *s, const rg_node *mapping, const rg_node *node, const char *name) {
+    const rg_node *first = rg_node_find(mapping, node->key, strlen(node->key));
+    const rg_key *key = rg_key_find(s->table, name);
+    if (strchr(node->key, '.') != NULL) {
+        report_key(s, node, name, NULL, "unknown key: the parts of a dotted key stand on lines of their own");
+    } else if (first != node) {
+        report_repeated(s, node, name, first->key_at);
+    } else if (key != NULL) {
+        s->found[key - s->table->key] = node;
+    } else if (!rg_key_is_section(s->table, name)) {
+        report_unknown(s, node, name);
+    } else if (node->kind == RG_NODE_MAPPING) {
+        char *prefix = rg_text_format("%s.", name);
+        collect(s, node, prefix);
+        rg_free(prefix);
+    } else if (node->kind != RG_NODE_BAD) {
+        char value[64];
+        char *path = rg_text_format("%s%s", s->path, name);
+        rg_subject subject = {
+            .key = path, .value = rg_node_is_null(node) ? NULL : rg_node_line(node, value, sizeof value)};
+        rg_problem_add(s->ck->problems, node->at, &subject, "%s",
+                       rg_node_is_null(node) ? "no value" : "not a mapping of keys");
+        rg_free(path);
+    }
+}
+
+static void collect(scan *s, const rg_node *mapping, const char *prefix) {
+    for (int i = 0; i < mapping->children; i++) {
+        const rg_node *node = &mapping->child[i];
+        bool bad_key = node->key[0] == '\0' && node->kind == RG_NODE_BAD;
+        if (!bad_key) {
+            char *name = rg_text_format("%s%s", prefix, node->key);
+            collect_one(s, mapping, node, name);
+            rg_free(name);
+        }
+    }
+}
+
+/* The innermost mapping (maybe empty) that exists on the way to `name`; NULL if something else stands there,
+ * which is reported already. */
+static const rg_node *parent_of(const rg_node *top, const char *name) {
+    const rg_node *parent = top;
+    for (const char *dot = strchr(name, '.'); dot != NULL; dot = strchr(name, '.')) {
+        const rg_node *next = rg_node_find(parent, name, (size_t)(dot - name));
+        if (next == NULL) {
+            return parent;
+        }
+        if (next->kind != RG_NODE_MAPPING) {
+            return rg_node_is_null(next) ? next : NULL;
+        }
+        parent = next;
+        name = dot + 1;
+    }
+    return parent;
+}
+
+/* ---- values ---- */
+
+static bool missing(const scan *s, const rg_key *key, const char *path) {
+    const rg_node *parent = parent_of(s->top, key->name);
+    if (parent != NULL) {
+        char allowed[160];
+        rg_subject subject = {.key = path, .allowed = rg_key_allowed(key, allowed, sizeof allowed)};
+        rg_problem_add(s->ck->problems, parent->at, &subject, "missing");
+    }
+    return false;
+}
+
+static void set_default(const rg_key *key, void *base) {
+    char *value = (char *)base + key->offset;
+    int64_t integer = (int64_t)key->fallback;
+    int word = (int)key->fallback;
+    for (int i = 0; i < key->count && key->type == RG_KEY_REAL; i++) {
+        memcpy(value + (size_t)i * sizeof(double), &key->fallback, sizeof(double));
+    }
+    if (key->type == RG_KEY_INTEGER) {
+        memcpy(value, &integer, sizeof integer);
+    } else if (key->type != RG_KEY_REAL) {
+        memcpy(value, &word, sizeof word);
+    }
+}
+
+static void check_entry(rg_check *ck, const rg_key *key, const rg_node *list, const char *path, int i,
+                        char *entries) {
+    char *item = rg_text_format("%s[%d]", path, i);
+    char *dotted = rg_text_format("%s.", item);
+    const rg_node *node = &list->child[i];
+    bool good = false;
+    if (node->kind == RG_NODE_MAPPING) {
+        good = check_table(ck, key->entry, node, dotted, entries + (size_t)i * key->entry->size);
+    } else {
+        rg_value_wrong(ck, key, node, item, NULL, "not a mapping of keys");
+    }
+    if (key->entry == &rg_boundary_table) {
+        rg_boundary_rule(ck, list, i, item, good);
+    } else {
+        rg_probe_rule(ck, list, i, item, good);
+    }
+    rg_free(dotted);
+    rg_free(item);
+}
+
+static bool check_list(rg_check *ck, const rg_key *key, const rg_node *list, const char *path, char *base) {
+    if (list->kind != RG_NODE_LIST) {
+        rg_value_wrong(ck, key, list, path, NULL, "not a list");
+        return false;
+    }
+    int before = ck->problems->count;
+    char *entries = rg_alloc((size_t)list->children, key->entry->size);
+    rg_pointer_set(base + key->offset, entries);
+    memcpy(base + key->offset_count, &list->children, sizeof list->children);
+    for (int i = 0; i < list->children; i++) {
+        check_entry(ck, key, list, path, i, entries);
+    }
+    return ck->problems->count == before;
+}
+
+static bool refuse_unused(const scan *s, const rg_key *key, const rg_node *node, const char *path) {
+    char value[64];
+    rg_subject subject = {.key = path, .value = rg_node_line(node, value, sizeof value)};
+    rg_problem_add(s->ck->problems, node->key_at, &subject, "%s",
+                   key->group == RG_GROUP_BOX ? "cannot be given together with mesh.file"
+                                              : "not used, because interface.law is none");
+    return false;
+}
+
+static bool check_key(const scan *s, const rg_key *key, const rg_node *node, const char *path, void *base) {
+    rg_usage usage = s->ck->usage[key->group];
+    if (node == NULL) {
+        if (key->need == RG_NEED_REQUIRED && usage == RG_USED) {
+            return missing(s, key, path);
+        }
+        if (key->need == RG_NEED_DEFAULT) {
+            set_default(key, base);
+        }
+        return key->need != RG_NEED_REQUIRED;
+    }
+    if (usage == RG_UNUSED) {
+        return refuse_unused(s, key, node, path);
+    }
+    return key->type == RG_KEY_LIST ? check_list(s->ck, key, node, path, base)
+                                    : rg_value_read(s->ck, key, node, path, base);
+}
+
+/* What the value of a key of the case says about others. */
+static void learn(rg_check *ck, const rg_key *key, const rg_node *node, bool good) {
+    if (key->offset == offsetof(rg_case, interface.law)) {
+        rg_usage usage = ck->c->interface.law == RG_LAW_NONE ? RG_UNUSED : RG_USED;
+        ck->usage[RG_GROUP_COHESIVE] = good ? usage : RG_UNSURE;
+    } else if (key->offset == offsetof(rg_case, mesh.file) && node != NULL) {
+        ck->usage[RG_GROUP_BOX] = RG_UNUSED;
+        ck->box = false;
+        if (good) {
+            rg_subject subject = {.key = key->name, .value = node->text};
+            rg_problem_add(ck->problems, node->at, &subject, "reading mesh files is not supported yet");
+        }
+    } else if (key->offset == offsetof(rg_case, mesh.size) || key->offset == offsetof(rg_case, mesh.origin)) {
+        ck->box = ck->box && good;
+    }
+}
+
+static bool check_table(rg_check *ck, const rg_key_table *table, const rg_node *node, const char *path,
+                        void *base) {
+    scan s = {.ck = ck, .table = table, .top = node, .path = path};
+    int before = ck->problems->count;
+    collect(&s, node, "");
+    bool all = ck->problems->count == before;
+    for (int i = 0; i < table->keys; i++) {
+        char *name = rg_text_format("%s%s", path, table->key[i].name);
+        bool good = check_key(&s, &table->key[i], s.found[i], name, base);
+        all = all && good;
+        if (table == &rg_case_table) {
+            learn(ck, &table->key[i], s.found[i], good);
+        }
+        rg_free(name);
+    }
+    return all;
+}
+
+void rg_case_check(rg_check *ck, const rg_node *root) {
+    ck->box = true;
+    if (root->kind == RG_NODE_MAPPING) {
+        check_table(ck, &rg_case_table, root, "", ck->c);
+    } else if (root->kind != RG_NODE_BAD) {
+        char value[64];
+        rg_subject subject = {.value = rg_node_line(root, value, sizeof value)};
+        rg_problem_add(ck->problems, root->at, &subject, "a case is a mapping of keys");
+    }
+}

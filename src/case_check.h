@@ -1,0 +1,33 @@
+/* Checking the tree of a case file against the registry of keys, and filling the case. */
+#ifndef RG_CASE_CHECK_H
+#define RG_CASE_CHECK_H
+
+#include "case_key.h"
+#include "case_tree.h"
+
+typedef enum { RG_USED, RG_UNUSED, RG_UNSURE /* what decides is itself wrong */ } rg_usage;
+
+typedef struct {
+    rg_problems *problems;
+    rg_case *c;
+    rg_usage usage[RG_GROUPS];
+    bool box; /* mesh.origin and mesh.size are good */
+} rg_check;
+
+/* Fills ck->c, a zeroed case, from the tree and reports every problem. */
+void rg_case_check(rg_check *ck, const rg_node *root);
+
+/* Reads one value of `key` (any type but a list of mappings) into the structure `base`. False: wrong and
+ * reported under `path`. */
+bool rg_value_read(rg_check *ck, const rg_key *key, const rg_node *node, const char *path, void *base);
+
+/* Reports a wrong value with what the key allows; `nearest` may be NULL. */
+void rg_value_wrong(rg_check *ck, const rg_key *key, const rg_node *node, const char *path,
+                    const char *nearest, const char *what);
+
+/* Rules that tie several keys together, applied to entry i of a list once its keys are read. `good`: all of
+ * them were. An entry that is not is left so that later entries are not compared with it. */
+void rg_boundary_rule(rg_check *ck, const rg_node *list, int i, const char *path, bool good);
+void rg_probe_rule(rg_check *ck, const rg_node *list, int i, const char *path, bool good);
+
+#endif

@@ -1,0 +1,294 @@
+#include "case_key.h"
+
+#include <math.h>
+#include <stdint.h>
+#include <string.h>
+
+#include "case_expr.h"
+#include "mem.h"
+
+#define CASE(member)   .offset = offsetof(rg_case, member)
+#define CHOICE(list)   .type = RG_KEY_CHOICE, .choice = (list)
+#define REAL           .type = RG_KEY_REAL, .count = 1
+#define REAL3          .type = RG_KEY_REAL, .count = 3
+#define INTEGER        .type = RG_KEY_INTEGER, .count = 1
+#define INTEGER3       .type = RG_KEY_INTEGER, .count = 3
+#define ANY            .low = -INFINITY, .high = INFINITY
+#define FROM(a)        .low = (a), .high = INFINITY
+#define ABOVE(a)       .low = (a), .low_open = true, .high = INFINITY
+#define FROM_TO(a, b)  .low = (a), .high = (b)
+#define REQUIRED       .need = RG_NEED_REQUIRED
+#define OPTIONAL       .need = RG_NEED_OPTIONAL
+#define DEFAULT(value) .need = RG_NEED_DEFAULT, .fallback = (value)
+#define BOX            .group = RG_GROUP_BOX
+#define COHESIVE       .group = RG_GROUP_COHESIVE
+
+/* In the order of the enums they set. */
+static const char *const models[] = {"neo-hookean", NULL};
+static const char *const forms[] = {"variational", "incomplete", NULL};
+static const char *const penalties[] = {"elastic", "isotropic", NULL};
+static const char *const laws[] = {"none", "linear", NULL};
+static const char *const activations[] = {"continuous", "total", NULL};
+static const char *const contacts[] = {"penalty", "flux", NULL};
+static const char *const masses[] = {"consistent", "lumped", NULL};
+static const char *const components[] = {"x", "y", "z", NULL};
+static const char *const box_sets[] = {"x-", "x+", "y-", "y+", "z-", "z+", NULL};
+static const char *const fields[] = {"displacement",     "velocity", "stress", "mean_stress",
+                                     "principal_stress", "crack",    NULL};
+
+enum {
+    ALL_FIELDS = RG_FIELD_DISPLACEMENT | RG_FIELD_VELOCITY | RG_FIELD_STRESS | RG_FIELD_MEAN |
+                 RG_FIELD_PRINCIPAL | RG_FIELD_CRACK
+};
+
+#define INITIAL(name_, unit_, member)                                                                        \
+    { .name = (name_), .unit = (unit_), .type = RG_KEY_EXPR, OPTIONAL, .no_time = true, CASE(initial.member) }
+
+/* clang-format off */
+static const rg_key case_keys[] = {
+    {.name = "mesh.file", .type = RG_KEY_TEXT, OPTIONAL, CASE(mesh.file)},
+    {.name = "mesh.cells", INTEGER3, FROM_TO(1, 100000), REQUIRED, BOX, CASE(mesh.cells)},
+    {.name = "mesh.size", .unit = "m", REAL3, ABOVE(0), REQUIRED, BOX, CASE(mesh.size)},
+    {.name = "mesh.origin", .unit = "m", REAL3, ANY, DEFAULT(0), BOX, CASE(mesh.origin)},
+    {.name = "mesh.jitter", REAL, FROM_TO(0, 0.3), DEFAULT(0), BOX, CASE(mesh.jitter)},
+    {.name = "mesh.seed", INTEGER, FROM(0), DEFAULT(1), BOX, CASE(mesh.seed)},
+
+    {.name = "material.model", CHOICE(models), REQUIRED, CASE(material.model)},
+    {.name = "material.young", .unit = "Pa", REAL, ABOVE(0), REQUIRED, CASE(material.young)},
+    {.name = "material.poisson", REAL, FROM_TO(0, 0.5), .high_open = true, REQUIRED, CASE(material.poisson)},
+    {.name = "material.density", .unit = "kg/m3", REAL, ABOVE(0), REQUIRED, CASE(material.density)},
+
+    {.name = "interface.form", CHOICE(forms), DEFAULT(RG_FORM_VARIATIONAL), CASE(interface.form)},
+    {.name = "interface.beta_s", REAL, ABOVE(0), DEFAULT(4), CASE(interface.beta_s)},
+    {.name = "interface.penalty", CHOICE(penalties), DEFAULT(RG_PENALTY_ELASTIC), CASE(interface.penalty)},
+    {.name = "interface.law", CHOICE(laws), REQUIRED, CASE(interface.law)},
+    {.name = "interface.strength", .unit = "Pa", REAL, ABOVE(0), REQUIRED, COHESIVE, CASE(interface.strength)},
+    {.name = "interface.energy", .unit = "J/m2", REAL, ABOVE(0), REQUIRED, COHESIVE, CASE(interface.energy)},
+    {.name = "interface.beta", REAL, FROM(0), DEFAULT(1), COHESIVE, CASE(interface.beta)},
+    {.name = "interface.activation", CHOICE(activations), DEFAULT(RG_ACTIVATION_CONTINUOUS), COHESIVE,
+     CASE(interface.activation)},
+    {.name = "interface.contact", CHOICE(contacts), DEFAULT(RG_CONTACT_PENALTY), COHESIVE, CASE(interface.contact)},
+
+    {.name = "mass", CHOICE(masses), DEFAULT(RG_DEFAULT_MASS), CASE(mass)},
+
+    INITIAL("initial.displacement.x", "m", displacement[0]),
+    INITIAL("initial.displacement.y", "m", displacement[1]),
+    INITIAL("initial.displacement.z", "m", displacement[2]),
+    INITIAL("initial.velocity.x", "m/s", velocity[0]),
+    INITIAL("initial.velocity.y", "m/s", velocity[1]),
+    INITIAL("initial.velocity.z", "m/s", velocity[2]),
+
+    {.name = "boundary", .type = RG_KEY_LIST, OPTIONAL, CASE(boundary), .entry = &rg_boundary_table,
+     .offset_count = offsetof(rg_case, boundaries)},
+
+    {.name = "time.end", .unit = "s", REAL, ABOVE(0), REQUIRED, CASE(time.end)},
+    {.name = "time.safety", REAL, FROM_TO(0, 1), .low_open = true, DEFAULT(RG_DEFAULT_SAFETY), CASE(time.safety)},
+    {.name = "time.steps", INTEGER, FROM(1), OPTIONAL, CASE(time.steps)},
+
+    {.name = "output.dir", .type = RG_KEY_TEXT, OPTIONAL, CASE(output.dir)},
+    {.name = "output.interval", .type = RG_KEY_INTERVAL, OPTIONAL, CASE(output)},
+    {.name = "output.probes", .type = RG_KEY_LIST, OPTIONAL, CASE(output.probe), .entry = &rg_probe_table,
+     .offset_count = offsetof(rg_case, output.probes)},
+    {.name = "output.fields", .type = RG_KEY_FLAGS, .choice = fields, DEFAULT(ALL_FIELDS), CASE(output.fields)},
+    {.name = "output.energy_limit", REAL, ABOVE(0), DEFAULT(0.05), CASE(output.energy_limit)},
+};
+
+static const rg_key boundary_keys[] = {
+    {.name = "set", .type = RG_KEY_TEXT, .choice = box_sets, REQUIRED, .offset = offsetof(rg_boundary, set)},
+    {.name = "component", CHOICE(components), REQUIRED, .offset = offsetof(rg_boundary, component)},
+    {.name = "velocity", .unit = "m/s", .type = RG_KEY_EXPR, OPTIONAL, .group = RG_GROUP_VELOCITY,
+     .offset = offsetof(rg_boundary, value)},
+    {.name = "displacement", .unit = "m", .type = RG_KEY_EXPR, OPTIONAL, .group = RG_GROUP_DISPLACEMENT,
+     .offset = offsetof(rg_boundary, value)},
+};
+
+static const rg_key probe_keys[] = {
+    {.name = "name", .type = RG_KEY_TEXT, REQUIRED, .offset = offsetof(rg_probe, name)},
+    {.name = "at", .unit = "m", REAL3, ANY, REQUIRED, .offset = offsetof(rg_probe, at)},
+};
+/* clang-format on */
+
+#define TABLE(list, type)                                                                                    \
+    { .key = (list), .keys = sizeof(list) / sizeof(list)[0], .size = sizeof(type) }
+
+const rg_key_table rg_case_table = TABLE(case_keys, rg_case);
+const rg_key_table rg_boundary_table = TABLE(boundary_keys, rg_boundary);
+const rg_key_table rg_probe_table = TABLE(probe_keys, rg_probe);
+
+_Static_assert(sizeof(case_keys) / sizeof(case_keys[0]) <= RG_MAX_KEYS, "RG_MAX_KEYS is too small");
+_Static_assert(sizeof(rg_form) == sizeof(int), "choices are stored as int");
+
+/* ---- words ---- */
+
+/* "number > 0 and < 0.5", "integer >= 1" */
+static int range_words(const rg_key *key, char *text, size_t size) {
+    const char *noun = key->type == RG_KEY_INTEGER ? "integer" : "number";
+    char low[32] = "", high[32] = "";
+    if (isfinite(key->low)) {
+        snprintf(low, sizeof low, " %s %g", key->low_open ? ">" : ">=", key->low);
+    }
+    if (isfinite(key->high)) {
+        const char *and = low[0] != '\0' ? " and" : "";
+        snprintf(high, sizeof high, "%s %s %.10g", and, key->high_open ? "<" : "<=", key->high);
+    }
+    return snprintf(text, size, "%s%s%s%s", key->count == 3 ? "[x, y, z], each " : "", noun, low, high);
+}
+
+/* "none, linear" */
+static int choice_words(const rg_key *key, char *text, size_t size) {
+    int used = snprintf(text, size, "%s", key->type == RG_KEY_FLAGS ? "list from " : "");
+    for (int i = 0; key->choice[i] != NULL && (size_t)used < size; i++) {
+        used += snprintf(text + used, size - (size_t)used, "%s%s", i > 0 ? ", " : "", key->choice[i]);
+    }
+    return used;
+}
+
+static int list_words(const rg_key_table *entry, char *text, size_t size) {
+    int used = snprintf(text, size, "list of {");
+    for (int i = 0; i < entry->keys && (size_t)used < size; i++) {
+        const char *join = i == 0 ? "" : entry->key[i].group == RG_GROUP_DISPLACEMENT ? " or " : ", ";
+        used += snprintf(text + used, size - (size_t)used, "%s%s", join, entry->key[i].name);
+    }
+    return used + ((size_t)used < size ? snprintf(text + used, size - (size_t)used, "}") : 0);
+}
+
+static int type_words(const rg_key *key, char *text, size_t size) {
+    switch (key->type) {
+    case RG_KEY_REAL:
+    case RG_KEY_INTEGER:
+        return range_words(key, text, size);
+    case RG_KEY_CHOICE:
+    case RG_KEY_FLAGS:
+        return choice_words(key, text, size);
+    case RG_KEY_TEXT:
+        return key->choice != NULL ? choice_words(key, text, size) : snprintf(text, size, "text");
+    case RG_KEY_EXPR:
+        return snprintf(text, size, "number or expression in x, y, z%s", key->no_time ? "" : ", t");
+    case RG_KEY_INTERVAL:
+        return snprintf(text, size, "integer >= 1 (steps), or number > 0 and < 1 (simulated seconds)");
+    case RG_KEY_LIST:
+        return list_words(key->entry, text, size);
+    }
+    return 0;
+}
+
+const char *rg_key_allowed(const rg_key *key, char *text, size_t size) {
+    int used = type_words(key, text, size);
+    if (key->unit != NULL && (size_t)used < size) {
+        snprintf(text + used, size - (size_t)used, " (%s)", key->unit);
+    }
+    return text;
+}
+
+/* ---- look-up ---- */
+
+bool rg_key_used(const rg_key *key, const void *base) {
+    switch (key->group) {
+    case RG_GROUP_BOX:
+        return ((const rg_case *)base)->mesh.file == NULL;
+    case RG_GROUP_COHESIVE:
+        return ((const rg_case *)base)->interface.law != RG_LAW_NONE;
+    case RG_GROUP_VELOCITY:
+        return !((const rg_boundary *)base)->is_displacement;
+    case RG_GROUP_DISPLACEMENT:
+        return ((const rg_boundary *)base)->is_displacement;
+    case RG_GROUP_ALWAYS:
+    case RG_GROUPS:
+        break;
+    }
+    return true;
+}
+
+const rg_key *rg_key_find(const rg_key_table *table, const char *name) {
+    for (int i = 0; i < table->keys; i++) {
+        if (strcmp(table->key[i].name, name) == 0) {
+            return &table->key[i];
+        }
+    }
+    return NULL;
+}
+
+bool rg_key_is_section(const rg_key_table *table, const char *name) {
+    size_t length = strlen(name);
+    for (int i = 0; i < table->keys; i++) {
+        if (strncmp(table->key[i].name, name, length) == 0 && table->key[i].name[length] == '.') {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* ---- suggestions ---- */
+
+static size_t last_part(const char *name, size_t length) {
+    while (length > 0 && name[length - 1] != '.') {
+        length--;
+    }
+    return length;
+}
+
+enum { FAR = 1000 };
+
+/* How far `name` is from the known path known[0..m). The last part counts most: a key at the wrong place is
+ * near, and so is one that begins like a known one (poisson_ratio). */
+static size_t key_distance(const char *name, const char *known, size_t m) {
+    size_t n = strlen(name), i = last_part(name, n), j = last_part(known, m);
+    size_t whole = rg_edit_distance(name, n, known, m);
+    size_t shorter = n - i < m - j ? n - i : m - j;
+    bool begins = shorter >= 3 && rg_edit_distance(name + i, shorter, known + j, shorter) == 0;
+    size_t last = begins && n - i != m - j ? 1 : rg_edit_distance(name + i, n - i, known + j, m - j);
+    if (last >= n - i && last >= m - j) {
+        return FAR; /* nothing in common */
+    }
+    bool same_section = i == j && rg_edit_distance(name, i, known, j) == 0;
+    last += same_section ? 0 : 1;
+    return last < whole ? last : whole;
+}
+
+const char *rg_key_nearest(const rg_key_table *table, const char *name, char *text, size_t size) {
+    size_t length = strlen(name);
+    size_t best = (length - last_part(name, length)) / 3 + 2; /* beyond this nothing is near */
+    const char *found = NULL;
+    for (int i = 0; i < table->keys; i++) {
+        const char *known = table->key[i].name;
+        for (size_t end = 1; end <= strlen(known); end++) {
+            bool whole = known[end] == '.' || known[end] == '\0';
+            size_t distance = whole ? key_distance(name, known, end) : best;
+            if (distance < best) {
+                best = distance;
+                snprintf(text, size, "%.*s", (int)end, known);
+                found = text;
+            }
+        }
+    }
+    return found;
+}
+
+/* ---- freeing ---- */
+
+static void free_list(const rg_key *key, char *base) {
+    void *list = rg_pointer_get(base + key->offset);
+    int count = 0;
+    memcpy(&count, base + key->offset_count, sizeof count);
+    for (int i = 0; i < count; i++) {
+        rg_keys_free(key->entry, (char *)list + (size_t)i * key->entry->size);
+    }
+    rg_free(list);
+    rg_pointer_set(base + key->offset, NULL);
+}
+
+void rg_keys_free(const rg_key_table *table, void *base) {
+    for (int i = 0; i < table->keys; i++) {
+        const rg_key *key = &table->key[i];
+        void *value = (char *)base + key->offset;
+        if (key->type == RG_KEY_TEXT) {
+            rg_free(rg_pointer_get(value));
+            rg_pointer_set(value, NULL);
+        } else if (key->type == RG_KEY_EXPR) { /* may be shared by two keys of a group */
+            rg_expr_free(rg_pointer_get(value));
+            rg_pointer_set(value, NULL);
+        } else if (key->type == RG_KEY_LIST) {
+            free_list(key, base);
+        }
+    }
+}

@@ -1,0 +1,104 @@
+/* Rules that tie several keys of the case file together. */
+#include "case_check.h"
+
+#include <string.h>
+
+#include "mem.h"
+
+/* ---- boundary: one prescribed motion per entry, one entry per set and component ---- */
+
+static bool one_motion(rg_check *ck, const rg_node *item, const char *path, rg_boundary *b) {
+    const rg_node *velocity = rg_node_find(item, "velocity", strlen("velocity"));
+    const rg_node *displacement = rg_node_find(item, "displacement", strlen("displacement"));
+    b->is_displacement = displacement != NULL;
+    if ((velocity == NULL) != (displacement == NULL)) {
+        return true;
+    }
+    rg_subject subject = {.key = path, .allowed = "exactly one of velocity, displacement"};
+    if (velocity == NULL) {
+        rg_problem_add(ck->problems, item->at, &subject, "missing velocity or displacement");
+    } else {
+        rg_problem_add(ck->problems, displacement->key_at, &subject, "velocity and displacement both given");
+    }
+    return false;
+}
+
+static const rg_node *same_motion(const rg_case *c, const rg_node *list, int i) {
+    for (int j = 0; j < i; j++) {
+        const rg_boundary *a = &c->boundary[j], *b = &c->boundary[i];
+        if (a->component == b->component && strcmp(a->set, b->set) == 0) {
+            return &list->child[j];
+        }
+    }
+    return NULL;
+}
+
+void rg_boundary_rule(rg_check *ck, const rg_node *list, int i, const char *path, bool good) {
+    rg_boundary *b = &ck->c->boundary[i];
+    bool mapping = list->child[i].kind == RG_NODE_MAPPING;
+    good = mapping && one_motion(ck, &list->child[i], path, b) && good;
+    if (!good) {
+        b->component = -1; /* equals no other */
+        return;
+    }
+    const rg_node *first = same_motion(ck->c, list, i);
+    if (first != NULL) {
+        rg_problem_add(ck->problems, list->child[i].at, &(rg_subject){.key = path},
+                       "set %s component %c is prescribed twice, first at line %d column %d", b->set,
+                       "xyz"[b->component], first -> at.line, first->at.column);
+    }
+}
+
+/* ---- probes: unique names fit for a column heading, places inside the box ---- */
+
+static const char *wrong_name(const rg_case *c, int i) {
+    static const char allowed[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
+    const char *name = c->output.probe[i].name;
+    if (strspn(name, allowed) != strlen(name)) {
+        return "not a name";
+    }
+    for (int j = 0; j < i; j++) {
+        const char *other = c->output.probe[j].name;
+        if (other != NULL && strcmp(other, name) == 0) {
+            return "the name of an earlier probe";
+        }
+    }
+    return NULL;
+}
+
+static void check_name(rg_check *ck, const rg_node *item, const char *path, int i) {
+    const char *wrong = wrong_name(ck->c, i);
+    const rg_node *node = rg_node_find(item, "name", strlen("name"));
+    if (wrong != NULL && node != NULL) {
+        char *key = rg_text_format("%s.name", path);
+        rg_subject subject = {
+            .key = key, .value = node->text, .allowed = "letters, digits, _ and -; unique among the probes"};
+        rg_problem_add(ck->problems, node->at, &subject, "%s", wrong);
+        rg_free(key);
+    }
+}
+
+static void check_place(rg_check *ck, const rg_node *item, const char *path, const rg_probe *probe) {
+    const rg_node *node = rg_node_find(item, "at", strlen("at"));
+    const double *origin = ck->c->mesh.origin, *size = ck->c->mesh.size;
+    for (int k = 0; k < 3 && node != NULL; k++) {
+        if (probe->at[k] < origin[k] || probe->at[k] > origin[k] + size[k]) {
+            char *key = rg_text_format("%s.at[%d]", path, k);
+            char *allowed = rg_text_format("number >= %g and <= %g (m)", origin[k], origin[k] + size[k]);
+            rg_subject subject = {.key = key, .value = node->child[k].text, .allowed = allowed};
+            rg_problem_add(ck->problems, node->child[k].at, &subject, "outside the box");
+            rg_free(allowed);
+            rg_free(key);
+        }
+    }
+}
+
+void rg_probe_rule(rg_check *ck, const rg_node *list, int i, const char *path, bool good) {
+    const rg_node *item = &list->child[i];
+    if (ck->c->output.probe[i].name != NULL) {
+        check_name(ck, item, path, i);
+    }
+    if (good && ck->box) {
+        check_place(ck, item, path, &ck->c->output.probe[i]);
+    }
+}

@@ -1,0 +1,251 @@
+/* Single values: text of the case file to numbers, choices, texts and expressions. */
+#include "case_check.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "case_expr.h"
+#include "mem.h"
+
+void rg_value_wrong(rg_check *ck, const rg_key *key, const rg_node *node, const char *path,
+                    const char *nearest, const char *what) {
+    char value[64], allowed[160];
+    if (node->kind == RG_NODE_BAD) {
+        return;
+    }
+    rg_subject subject = {.key = path,
+                          .value = rg_node_is_null(node) ? NULL : rg_node_line(node, value, sizeof value),
+                          .allowed = rg_key_allowed(key, allowed, sizeof allowed),
+                          .nearest = nearest};
+    rg_problem_add(ck->problems, node->at, &subject, "%s", rg_node_is_null(node) ? "no value" : what);
+}
+
+/* ---- numbers ---- */
+
+static bool is_special(const char *text) {
+    static const char *const special[] = {"nan", "inf", "infinity"};
+    text += text[0] == '+' || text[0] == '-' ? 1 : 0;
+    text += text[0] == '.' ? 1 : 0;
+    for (int i = 0; i < 3; i++) {
+        if (strlen(text) == strlen(special[i]) &&
+            rg_edit_distance(text, strlen(text), special[i], strlen(special[i])) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* What keeps the node from being a number, or NULL. */
+static const char *not_a_number(const rg_node *node, bool *integer) {
+    *integer = false;
+    if (node->kind != RG_NODE_SCALAR) {
+        return "not a number";
+    }
+    if (!rg_is_number(node->text, integer)) {
+        return node->plain && is_special(node->text) ? "not finite" : "not a number";
+    }
+    return node->plain ? NULL : "a text (in quotes), not a number";
+}
+
+static bool in_range(const rg_key *key, double v) {
+    bool above = key->low_open ? v > key->low : v >= key->low;
+    return above && (key->high_open ? v < key->high : v <= key->high);
+}
+
+static const char *read_real(const rg_key *key, const rg_node *node, double *out) {
+    bool integer = false;
+    const char *wrong = not_a_number(node, &integer);
+    if (wrong != NULL) {
+        return wrong;
+    }
+    *out = strtod(node->text, NULL);
+    if (!isfinite(*out)) {
+        return "not finite";
+    }
+    return in_range(key, *out) ? NULL : "out of range";
+}
+
+static const char *read_integer(const rg_key *key, const rg_node *node, int64_t *out) {
+    bool integer = false;
+    const char *wrong = not_a_number(node, &integer);
+    if (wrong != NULL) {
+        return wrong;
+    }
+    if (!integer) {
+        return "not an integer";
+    }
+    errno = 0;
+    long long v = strtoll(node->text, NULL, 10);
+    *out = v;
+    return errno == 0 && in_range(key, (double)v) ? NULL : "out of range";
+}
+
+static bool read_number(rg_check *ck, const rg_key *key, const rg_node *node, const char *path, void *value,
+                        int i) {
+    const char *wrong = key->type == RG_KEY_INTEGER ? read_integer(key, node, (int64_t *)value + i)
+                                                    : read_real(key, node, (double *)value + i);
+    if (wrong != NULL) {
+        rg_value_wrong(ck, key, node, path, NULL, wrong);
+    }
+    return wrong == NULL;
+}
+
+static bool read_numbers(rg_check *ck, const rg_key *key, const rg_node *node, const char *path,
+                         void *value) {
+    if (key->count == 1) {
+        return read_number(ck, key, node, path, value, 0);
+    }
+    if (node->kind != RG_NODE_LIST || node->children != key->count) {
+        rg_value_wrong(ck, key, node, path, NULL,
+                       node->kind == RG_NODE_LIST ? "wrong number of entries" : "not a list");
+        return false;
+    }
+    rg_key single = *key;
+    single.count = 1;
+    bool good = true;
+    for (int i = 0; i < key->count; i++) {
+        char *item = rg_text_format("%s[%d]", path, i);
+        good = read_number(ck, &single, &node->child[i], item, value, i) && good;
+        rg_free(item);
+    }
+    return good;
+}
+
+/* ---- words ---- */
+
+/* YAML takes plain true, 12 or nothing for a truth value, a number or null. */
+static const char *not_a_text(const rg_node *node) {
+    bool integer = false;
+    if (node->kind != RG_NODE_SCALAR || node->text[0] == '\0') {
+        return "not a text";
+    }
+    bool truth = strcmp(node->text, "true") == 0 || strcmp(node->text, "false") == 0;
+    bool other = rg_is_number(node->text, &integer) || truth;
+    return node->plain && other ? "not a text (put it in quotes to make it one)" : NULL;
+}
+
+/* Position of the node's text among the key's choices, -1 if it is none (reported). */
+static int read_choice(rg_check *ck, const rg_key *key, const rg_node *node, const char *path) {
+    if (node->kind != RG_NODE_SCALAR) {
+        rg_value_wrong(ck, key, node, path, NULL, "not one of the allowed words");
+        return -1;
+    }
+    for (int i = 0; key->choice[i] != NULL; i++) {
+        if (strcmp(node->text, key->choice[i]) == 0) {
+            return i;
+        }
+    }
+    rg_value_wrong(ck, key, node, path, rg_nearest(node->text, key->choice), "not one of the allowed words");
+    return -1;
+}
+
+static bool read_enum(rg_check *ck, const rg_key *key, const rg_node *node, const char *path, void *value) {
+    int choice = read_choice(ck, key, node, path);
+    if (choice >= 0) {
+        memcpy(value, &choice, sizeof choice);
+    }
+    return choice >= 0;
+}
+
+static bool read_flags(rg_check *ck, const rg_key *key, const rg_node *node, const char *path,
+                       unsigned *flags) {
+    *flags = 0;
+    if (node->kind != RG_NODE_LIST) {
+        rg_value_wrong(ck, key, node, path, NULL, "not a list");
+        return false;
+    }
+    bool good = true;
+    for (int i = 0; i < node->children; i++) {
+        char *item = rg_text_format("%s[%d]", path, i);
+        int choice = read_choice(ck, key, &node->child[i], item);
+        unsigned bit = choice < 0 ? 0 : 1U << choice;
+        if ((*flags & bit) != 0) {
+            rg_value_wrong(ck, key, &node->child[i], item, NULL, "given twice");
+        }
+        good = good && choice >= 0 && (*flags & bit) == 0;
+        *flags |= bit;
+        rg_free(item);
+    }
+    return good;
+}
+
+static bool read_text(rg_check *ck, const rg_key *key, const rg_node *node, const char *path, void *value) {
+    if (key->choice != NULL) {
+        if (read_choice(ck, key, node, path) < 0) {
+            return false;
+        }
+    } else {
+        const char *wrong = not_a_text(node);
+        if (wrong != NULL) {
+            rg_value_wrong(ck, key, node, path, NULL, wrong);
+            return false;
+        }
+    }
+    rg_pointer_set(value, rg_text_copy(node->text, strlen(node->text)));
+    return true;
+}
+
+/* ---- expressions and the output interval ---- */
+
+static bool read_expr(rg_check *ck, const rg_key *key, const rg_node *node, const char *path, void *value) {
+    if (node->kind != RG_NODE_SCALAR || rg_node_is_null(node) || (node->plain && is_special(node->text))) {
+        rg_value_wrong(ck, key, node, path, NULL,
+                       node->kind == RG_NODE_SCALAR ? "not finite" : "not a number or expression");
+        return false;
+    }
+    char *message = NULL;
+    rg_expr *e = rg_expr_new(node->text, &message);
+    if (e == NULL) {
+        rg_value_wrong(ck, key, node, path, NULL, message);
+        rg_free(message);
+        return false;
+    }
+    if (key->no_time && rg_expr_uses_time(e)) {
+        rg_value_wrong(ck, key, node, path, NULL, "depends on t, but this is the state at the start");
+        rg_expr_free(e);
+        return false;
+    }
+    rg_expr_free(rg_pointer_get(value)); /* of the other key of the group, where both are wrongly given */
+    rg_pointer_set(value, e);
+    return true;
+}
+
+static bool read_interval(rg_check *ck, const rg_key *key, const rg_node *node, const char *path,
+                          rg_case *c) {
+    bool integer = false;
+    const char *wrong = not_a_number(node, &integer);
+    if (wrong == NULL) {
+        rg_key steps = {.low = 1, .high = INFINITY};
+        rg_key seconds = {.low = 0, .low_open = true, .high = 1, .high_open = true};
+        wrong = integer ? read_integer(&steps, node, &c->output.interval_steps)
+                        : read_real(&seconds, node, &c->output.interval_time);
+    }
+    if (wrong != NULL) {
+        rg_value_wrong(ck, key, node, path, NULL, wrong);
+    }
+    return wrong == NULL;
+}
+
+bool rg_value_read(rg_check *ck, const rg_key *key, const rg_node *node, const char *path, void *base) {
+    void *value = (char *)base + key->offset;
+    switch (key->type) {
+    case RG_KEY_REAL:
+    case RG_KEY_INTEGER:
+        return read_numbers(ck, key, node, path, value);
+    case RG_KEY_CHOICE:
+        return read_enum(ck, key, node, path, value);
+    case RG_KEY_FLAGS:
+        return read_flags(ck, key, node, path, value);
+    case RG_KEY_TEXT:
+        return read_text(ck, key, node, path, value);
+    case RG_KEY_EXPR:
+        return read_expr(ck, key, node, path, value);
+    case RG_KEY_INTERVAL:
+        return read_interval(ck, key, node, path, base);
+    case RG_KEY_LIST:
+        break;
+    }
+    return false;
+}

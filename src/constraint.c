@@ -1,0 +1,291 @@
+#include "constraint.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "element.h"
+#include "error.h"
+#include "layout.h"
+#include "mem.h"
+
+/* What depends only on which nodes are constrained: c of them, then the free ones. For the mass M / (rho V):
+ * impulse[c][c] = (Minv_cc)^-1, follow[f][c] = Minv_fc (Minv_cc)^-1. */
+typedef struct {
+    int constrained;
+    int8_t node[RG_NODES];
+    double impulse[RG_NODES][RG_NODES], follow[RG_NODES][RG_NODES];
+} pattern;
+
+/* One component of one element. Arrays run over the constrained nodes of the pattern. */
+typedef struct {
+    rg_lid slot;
+    int8_t component;
+    int16_t boundary[RG_NODES];
+    const pattern *pattern;
+    double mass, work;
+    double before[RG_NODES]; /* velocity before the step */
+    double target[RG_NODES]; /* velocity after it */
+    double place[RG_NODES];  /* displacement after it, where that is prescribed */
+} entry;
+
+struct rg_constraints {
+    const rg_case *input;
+    const rg_domain *domain;
+    size_t entries, *tile_begin; /* entries of tile t: tile_begin[t] .. tile_begin[t + 1] - 1 */
+    entry *entry;
+    pattern *patterns[1 << RG_NODES];
+    bool lumped, varies; /* varies: some value depends on time or is a displacement */
+    double dt;
+};
+
+/* ---- Patterns ------------------------------------------------------------------------------------------------- */
+
+/* Inverts the leading n x n part of a symmetric positive definite matrix (Gauss-Jordan, no pivoting needed). */
+static void invert(int n, double a[RG_NODES][RG_NODES], double inverse[RG_NODES][RG_NODES]) {
+    for (int i = 0; i < n; i++) {
+        for (int j = 0; j < n; j++) {
+            inverse[i][j] = i == j;
+        }
+    }
+    for (int k = 0; k < n; k++) {
+        double pivot = a[k][k];
+        for (int j = 0; j < n; j++) {
+            a[k][j] /= pivot;
+            inverse[k][j] /= pivot;
+        }
+        for (int i = 0; i < n; i++) {
+            double factor = a[i][k];
+            for (int j = 0; i != k && j < n; j++) {
+                a[i][j] -= factor * a[k][j];
+                inverse[i][j] -= factor * inverse[k][j];
+            }
+        }
+    }
+}
+
+static const pattern *pattern_of(rg_constraints *k, unsigned mask) {
+    if (k->patterns[mask] != NULL) {
+        return k->patterns[mask];
+    }
+    pattern *p = RG_NEW(pattern, 1);
+    int n = 0;
+    for (int pass = 1; pass >= 0; pass--) {
+        for (int8_t a = 0; a < RG_NODES; a++) {
+            if ((int)(mask >> a & 1) == pass) {
+                p->node[n++] = a;
+            }
+        }
+        p->constrained = pass == 1 ? n : p->constrained;
+    }
+    double block[RG_NODES][RG_NODES];
+    for (int i = 0; i < p->constrained; i++) {
+        for (int j = 0; j < p->constrained; j++) {
+            block[i][j] = rg_inverse_mass_entry(k->lumped, p->node[i], p->node[j]);
+        }
+    }
+    invert(p->constrained, block, p->impulse);
+    for (int f = p->constrained; f < RG_NODES; f++) {
+        for (int i = 0; i < p->constrained; i++) {
+            for (int j = 0; j < p->constrained; j++) {
+                p->follow[f][i] += rg_inverse_mass_entry(k->lumped, p->node[f], p->node[j]) * p->impulse[j][i];
+            }
+        }
+    }
+    return k->patterns[mask] = p;
+}
+
+/* ---- Set-up --------------------------------------------------------------------------------------------------- */
+
+static int set_number(const rg_part *part, const char *name) {
+    for (int i = 0; i < part->sets; i++) {
+        if (strcmp(part->set_name[i], name) == 0) {
+            return i;
+        }
+    }
+    rg_fatal(RG_USAGE, "boundary: the mesh has no set named '%s'", name);
+}
+
+/* Boundary that prescribes component c of each node of an element, -1 for none; returns the mask of those nodes. */
+static unsigned constrained_nodes(const rg_constraints *k, const int *set, size_t slot, int c,
+                                  int16_t which[RG_NODES]) {
+    unsigned mask = 0;
+    for (int b = 0; b < k->input->boundaries; b++) {
+        for (int f = 0; f < RG_FACES; f++) {
+            if (k->input->boundary[b].component != c || k->domain->set[4 * slot + (size_t)f] != set[b]) {
+                continue;
+            }
+            for (int a = 0; a < RG_FNODES; a++) {
+                which[rg_face_node[f][a]] = (int16_t)b;
+                mask |= 1u << rg_face_node[f][a];
+            }
+        }
+    }
+    return mask;
+}
+
+static void add_entry(rg_constraints *k, size_t slot, int c, unsigned mask, const int16_t which[RG_NODES]) {
+    if ((k->entries & (k->entries - 1)) == 0) { /* grow at powers of two */
+        k->entry = rg_realloc(k->entry, k->entries == 0 ? 1 : 2 * k->entries, sizeof *k->entry);
+    }
+    entry *e = &k->entry[k->entries++];
+    *e = (entry){.slot = (rg_lid)slot, .component = (int8_t)c, .pattern = pattern_of(k, mask)};
+    e->mass = k->input->material.density * k->domain->geom[rg_geom_index(slot, RG_GEOM_VOLUME)];
+    for (int i = 0; i < e->pattern->constrained; i++) {
+        e->boundary[i] = which[e->pattern->node[i]];
+    }
+}
+
+static bool boundary_varies(const rg_boundary *b) {
+    return b->is_displacement || rg_expr_uses_time(b->value);
+}
+
+rg_constraints *rg_constraints_make(const rg_case *c, const rg_domain *d, const rg_part *part) {
+    rg_constraints *k = RG_NEW(rg_constraints, 1);
+    *k = (rg_constraints){.input = c, .domain = d, .lumped = c->mass == RG_MASS_LUMPED};
+    int *set = RG_NEW(int, (size_t)c->boundaries + 1);
+    for (int b = 0; b < c->boundaries; b++) {
+        set[b] = set_number(part, c->boundary[b].set);
+        k->varies = k->varies || boundary_varies(&c->boundary[b]);
+    }
+    k->tile_begin = RG_NEW(size_t, d->tiles + 1);
+    for (size_t t = 0; t < d->tiles; t++) {
+        k->tile_begin[t] = k->entries;
+        for (size_t slot = d->tile[t].begin * RG_LANES; slot < d->tile[t].end * RG_LANES; slot++) {
+            for (int comp = 0; comp < 3; comp++) {
+                int16_t which[RG_NODES];
+                unsigned mask = constrained_nodes(k, set, slot, comp, which);
+                if (mask != 0) {
+                    add_entry(k, slot, comp, mask, which);
+                }
+            }
+        }
+    }
+    k->tile_begin[d->tiles] = k->entries;
+    rg_free(set);
+    return k;
+}
+
+/* ---- Values --------------------------------------------------------------------------------------------------- */
+
+static double value_at(const rg_constraints *k, const entry *e, int i, double time) {
+    double x[3];
+    rg_node_position(k->domain->corner + 12 * (size_t)e->slot, e->pattern->node[i], x);
+    return rg_expr_value(k->input->boundary[e->boundary[i]].value, x, time);
+}
+
+/* Velocity of constrained node i at `time`; of a prescribed displacement, its difference over a step. */
+static double velocity_at(const rg_constraints *k, const entry *e, int i, double time) {
+    if (!k->input->boundary[e->boundary[i]].is_displacement) {
+        return value_at(k, e, i, time);
+    }
+    double half = 0.5 * k->dt;
+    return half > 0 ? (value_at(k, e, i, time + half) - value_at(k, e, i, time - half)) / k->dt : 0;
+}
+
+void rg_constraints_start(rg_constraints *k, const double *u, const double *velocity) {
+    for (size_t n = 0; n < k->entries; n++) {
+        entry *e = &k->entry[n];
+        for (int i = 0; i < e->pattern->constrained; i++) {
+            size_t at = rg_node_index((size_t)e->slot, e->pattern->node[i], e->component);
+            e->before[i] = velocity[at];
+            e->place[i] = u[at];
+            e->target[i] = velocity_at(k, e, i, 0);
+        }
+    }
+}
+
+void rg_constraints_set(rg_constraints *k, double time_velocity, double time_displacement, double dt_displacement) {
+    k->dt = dt_displacement;
+    for (size_t n = 0; k->varies && n < k->entries; n++) {
+        entry *e = &k->entry[n];
+        for (int i = 0; i < e->pattern->constrained; i++) {
+            if (k->input->boundary[e->boundary[i]].is_displacement) {
+                double next = value_at(k, e, i, time_displacement);
+                e->target[i] = (next - e->place[i]) / dt_displacement;
+                e->place[i] = next;
+            } else {
+                e->target[i] = value_at(k, e, i, time_velocity);
+            }
+        }
+    }
+}
+
+/* ---- Correction ----------------------------------------------------------------------------------------------- */
+
+/* Adds to the velocities of an entry's nodes what brings the constrained ones to `target`; gives that change for
+ * all nodes, in pattern order, and returns the work of the impulse for velocities `before` ahead of it. */
+static double correct(const entry *e, const double *target, double *velocity, double change[RG_NODES]) {
+    const pattern *p = e->pattern;
+    double work = 0;
+    for (int i = 0; i < p->constrained; i++) {
+        change[i] = target[i] - velocity[rg_node_index((size_t)e->slot, p->node[i], e->component)];
+    }
+    for (int i = 0; i < p->constrained; i++) {
+        double impulse = 0;
+        for (int j = 0; j < p->constrained; j++) {
+            impulse += p->impulse[i][j] * change[j];
+        }
+        work += 0.5 * e->mass * impulse * (e->before[i] + target[i]);
+    }
+    for (int f = p->constrained; f < RG_NODES; f++) {
+        change[f] = 0;
+        for (int j = 0; j < p->constrained; j++) {
+            change[f] += p->follow[f][j] * change[j];
+        }
+    }
+    for (int n = 0; n < RG_NODES; n++) {
+        size_t at = rg_node_index((size_t)e->slot, p->node[n], e->component);
+        velocity[at] = n < p->constrained ? target[n] : velocity[at] + change[n];
+    }
+    return work;
+}
+
+void rg_constraints_apply(rg_constraints *k, size_t tile, double *velocity, double *u, double dt_displacement) {
+    for (size_t n = k->tile_begin[tile]; n < k->tile_begin[tile + 1]; n++) {
+        entry *e = &k->entry[n];
+        double change[RG_NODES];
+        e->work += correct(e, e->target, velocity, change);
+        for (int i = 0; i < RG_NODES; i++) {
+            size_t at = rg_node_index((size_t)e->slot, e->pattern->node[i], e->component);
+            bool placed = i < e->pattern->constrained && k->input->boundary[e->boundary[i]].is_displacement;
+            u[at] = placed ? e->place[i] : u[at] + dt_displacement * change[i];
+        }
+        memcpy(e->before, e->target, sizeof e->before);
+    }
+}
+
+void rg_constraints_peek(rg_constraints *k, size_t begin, size_t end, double time, double *velocity,
+                         rg_exact_sum *work) {
+    for (size_t n = 0; n < k->entries; n++) {
+        const entry *e = &k->entry[n];
+        if ((size_t)e->slot < begin || (size_t)e->slot >= end) {
+            continue;
+        }
+        double target[RG_NODES], change[RG_NODES];
+        for (int i = 0; i < e->pattern->constrained; i++) {
+            target[i] = k->varies ? velocity_at(k, e, i, time) : e->target[i];
+        }
+        double done = correct(e, target, velocity, change);
+        if (work != NULL) {
+            rg_exact_add(work, done);
+        }
+    }
+}
+
+void rg_constraints_work(const rg_constraints *k, rg_exact_sum *work) {
+    for (size_t n = 0; n < k->entries; n++) {
+        rg_exact_add(work, k->entry[n].work);
+    }
+}
+
+void rg_constraints_free(rg_constraints *k) {
+    if (k == NULL) {
+        return;
+    }
+    for (size_t i = 0; i < sizeof k->patterns / sizeof *k->patterns; i++) {
+        rg_free(k->patterns[i]);
+    }
+    rg_free(k->entry);
+    rg_free(k->tile_begin);
+    rg_free(k);
+}

@@ -1,0 +1,25 @@
+/* The 10-node tetrahedron outside the time loop: positions, shape functions, mass. Scalar, for set-up and output. */
+#ifndef RG_ELEMENT_H
+#define RG_ELEMENT_H
+
+#include <stdbool.h>
+
+#include "layout.h"
+
+/* Reference position of a node from the four corners [4][3] (m). */
+void rg_node_position(const double *corner, int node, double x[3]);
+
+/* Barycentric coordinates of point x in the element with the given corners [4][3]. */
+void rg_barycentric(const double *corner, const double x[3], double l[4]);
+
+/* The ten shape functions at barycentric coordinates l. */
+void rg_shape(const double l[4], double N[RG_NODES]);
+
+/* Entry (a, b) of the mass matrix over rho V, and of its inverse: consistent, or lumped (HRZ). */
+double rg_mass_entry(bool lumped, int a, int b);
+double rg_inverse_mass_entry(bool lumped, int a, int b);
+
+/* M v of element `slot` of total mass `mass`; v laid out as in layout.h. */
+void rg_mass_times(bool lumped, double mass, const double *v, size_t slot, double out[RG_NODES][3]);
+
+#endif

@@ -1,0 +1,85 @@
+#include "estimate.h"
+
+#include <inttypes.h>
+#include <math.h>
+
+#include "mem.h"
+
+/* Length of the cohesive zone of mode I, plane strain: (9 pi/32) E/(1 - nu^2) G_c/sigma_c^2 (thesis 2; Rice 1968). */
+static double cohesive_zone(const rg_case *c) {
+    if (c->interface.law == RG_LAW_NONE) {
+        return INFINITY;
+    }
+    double modulus = c->material.young / (1 - c->material.poisson * c->material.poisson);
+    return 9 * 3.14159265358979324 / 32 * modulus * c->interface.energy / (c->interface.strength * c->interface.strength);
+}
+
+static double largest_edge(const rg_solver *s) {
+    double square = 0;
+    for (size_t i = 0; i < s->domain->iblocks * RG_LANES; i++) {
+        for (int e = 0; e < 3; e++) { /* edges 01, 02 and their difference 12 */
+            double sum = 0;
+            for (int c = 0; c < 3; c++) {
+                double a = s->domain->igeom[rg_igeom_index(i, RG_IGEOM_EDGE + c)];
+                double b = s->domain->igeom[rg_igeom_index(i, RG_IGEOM_EDGE + 3 + c)];
+                double x = e == 0 ? a : e == 1 ? b : b - a;
+                sum += x * x;
+            }
+            square = fmax(square, sum);
+        }
+    }
+    MPI_Allreduce(MPI_IN_PLACE, &square, 1, MPI_DOUBLE, MPI_MAX, s->comm);
+    return sqrt(square);
+}
+
+static double bytes_per_element(const rg_solver *s, bool with_cracks) {
+    double crack = (double)(s->domain->iblocks + 1) * RG_CRACK_BLOCK * sizeof(double);
+    double sum[2] = {(double)rg_alloc_total() - (with_cracks ? 0 : crack), (double)s->domain->elements};
+    MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPI_DOUBLE, MPI_SUM, s->comm);
+    return sum[0] / sum[1];
+}
+
+rg_estimate rg_estimate_run(const rg_solver *s) {
+    const rg_case *c = s->input;
+    const rg_material *m = &s->bulk.material;
+    rg_estimate e = {.elements = s->part->total,
+                     .interfaces = s->part->interfaces,
+                     .dofs = 3 * RG_NODES * s->part->total,
+                     .c_dilatational = sqrt((m->lambda + 2 * m->mu) / m->density),
+                     .c_shear = sqrt(m->mu / m->density),
+                     .dt_critical = 2 / sqrt(s->omega2)};
+    e.dt = c->time.safety * e.dt_critical;
+    e.steps = (int64_t)ceil(c->time.end / e.dt * (1 - 1e-12));
+    e.steps = c->time.steps > 0 && c->time.steps < e.steps ? c->time.steps : e.steps;
+    e.bytes_per_element = bytes_per_element(s, false);
+    e.peak_bytes_per_element = bytes_per_element(s, true);
+    e.seconds = 1.3 * s->pass_seconds * (double)e.steps; /* a step is a pass, the update and some output */
+    e.cohesive_zone = cohesive_zone(c);
+    e.largest_edge = largest_edge(s);
+    return e;
+}
+
+void rg_estimate_print(const rg_solver *s, const rg_estimate *e, FILE *out) {
+    const rg_case *c = s->input;
+    fprintf(out, "elements       %" PRId64 " (%" PRId64 " degrees of freedom), %" PRId64 " interfaces\n", e->elements,
+            e->dofs, e->interfaces);
+    fprintf(out, "wave speeds    dilatational %.1f m/s, shear %.1f m/s\n", e->c_dilatational, e->c_shear);
+    fprintf(out, "time step      %.4g s = %.3g of the critical %.4g s, set by element %" PRId64 " with its faces %s\n", e->dt,
+            c->time.safety, e->dt_critical, s->limiting, s->limiting_state);
+    fprintf(out, "steps          %" PRId64 " to %.4g s\n", e->steps, fmin(c->time.end, (double)e->steps * e->dt));
+    fprintf(out, "memory         %.0f bytes per element, %.0f with cracks everywhere; %.3g GB in all\n",
+            e->bytes_per_element, e->peak_bytes_per_element,
+            e->peak_bytes_per_element * (double)e->elements * 1e-9);
+    fprintf(out, "time loop      about %.3g s on %d ranks x %d threads (%s)\n", e->seconds, s->ranks, s->threads,
+            s->kernels->name);
+    if (isfinite(e->cohesive_zone)) {
+        double ratio = e->cohesive_zone / e->largest_edge;
+        fprintf(out, "cohesive zone  %.3g m, %.2g times the longest edge (%.3g m)\n", e->cohesive_zone, ratio,
+                e->largest_edge);
+        if (ratio < 2) {
+            fprintf(out, "warning: the cohesive zone is not resolved: it should span at least two edges, here %.2g; "
+                         "the dissipated energy will depend on the mesh\n",
+                    ratio);
+        }
+    }
+}

@@ -1,0 +1,100 @@
+#include "halo.h"
+
+#include "mem.h"
+
+struct rg_halo {
+    const rg_shared_face *face;
+    size_t faces;
+    int values, partners;
+    rg_halo_index index;
+    double *send, *receive;
+    MPI_Request *request; /* persistent: receives first, then sends */
+    double waited;
+};
+
+static int count_partners(const rg_shared_face *face, size_t faces) {
+    int n = 0;
+    for (size_t i = 0; i < faces; i++) {
+        n += i == 0 || face[i].rank != face[i - 1].rank;
+    }
+    return n;
+}
+
+rg_halo *rg_halo_make(const rg_domain *d, int values, rg_halo_index index, int tag, MPI_Comm comm) {
+    rg_halo *h = RG_NEW(rg_halo, 1);
+    size_t size = d->shared * (size_t)values;
+    *h = (rg_halo){.face = d->shared_face, .faces = d->shared, .values = values, .index = index};
+    h->partners = count_partners(h->face, h->faces);
+    h->send = RG_NEW(double, size);
+    h->receive = RG_NEW(double, size);
+    h->request = RG_NEW(MPI_Request, 2 * (size_t)h->partners);
+    size_t begin = 0;
+    for (int p = 0; p < h->partners; p++) {
+        size_t end = begin;
+        while (end < h->faces && h->face[end].rank == h->face[begin].rank) {
+            end++;
+        }
+        int count = (int)(end - begin) * values, rank = h->face[begin].rank;
+        size_t at = begin * (size_t)values;
+        MPI_Recv_init(h->receive + at, count, MPI_DOUBLE, rank, tag, comm, &h->request[p]);
+        MPI_Send_init(h->send + at, count, MPI_DOUBLE, rank, tag, comm, &h->request[h->partners + p]);
+        begin = end;
+    }
+    return h;
+}
+
+void rg_halo_pack(rg_halo *h, const double *field) {
+#pragma omp for schedule(static)
+    for (size_t i = 0; i < h->faces; i++) {
+        for (int k = 0; k < h->values; k++) {
+            h->send[i * (size_t)h->values + (size_t)k] = field[h->index(h->face[i].own, k)];
+        }
+    }
+}
+
+void rg_halo_start(rg_halo *h) {
+    MPI_Startall(2 * h->partners, h->request);
+}
+
+void rg_halo_poll(rg_halo *h) {
+    int done;
+    if (h->partners > 0) {
+        MPI_Testall(2 * h->partners, h->request, &done, MPI_STATUSES_IGNORE);
+    }
+}
+
+void rg_halo_finish(rg_halo *h) {
+    double start = MPI_Wtime();
+    MPI_Waitall(2 * h->partners, h->request, MPI_STATUSES_IGNORE);
+    h->waited += MPI_Wtime() - start;
+}
+
+/* Nodes on the edge of two shared faces of one ghost arrive twice, with the same value. */
+void rg_halo_unpack(rg_halo *h, double *field) {
+#pragma omp for schedule(static)
+    for (size_t i = 0; i < h->faces; i++) {
+        for (int k = 0; k < h->values; k++) {
+            const double *from = &h->receive[i * (size_t)h->values + (size_t)k];
+            double *to = &field[h->index(h->face[i].ghost, k)];
+#pragma omp atomic write
+            *to = *from;
+        }
+    }
+}
+
+double rg_halo_waited(const rg_halo *h) {
+    return h->waited;
+}
+
+void rg_halo_free(rg_halo *h) {
+    if (h == NULL) {
+        return;
+    }
+    for (int i = 0; i < 2 * h->partners; i++) {
+        MPI_Request_free(&h->request[i]);
+    }
+    rg_free(h->send);
+    rg_free(h->receive);
+    rg_free(h->request);
+    rg_free(h);
+}

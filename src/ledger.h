@@ -1,0 +1,32 @@
+/* The energy ledger: kinetic + bulk + penalty + cohesive + contact + dissipated - external work = constant. */
+#ifndef RG_LEDGER_H
+#define RG_LEDGER_H
+
+#include "solver.h"
+
+typedef struct {
+    int64_t step;
+    double time;
+    double kinetic, bulk, penalty, cohesive, contact, dissipated, external; /* J; external: work done on the body */
+    double total;       /* sum of the parts less the external work (J) */
+    double error;       /* change of the total since the start, over the largest energy seen */
+    double broken_area; /* of the points that switched (m^2) */
+    double failed_area; /* of those that carry nothing any more (m^2) */
+    double momentum[3], angular_momentum[3]; /* kg m/s, kg m^2/s about the origin */
+} rg_energy;
+
+typedef struct {
+    bool begun;
+    double start, largest; /* total at the start, largest energy so far (J) */
+    double worst;          /* largest |error| so far */
+    rg_energy last;
+} rg_ledger;
+
+/* Takes stock of the current state, at the time of the displacements. Sums are exact: the same bits on any ranks
+ * and threads. Overwrites `scratch` of the solver with the velocity at that time. Collective; returns &l->last. */
+const rg_energy *rg_ledger_take(rg_ledger *l, rg_solver *s);
+
+/* Time at which the first point switched (s); infinite if none has. Collective. */
+double rg_first_fracture(const rg_solver *s);
+
+#endif

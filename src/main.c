@@ -1,0 +1,130 @@
+/* rhegma: three-dimensional dynamic fracture and fragmentation of brittle solids. */
+#include <mpi.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "denormals.h"
+#include "error.h"
+#include "mem.h"
+#include "revision.h"
+#include "run.h"
+
+static const char usage[] = "usage: rhegma run CASE.yaml [options]     run a case\n"
+                            "       rhegma check CASE.yaml [options]   say what a run would do, without running\n"
+                            "       rhegma --version | --help\n"
+                            "options:\n"
+                            "  --set a.b=value   override a value of the case file (repeatable)\n"
+                            "  -o DIR            output directory (output.dir)\n"
+                            "  -q, --quiet       no progress\n"
+                            "ranks: mpirun -n N rhegma ...; threads: OMP_NUM_THREADS; instruction set: RHEGMA_ISA\n";
+
+typedef struct {
+    const char *command, *path;
+    const char **override;
+    int overrides;
+    bool quiet;
+} arguments;
+
+static int complain(int rank, const char *what, const char *argument) {
+    if (rank == 0) {
+        fprintf(stderr, "rhegma: %s%s%s\n%s", what, argument[0] ? ": " : "", argument, usage);
+    }
+    return RG_USAGE;
+}
+
+/* "-o DIR" as an override, quoted for YAML. */
+static char *directory_override(const char *dir) {
+    char *text = RG_NEW(char, 2 * strlen(dir) + 16), *end = text + sprintf(text, "output.dir=\"");
+    for (; *dir != '\0'; dir++) {
+        if (*dir == '"' || *dir == '\\') {
+            *end++ = '\\';
+        }
+        *end++ = *dir;
+    }
+    strcpy(end, "\"");
+    return text;
+}
+
+static int parse(int argc, char **argv, int rank, arguments *a) {
+    a->override = RG_NEW(const char *, (size_t)argc + 1);
+    for (int i = 1; i < argc; i++) {
+        bool takes_value = strcmp(argv[i], "--set") == 0 || strcmp(argv[i], "-o") == 0;
+        if (takes_value && i + 1 == argc) {
+            return complain(rank, "missing value after", argv[i]);
+        }
+        if (strcmp(argv[i], "--set") == 0) {
+            a->override[a->overrides++] = argv[++i];
+        } else if (strcmp(argv[i], "-o") == 0) {
+            a->override[a->overrides++] = directory_override(argv[++i]);
+        } else if (strcmp(argv[i], "-q") == 0 || strcmp(argv[i], "--quiet") == 0) {
+            a->quiet = true;
+        } else if (argv[i][0] == '-') {
+            return complain(rank, "unknown option", argv[i]);
+        } else if (a->command == NULL) {
+            a->command = argv[i];
+        } else if (a->path == NULL) {
+            a->path = argv[i];
+        } else {
+            return complain(rank, "one case at a time; not understood", argv[i]);
+        }
+    }
+    if (a->command == NULL) {
+        return complain(rank, "nothing to do", "");
+    }
+    if (strcmp(a->command, "run") != 0 && strcmp(a->command, "check") != 0) {
+        return complain(rank, "unknown command", a->command);
+    }
+    return a->path == NULL ? complain(rank, "no case file given", "") : RG_OK;
+}
+
+/* All ranks read the case; only one reports what is wrong with it. */
+static rg_case *read_case(const arguments *a, int rank) {
+    FILE *errors = rank == 0 ? stderr : fopen("/dev/null", "w");
+    if (errors == NULL) {
+        rg_fatal(RG_FAILURE, "/dev/null cannot be opened");
+    }
+    rg_case *c = rg_case_read(a->path, a->overrides, a->override, errors);
+    if (rank != 0) {
+        fclose(errors);
+    }
+    return c;
+}
+
+static int execute(int argc, char **argv, int rank) {
+    if (argc == 2 && strcmp(argv[1], "--version") == 0) {
+        printf("rhegma %s\n", RG_REVISION);
+        return RG_OK;
+    }
+    if (argc == 2 && (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0)) {
+        fputs(usage, stdout);
+        return RG_OK;
+    }
+    arguments a = {0};
+    if (parse(argc, argv, rank, &a) != RG_OK) {
+        return RG_USAGE;
+    }
+    rg_case *c = read_case(&a, rank);
+    if (c == NULL) {
+        return RG_USAGE;
+    }
+    rg_flush_denormals();
+    int status = strcmp(a.command, "run") == 0 ? rg_run(c, MPI_COMM_WORLD, a.quiet) : rg_check(c, MPI_COMM_WORLD);
+    rg_case_free(c);
+    return status;
+}
+
+int main(int argc, char **argv) {
+    /* Open MPI's own I/O layer has been reported to hang or corrupt HDF5's collective writes
+     * (HDFGroup/hdf5#1227, open-mpi/ompi#12718): use ROMIO unless the user chose otherwise. */
+    setenv("OMPI_MCA_io", "romio321", 0);
+    int provided, rank;
+    MPI_Init_thread(&argc, &argv, MPI_THREAD_FUNNELED, &provided);
+    if (provided < MPI_THREAD_FUNNELED) {
+        rg_fatal(RG_FAILURE, "the MPI library does not support threads (MPI_THREAD_FUNNELED)");
+    }
+    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+    int status = execute(argc, argv, rank);
+    MPI_Finalize();
+    return status;
+}

@@ -1,0 +1,21 @@
+/* Memory: 64-byte aligned, zero where it says so, never NULL (out of memory ends the run with a message). */
+#ifndef RG_MEM_H
+#define RG_MEM_H
+
+#include <stddef.h>
+
+/* `count` items of `size` bytes, aligned to 64 bytes, zeroed; pages are not touched before their first use, so that
+ * the thread which uses them places them. Free with rg_free. */
+void *rg_alloc(size_t count, size_t size);
+
+/* Grows or shrinks a block from rg_realloc(NULL, ...); not aligned, for set-up only. Free with rg_free. */
+void *rg_realloc(void *block, size_t count, size_t size);
+
+void rg_free(void *block);
+
+/* Bytes that rg_alloc has given and rg_free has not taken back (address space; untouched pages cost nothing). */
+size_t rg_alloc_total(void);
+
+#define RG_NEW(type, count) ((type *)rg_alloc((count), sizeof(type)))
+
+#endif

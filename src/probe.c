@@ -1,0 +1,156 @@
+#include "probe.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "element.h"
+#include "error.h"
+#include "files.h"
+#include "mem.h"
+
+enum { VALUES = 12, CAPACITY = 256 }; /* per probe and sample; samples between two flushes */
+
+static const char *const column[VALUES] = {"ux", "uy",  "uz",  "vx",  "vy",  "vz",
+                                           "sxx", "syy", "szz", "syz", "sxz", "sxy"};
+
+struct rg_probes {
+    MPI_Comm comm;
+    int rank, probes, samples;
+    rg_lid *slot; /* [probes]; -1 where another rank has it */
+    double (*at)[4]; /* [probes]: barycentric coordinates */
+    double *time, *value, *total; /* [CAPACITY], [CAPACITY][probes][VALUES]; total: on rank 0 */
+    FILE *file;
+};
+
+/* The element with the lowest number that contains x. */
+static rg_lid locate(const rg_solver *s, const double x[3], double at[4]) {
+    const double inside = -1e-9;
+    rg_lid found = -1;
+    for (size_t slot = 0; slot < s->domain->blocks * RG_LANES; slot++) {
+        rg_gid id = s->domain->id[slot];
+        double l[4];
+        if (id < 0 || (found >= 0 && id > s->domain->id[found])) {
+            continue;
+        }
+        rg_barycentric(s->domain->corner + 12 * slot, x, l);
+        if (fmin(fmin(l[0], l[1]), fmin(l[2], l[3])) >= inside) {
+            found = (rg_lid)slot;
+            memcpy(at, l, sizeof l);
+        }
+    }
+    int64_t id = found >= 0 ? s->domain->id[found] : INT64_MAX, first;
+    MPI_Allreduce(&id, &first, 1, MPI_INT64_T, MPI_MIN, s->comm);
+    if (first == INT64_MAX) {
+        rg_fatal(RG_USAGE, "output.probes: no element contains (%g, %g, %g)", x[0], x[1], x[2]);
+    }
+    return id == first ? found : -1;
+}
+
+static void write_header(rg_probes *p, const rg_case *c, const char *dir) {
+    p->file = rg_open_in(dir, "history.csv");
+    fprintf(p->file, "time");
+    for (int i = 0; i < p->probes; i++) {
+        for (int k = 0; k < VALUES; k++) {
+            fprintf(p->file, ",%s_%s", c->output.probe[i].name, column[k]);
+        }
+    }
+    fputc('\n', p->file);
+}
+
+rg_probes *rg_probes_open(const rg_solver *s, const char *dir) {
+    const rg_case *c = s->input;
+    rg_probes *p = RG_NEW(rg_probes, 1);
+    size_t n = (size_t)c->output.probes, size = CAPACITY * n * VALUES + 1;
+    *p = (rg_probes){.comm = s->comm, .rank = s->rank, .probes = c->output.probes};
+    p->slot = RG_NEW(rg_lid, n + 1);
+    p->at = rg_alloc(n + 1, sizeof *p->at);
+    p->time = RG_NEW(double, CAPACITY);
+    p->value = RG_NEW(double, size);
+    p->total = RG_NEW(double, size);
+    for (size_t i = 0; i < n; i++) {
+        p->slot[i] = locate(s, c->output.probe[i].at, p->at[i]);
+    }
+    if (p->rank == 0 && n > 0) {
+        write_header(p, c, dir);
+    }
+    return p;
+}
+
+/* Stress at barycentric point l: linear through the four Gauss points. */
+static void stress_at(const rg_solver *s, size_t slot, const double l[4], double out[6]) {
+    const double a = 0.13819660112501051518, b = 0.58541019662496845446;
+    _Alignas(64) double cauchy[RG_GAUSS * 6 * RG_LANES];
+    size_t block = slot / RG_LANES;
+    rg_bulk_state_args args = {.bulk = &s->bulk, .cauchy = cauchy};
+    s->kernels->bulk_state(&args, block, block + 1);
+    for (size_t k = 0; k < 6; k++) {
+        out[k] = 0;
+        for (size_t g = 0; g < RG_GAUSS; g++) { /* sum_i l_i e_ig, e_ig = (delta_ig - a)/(b - a) */
+            out[k] += (l[g] - a) / (b - a) * cauchy[(g * 6 + k) * RG_LANES + slot % RG_LANES];
+        }
+    }
+}
+
+static void sample(rg_solver *s, size_t slot, const double l[4], double out[VALUES]) {
+    double N[RG_NODES];
+    rg_shape(l, N);
+    rg_solver_block_velocity_now(s, slot / RG_LANES);
+    for (int c = 0; c < 3; c++) {
+        out[c] = out[3 + c] = 0;
+        for (int n = 0; n < RG_NODES; n++) {
+            out[c] += N[n] * s->u[rg_node_index(slot, n, c)];
+            out[3 + c] += N[n] * s->scratch[rg_node_index(slot, n, c)];
+        }
+    }
+    stress_at(s, slot, l, out + 6);
+}
+
+void rg_probes_sample(rg_probes *p, rg_solver *s) {
+    if (p->probes == 0) {
+        return;
+    }
+    p->time[p->samples] = s->time;
+    for (int i = 0; i < p->probes; i++) {
+        if (p->slot[i] >= 0) {
+            sample(s, (size_t)p->slot[i], p->at[i], p->value + (p->samples * p->probes + i) * VALUES);
+        }
+    }
+    if (++p->samples == CAPACITY) {
+        rg_probes_flush(p);
+    }
+}
+
+void rg_probes_flush(rg_probes *p) {
+    int count = p->samples * p->probes * VALUES;
+    if (count == 0) {
+        return;
+    }
+    /* One rank has each value, the others have zero: the sum only brings them together. */
+    MPI_Reduce(p->value, p->total, count, MPI_DOUBLE, MPI_SUM, 0, p->comm);
+    for (int k = 0; p->rank == 0 && k < p->samples; k++) {
+        fprintf(p->file, "%.17g", p->time[k]);
+        for (int i = 0; i < p->probes * VALUES; i++) {
+            fprintf(p->file, ",%.17g", p->total[k * p->probes * VALUES + i]);
+        }
+        fputc('\n', p->file);
+    }
+    if (p->rank == 0 && fflush(p->file) != 0) {
+        rg_fatal(RG_FAILURE, "history.csv: cannot be written: %s", strerror(errno));
+    }
+    memset(p->value, 0, (size_t)count * sizeof(double));
+    p->samples = 0;
+}
+
+void rg_probes_close(rg_probes *p) {
+    rg_probes_flush(p);
+    if (p->file != NULL) {
+        fclose(p->file);
+    }
+    void *blocks[] = {p->slot, p->at, p->time, p->value, p->total, p};
+    for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) {
+        rg_free(blocks[i]);
+    }
+}

@@ -1,0 +1,109 @@
+#include "slab.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "layout.h"
+#include "mem.h"
+
+typedef struct {
+    rg_gid id;
+    rg_lid slot;
+} numbered;
+
+static int by_id(const void *a, const void *b) {
+    const numbered *p = a, *q = b;
+    return (p->id > q->id) - (p->id < q->id);
+}
+
+/* First number of rank r's slab. */
+static rg_gid slab_begin(rg_gid total, int ranks, int r) {
+    return total / ranks * r + (r < total % ranks ? r : total % ranks);
+}
+
+static int slab_owner(rg_gid total, int ranks, rg_gid id) {
+    int r = (int)(id * ranks / total);
+    while (id < slab_begin(total, ranks, r)) {
+        r--;
+    }
+    while (id >= slab_begin(total, ranks, r + 1)) {
+        r++;
+    }
+    return r;
+}
+
+static void offsets(const int *count, int *at, int ranks) {
+    for (int r = 1; r < ranks; r++) {
+        at[r] = at[r - 1] + count[r - 1];
+    }
+}
+
+static numbered *sorted_elements(const rg_domain *d) {
+    numbered *list = RG_NEW(numbered, d->elements + 1);
+    size_t n = 0;
+    for (size_t i = 0; i < d->blocks * RG_LANES; i++) {
+        if (d->id[i] >= 0) {
+            list[n++] = (numbered){d->id[i], (rg_lid)i};
+        }
+    }
+    qsort(list, n, sizeof *list, by_id);
+    return list;
+}
+
+rg_slab *rg_slab_make(const rg_domain *d, rg_gid total, MPI_Comm comm) {
+    int rank, ranks;
+    MPI_Comm_rank(comm, &rank);
+    MPI_Comm_size(comm, &ranks);
+    rg_slab *s = RG_NEW(rg_slab, 1);
+    *s = (rg_slab){.first = slab_begin(total, ranks, rank), .own = d->elements, .comm = comm};
+    s->count = (size_t)(slab_begin(total, ranks, rank + 1) - s->first);
+    s->slot = RG_NEW(rg_lid, s->own + 1);
+    s->place = RG_NEW(size_t, s->count + 1);
+    int **counts[] = {&s->send, &s->send_at, &s->receive, &s->receive_at};
+    for (int k = 0; k < 4; k++) {
+        *counts[k] = RG_NEW(int, (size_t)ranks);
+    }
+    numbered *list = sorted_elements(d);
+    rg_gid *id = RG_NEW(rg_gid, s->own + 1), *arrived = RG_NEW(rg_gid, s->count + 1);
+    for (size_t i = 0; i < s->own; i++) {
+        s->slot[i] = list[i].slot;
+        id[i] = list[i].id;
+        s->send[slab_owner(total, ranks, id[i])]++;
+    }
+    MPI_Alltoall(s->send, 1, MPI_INT, s->receive, 1, MPI_INT, comm);
+    offsets(s->send, s->send_at, ranks);
+    offsets(s->receive, s->receive_at, ranks);
+    MPI_Alltoallv(id, s->send, s->send_at, MPI_INT64_T, arrived, s->receive, s->receive_at, MPI_INT64_T, comm);
+    for (size_t i = 0; i < s->count; i++) {
+        s->place[i] = (size_t)(arrived[i] - s->first);
+    }
+    rg_free(list);
+    rg_free(id);
+    rg_free(arrived);
+    return s;
+}
+
+void rg_slab_send(const rg_slab *s, int values, const double *in, double *out) {
+    MPI_Datatype record;
+    MPI_Type_contiguous(values, MPI_DOUBLE, &record);
+    MPI_Type_commit(&record);
+    double *arrived = RG_NEW(double, s->count *(size_t)values + 1);
+    MPI_Alltoallv(in, s->send, s->send_at, record, arrived, s->receive, s->receive_at, record, s->comm);
+    size_t bytes = (size_t)values * sizeof(double);
+    for (size_t i = 0; i < s->count; i++) {
+        memcpy(out + s->place[i] * (size_t)values, arrived + i * (size_t)values, bytes);
+    }
+    rg_free(arrived);
+    MPI_Type_free(&record);
+}
+
+void rg_slab_free(rg_slab *s) {
+    if (s == NULL) {
+        return;
+    }
+    void *blocks[] = {s->slot, s->place, s->send, s->send_at, s->receive, s->receive_at};
+    for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) {
+        rg_free(blocks[i]);
+    }
+    rg_free(s);
+}

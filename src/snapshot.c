@@ -1,0 +1,164 @@
+#include "snapshot.h"
+
+#include "crack_surface.h"
+#include "element.h"
+#include "mem.h"
+#include "principal.h"
+
+enum { NODAL = 3 * RG_NODES }; /* values of the largest record */
+
+/* Output is right-handed: where the sorted corners are not, corners 0 and 1 change places. */
+static const int plain[RG_NODES] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9};
+static const int mirrored[RG_NODES] = {1, 0, 2, 3, 4, 6, 5, 8, 7, 9};
+
+static const int *output_order(const double *corner) {
+    double e[3][3], det = 0;
+    for (int k = 0; k < 3; k++) {
+        for (int c = 0; c < 3; c++) {
+            e[k][c] = corner[3 * (k + 1) + c] - corner[c];
+        }
+    }
+    for (int c = 0; c < 3; c++) {
+        int p = (c + 1) % 3, q = (c + 2) % 3;
+        det += e[0][c] * (e[1][p] * e[2][q] - e[1][q] * e[2][p]);
+    }
+    return det > 0 ? plain : mirrored;
+}
+
+static void send(rg_snapshots *w, int values) {
+    rg_slab_send(w->slab, values, w->record, w->sorted);
+}
+
+static void collect_positions(rg_snapshots *w, const rg_solver *s) {
+    for (size_t i = 0; i < w->slab->own; i++) {
+        const double *corner = s->domain->corner + 12 * (size_t)w->slab->slot[i];
+        const int *order = output_order(corner);
+        for (int n = 0; n < RG_NODES; n++) {
+            rg_node_position(corner, order[n], w->record + i * NODAL + 3 * n);
+        }
+    }
+    send(w, NODAL);
+}
+
+rg_snapshots *rg_snapshots_open(const rg_solver *s) {
+    rg_snapshots *w = RG_NEW(rg_snapshots, 1);
+    w->fields = s->input->output.fields;
+    if (w->fields == 0) {
+        return w;
+    }
+    w->slab = rg_slab_make(s->domain, s->part->total, s->comm);
+    w->record = RG_NEW(double, w->slab->own *NODAL + 1);
+    w->sorted = RG_NEW(double, w->slab->count *NODAL + 1);
+    collect_positions(w, s);
+    w->writer = rg_writer_open(s->input->output.dir, s->comm, s->part->total, w->slab->first,
+                               (int64_t)w->slab->count, w->sorted);
+    return w;
+}
+
+static void write_nodal(rg_snapshots *w, const rg_solver *s, const char *name, const char *unit,
+                        const double *field) {
+    for (size_t i = 0; i < w->slab->own; i++) {
+        size_t slot = (size_t)w->slab->slot[i];
+        const int *order = output_order(s->domain->corner + 12 * slot);
+        for (int k = 0; k < NODAL; k++) {
+            w->record[i * NODAL + (size_t)k] = field[rg_node_index(slot, order[k / 3], k % 3)];
+        }
+    }
+    send(w, NODAL);
+    rg_writer_volume(w->writer, name, unit, RG_CENTER_NODE, 3, w->sorted);
+}
+
+/* Mean Cauchy stress, mean stress and principal stresses of an element: ten values. */
+static void element_stress(rg_solver *s, size_t slot, double out[10]) {
+    _Alignas(64) double cauchy[RG_GAUSS * 6 * RG_LANES];
+    size_t block = slot / RG_LANES, lane = slot % RG_LANES;
+    rg_bulk_state_args args = {.bulk = &s->bulk, .cauchy = cauchy};
+    s->kernels->bulk_state(&args, block, block + 1);
+    for (size_t k = 0; k < 6; k++) {
+        out[k] = 0;
+        for (size_t g = 0; g < RG_GAUSS; g++) {
+            out[k] += cauchy[(g * 6 + k) * RG_LANES + lane] / RG_GAUSS;
+        }
+    }
+    out[6] = (out[0] + out[1] + out[2]) / 3;
+    rg_principal(out, out + 7);
+}
+
+static void write_part(rg_snapshots *w, const char *name, int components, int from, double *part) {
+    for (size_t i = 0; i < w->slab->count; i++) {
+        for (int k = 0; k < components; k++) {
+            part[i * (size_t)components + (size_t)k] = w->sorted[i * 10 + (size_t)(from + k)];
+        }
+    }
+    rg_writer_volume(w->writer, name, "Pa", RG_CENTER_CELL, components, part);
+}
+
+static void write_stresses(rg_snapshots *w, rg_solver *s) {
+#pragma omp parallel for schedule(static)
+    for (size_t i = 0; i < w->slab->own; i++) {
+        element_stress(s, (size_t)w->slab->slot[i], w->record + 10 * i);
+    }
+    send(w, 10);
+    double *part = w->sorted + 10 * w->slab->count; /* behind the ten values each */
+    if (w->fields & RG_FIELD_STRESS) {
+        write_part(w, "stress", 6, 0, part);
+    }
+    if (w->fields & RG_FIELD_MEAN) {
+        write_part(w, "mean_stress", 1, 6, part);
+    }
+    if (w->fields & RG_FIELD_PRINCIPAL) {
+        write_part(w, "principal_stress", 3, 7, part);
+    }
+}
+
+static void write_cracks(rg_snapshots *w, const rg_solver *s) {
+    rg_crack_face *face;
+    size_t count = rg_crack_surface(s, &face);
+    double *column = RG_NEW(double, 9 * count + 1);
+    for (size_t i = 0; i < 9 * count; i++) {
+        column[i] = face[i / 9].x[i % 9 / 3][i % 3];
+    }
+    rg_writer_surface(w->writer, (int64_t)count, column);
+    static const char *const name[] = {"opening", "slip", "damage", "time_of_failure"};
+    static const char *const unit[] = {"m", "m", "1", "s"};
+    for (int k = 0; k < 4; k++) {
+        for (size_t i = 0; i < count; i++) {
+            column[i] = (&face[i].opening)[k];
+        }
+        rg_writer_surface_field(w->writer, name[k], unit[k], 1, column);
+    }
+    rg_free(column);
+    rg_free(face);
+}
+
+void rg_snapshots_write(rg_snapshots *w, rg_solver *s) {
+    if (w->fields == 0) {
+        return;
+    }
+    rg_writer_frame(w->writer, s->step, s->time);
+    if (w->fields & RG_FIELD_DISPLACEMENT) {
+        write_nodal(w, s, "displacement", "m", s->u);
+    }
+    if (w->fields & RG_FIELD_VELOCITY) {
+        rg_exact_sum unused = {0};
+        rg_solver_velocity_now(s, &unused);
+        write_nodal(w, s, "velocity", "m/s", s->scratch);
+    }
+    if (w->fields & (RG_FIELD_STRESS | RG_FIELD_MEAN | RG_FIELD_PRINCIPAL)) {
+        write_stresses(w, s);
+    }
+    if (w->fields & RG_FIELD_CRACK) {
+        write_cracks(w, s);
+    }
+    rg_writer_frame_end(w->writer);
+}
+
+void rg_snapshots_close(rg_snapshots *w) {
+    if (w->fields != 0) {
+        rg_writer_close(w->writer);
+        rg_slab_free(w->slab);
+        rg_free(w->record);
+        rg_free(w->sorted);
+    }
+    rg_free(w);
+}

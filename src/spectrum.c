@@ -1,0 +1,337 @@
+#include "spectrum.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "hash.h"
+#include "mem.h"
+
+enum { MAX_ITERATIONS = 80, CHECK_EVERY = 8, POWER_ITERATIONS = 120 };
+
+#define TOLERANCE 1e-4 /* relative change of omega^2 between two checks */
+#define MARGIN    1e-3 /* relative, added to omega^2: the iteration approaches it from below */
+#define AMPLITUDE 1e-7 /* displacement over element height: linear to 1e-6, clear of rounding to 1e-9 */
+
+/* ---- Vectors: arrays laid out like the velocity ----------------------------------------------------------------- */
+
+static size_t values(const rg_solver *s) {
+    return s->domain->blocks * RG_NODE_BLOCK;
+}
+
+/* Inner product a . M b, exact sum over elements. */
+static double mass_dot(rg_solver *s, const double *a, const double *b) {
+    const rg_domain *d = s->domain;
+    rg_exact_sum sum = {0};
+#pragma omp parallel
+    {
+        rg_exact_sum mine = {0};
+        _Alignas(64) double both[RG_NODE_BLOCK], energy[2][RG_LANES];
+#pragma omp for schedule(static)
+        for (size_t block = 0; block < d->blocks; block++) {
+            for (int sign = 0; sign < 2; sign++) { /* a.Mb = (|a + b|^2 - |a - b|^2)/4 */
+                for (size_t i = 0; i < RG_NODE_BLOCK; i++) {
+                    size_t at = block * RG_NODE_BLOCK + i;
+                    both[i] = sign == 0 ? a[at] + b[at] : a[at] - b[at];
+                }
+                rg_kinetic_args args = {.density = s->bulk.material.density,
+                                        .lumped = s->update.lumped,
+                                        .geom = d->geom + block * RG_GEOM_BLOCK,
+                                        .velocity = both,
+                                        .energy = energy[sign]};
+                s->kernels->kinetic(&args, 0, 1);
+            }
+            for (int l = 0; l < RG_LANES; l++) {
+                rg_exact_add(&mine, 0.5 * (energy[0][l] - energy[1][l]));
+            }
+        }
+#pragma omp critical
+        rg_exact_merge(&sum, &mine);
+    }
+    rg_exact_allreduce(&sum, 1, s->comm);
+    return rg_exact_value(&sum);
+}
+
+static double largest_entry(rg_solver *s, const double *a) {
+    double m = 0;
+#pragma omp parallel for schedule(static) reduction(max : m)
+    for (size_t i = 0; i < values(s); i++) {
+        m = fabs(a[i]) > m ? fabs(a[i]) : m;
+    }
+    MPI_Allreduce(MPI_IN_PLACE, &m, 1, MPI_DOUBLE, MPI_MAX, s->comm);
+    return m;
+}
+
+/* y <- a y + b x */
+static void combine(rg_solver *s, double a, double *y, double b, const double *x) {
+#pragma omp parallel for schedule(static)
+    for (size_t i = 0; i < values(s); i++) {
+        y[i] = a * y[i] + b * x[i];
+    }
+}
+
+static void randomize(rg_solver *s, double *q) {
+    for (size_t slot = 0; slot < s->domain->blocks * RG_LANES; slot++) {
+        rg_gid id = s->domain->id[slot];
+        for (int k = 0; k < 3 * RG_NODES; k++) {
+            uint64_t h = rg_hash(rg_hash(0, (uint64_t)id), (uint64_t)k);
+            q[rg_node_index(slot, k / 3, k % 3)] = id < 0 ? 0 : 2 * rg_hash_uniform(h) - 1;
+        }
+    }
+}
+
+/* ---- Operator ------------------------------------------------------------------------------------------------- */
+
+typedef struct {
+    rg_solver *s;
+    double height; /* smallest element height (m) */
+    double scale;  /* frequencies are in units of c_d/height, so that numbers stay near 1 (1/s^2) */
+} operator_t;
+
+/* w <- w + A q / scale, A = M^-1 K. Uses u. */
+static void apply(const operator_t *op, const double *q, double *w) {
+    rg_solver *s = op->s;
+    double amplitude = AMPLITUDE * op->height / largest_entry(s, q);
+    combine(s, 0, s->u, amplitude, q);
+    double start = MPI_Wtime();
+    rg_solver_forces(s);
+    s->pass_seconds = MPI_Wtime() - start;
+    rg_update_args update = s->update;
+    update.velocity = w;
+    update.u = NULL;
+    update.dt_velocity = -1 / (amplitude * op->scale);
+#pragma omp parallel for schedule(static)
+    for (size_t t = 0; t < s->domain->tiles; t++) {
+        s->kernels->update(&update, s->domain->tile[t].begin, s->domain->tile[t].end);
+    }
+}
+
+/* Largest eigenvalue of a symmetric tridiagonal matrix, by bisection on Sturm's sequence. */
+static double largest_eigenvalue(const double *alpha, const double *beta, int n) {
+    double low = alpha[0], high = alpha[0];
+    for (int i = 0; i < n; i++) {
+        double radius = (i > 0 ? fabs(beta[i - 1]) : 0) + (i + 1 < n ? fabs(beta[i]) : 0);
+        low = fmax(low, alpha[i]);
+        high = fmax(high, alpha[i] + radius);
+    }
+    while (high - low > 1e-12 * fabs(high)) {
+        double x = 0.5 * (low + high), d = alpha[0] - x;
+        bool below = d < 0;
+        for (int i = 1; below && i < n; i++) { /* all pivots negative: x is above every eigenvalue */
+            d = alpha[i] - x - beta[i - 1] * beta[i - 1] / d;
+            below = d < 0;
+        }
+        *(below ? &high : &low) = x;
+        if (x <= low && x >= high) {
+            break;
+        }
+    }
+    return high;
+}
+
+/* Coefficients of a Lanczos iteration that starts from a random vector. */
+typedef struct {
+    int n;
+    double alpha[MAX_ITERATIONS], beta[MAX_ITERATIONS];
+} lanczos;
+
+static void swap(double **a, double **b) {
+    double *t = *a;
+    *a = *b;
+    *b = t;
+}
+
+/* One step: q_j in `q`, q_{j-1} in `before`; leaves q_{j+1} in `q` and q_j in `before`. False if the space is full. */
+static bool lanczos_step(const operator_t *op, lanczos *z, int j, double **q, double **before) {
+    rg_solver *s = op->s;
+    combine(s, j > 0 ? -z->beta[j - 1] : 0, *before, 0, *q);
+    apply(op, *q, *before);
+    z->alpha[j] = mass_dot(s, *before, *q);
+    combine(s, 1, *before, -z->alpha[j], *q);
+    z->beta[j] = sqrt(fmax(0, mass_dot(s, *before, *before)));
+    if (!(z->beta[j] > 1e-10)) {
+        return false;
+    }
+    combine(s, 1 / z->beta[j], *before, 0, *q);
+    swap(q, before);
+    return true;
+}
+
+static void first_vector(const operator_t *op, double *q, double *before) {
+    randomize(op->s, q);
+    combine(op->s, 1 / sqrt(mass_dot(op->s, q, q)), q, 0, q);
+    memset(before, 0, values(op->s) * sizeof *before);
+}
+
+static double lanczos_eigenvalue(const operator_t *op, lanczos *z) {
+    double *q = op->s->velocity, *before = op->s->scratch, last = 0;
+    first_vector(op, q, before);
+    for (z->n = 0; z->n < MAX_ITERATIONS;) {
+        bool more = lanczos_step(op, z, z->n++, &q, &before);
+        if (!more || z->n % CHECK_EVERY == 0) {
+            double now = largest_eigenvalue(z->alpha, z->beta, z->n);
+            if (!more || now - last < TOLERANCE * now) {
+                return now;
+            }
+            last = now;
+        }
+    }
+    return last;
+}
+
+/* Not symmetric: growth of the norm under repeated application. */
+static double power_eigenvalue(const operator_t *op) {
+    rg_solver *s = op->s;
+    double *q = s->velocity, *w = s->scratch, norm = 0, largest = 0;
+    first_vector(op, q, w);
+    for (int i = 0; i < POWER_ITERATIONS; i++) {
+        memset(w, 0, values(s) * sizeof *w);
+        apply(op, q, w);
+        norm = sqrt(mass_dot(s, w, w));
+        largest = i > POWER_ITERATIONS / 2 ? fmax(largest, norm) : norm;
+        combine(s, 1 / norm, w, 0, q);
+        swap(&q, &w);
+    }
+    return largest;
+}
+
+/* ---- The element that limits ---------------------------------------------------------------------------------- */
+
+/* Eigenvector of the tridiagonal matrix for its largest eigenvalue, by recurrence (well behaved for an extreme one
+ * that has converged). */
+static void tridiagonal_vector(const lanczos *z, double theta, double y[MAX_ITERATIONS]) {
+    y[0] = 1;
+    for (int j = 0; j + 1 < z->n; j++) {
+        double left = j > 0 ? z->beta[j - 1] * y[j - 1] : 0;
+        y[j + 1] = ((theta - z->alpha[j]) * y[j] - left) / z->beta[j];
+    }
+}
+
+/* Element with the most of the squared vector; the lowest number among equals. */
+static rg_gid dominant_element(rg_solver *s, const double *x) {
+    struct {
+        double value;
+        int rank;
+    } best = {-1, s->rank};
+    rg_gid id = -1;
+    for (size_t slot = 0; slot < s->domain->blocks * RG_LANES; slot++) {
+        double sum = 0;
+        for (int k = 0; k < 3 * RG_NODES; k++) {
+            double v = x[rg_node_index(slot, k / 3, k % 3)];
+            sum += v * v;
+        }
+        rg_gid here = s->domain->id[slot];
+        if (here >= 0 && (sum > best.value || (sum >= best.value && here < id))) {
+            best.value = sum;
+            id = here;
+        }
+    }
+    double top = best.value;
+    MPI_Allreduce(MPI_IN_PLACE, &top, 1, MPI_DOUBLE, MPI_MAX, s->comm);
+    int64_t mine = best.value >= top ? id : INT64_MAX;
+    MPI_Allreduce(MPI_IN_PLACE, &mine, 1, MPI_INT64_T, MPI_MIN, s->comm);
+    return mine;
+}
+
+/* Repeats the iteration, which needs no stored vectors, and sums the Ritz vector. */
+static rg_gid limiting_element(const operator_t *op, const lanczos *known, double theta) {
+    rg_solver *s = op->s;
+    double y[MAX_ITERATIONS], *q = s->velocity, *before = s->scratch;
+    double *ritz = RG_NEW(double, values(s));
+    lanczos again = *known;
+    tridiagonal_vector(known, theta, y);
+    first_vector(op, q, before);
+    for (int j = 0; j < known->n; j++) {
+        combine(s, 1, ritz, y[j], q);
+        if (j + 1 < known->n) {
+            lanczos_step(op, &again, j, &q, &before);
+        }
+    }
+    rg_gid id = dominant_element(s, ritz);
+    rg_free(ritz);
+    return id;
+}
+
+/* ---- States of the faces -------------------------------------------------------------------------------------- */
+
+typedef enum { INTACT, CLOSED, MIXED } state;
+static const char *const state_name[] = {"intact", "closed", "partly closed"};
+
+static bool is_closed(const rg_solver *s, size_t i, state which) {
+    if (which != MIXED) {
+        return which == CLOSED;
+    }
+    int32_t minus = s->domain->side[0][i];
+    return rg_hash(1, (uint64_t)(RG_FACES * s->domain->id[minus / RG_FACES] + minus % RG_FACES)) & 1;
+}
+
+/* Puts the faces into a state, or (INTACT) back as they were. `shared` is one block of crack state for all. */
+static void set_state(rg_solver *s, state which, double *shared) {
+    const rg_domain *d = s->domain;
+    for (size_t i = 0; i < d->iblocks * RG_LANES; i++) {
+        s->broken[i] = s->unlinked[i] = is_closed(s, i, which) ? (1 << RG_POINTS) - 1 : 0;
+    }
+    memset(s->active, which != INTACT, d->iblocks);
+    memset(s->cracked, which != INTACT, d->blocks);
+    for (size_t q = 0; q < RG_POINTS; q++) {
+        for (size_t l = 0; l < RG_LANES; l++) {
+            shared[(q * RG_CRACK + RG_CRACK_OPENING) * RG_LANES + l] = 2;
+        }
+    }
+    s->interface.crack = shared;
+    s->interface.crack_stride = 0;
+    s->interface.law.opening = 1;
+    s->interface.law.strength = 1e300; /* never reached */
+    s->interface.law.contact_below = INFINITY;
+    s->interface.law.flux = false;
+}
+
+static double smallest_height(const rg_solver *s) {
+    double h = INFINITY;
+    for (size_t slot = 0; slot < s->domain->blocks * RG_LANES; slot++) {
+        double sum[3] = {0, 0, 0};
+        for (int k = 0; s->domain->id[slot] >= 0 && k < 4; k++) {
+            double square = 0;
+            for (int c = 0; c < 3; c++) {
+                double g = k < 3 ? s->domain->geom[rg_geom_index(slot, RG_GEOM_GRAD + 3 * k + c)] : -sum[c];
+                sum[c] += g;
+                square += g * g;
+            }
+            h = fmin(h, 1 / sqrt(square));
+        }
+    }
+    MPI_Allreduce(MPI_IN_PLACE, &h, 1, MPI_DOUBLE, MPI_MIN, s->comm);
+    return h;
+}
+
+static void rest(rg_solver *s) {
+    memset(s->velocity, 0, values(s) * sizeof(double));
+    memset(s->scratch, 0, values(s) * sizeof(double));
+    memset(s->u, 0, (values(s) + s->domain->ghost_blocks * RG_NODE_BLOCK) * sizeof(double));
+}
+
+void rg_spectrum(rg_solver *s) {
+    rg_interface_args saved = s->interface;
+    const rg_material *m = &s->bulk.material;
+    operator_t op = {.s = s, .height = smallest_height(s)};
+    op.scale = (m->lambda + 2 * m->mu) / m->density / (op.height * op.height);
+    double *shared = RG_NEW(double, RG_CRACK_BLOCK);
+    bool closes = s->input->interface.law != RG_LAW_NONE && s->input->interface.contact != RG_CONTACT_FLUX;
+    int states = closes ? 3 : 1;
+    s->omega2 = 0;
+    for (int which = 0; which < states; which++) {
+        lanczos z = {0};
+        set_state(s, (state)which, shared);
+        bool symmetric = s->bulk.lift || which == CLOSED;
+        double theta = symmetric ? lanczos_eigenvalue(&op, &z) : power_eigenvalue(&op);
+        if (theta * op.scale * (1 + MARGIN) > s->omega2) {
+            s->omega2 = theta * op.scale * (1 + MARGIN);
+            s->limiting_state = state_name[which];
+            s->limiting =
+                symmetric ? limiting_element(&op, &z, theta) : dominant_element(s, s->velocity);
+        }
+    }
+    set_state(s, INTACT, shared);
+    s->interface = saved;
+    rest(s);
+    rg_free(shared);
+}

@@ -1,0 +1,101 @@
+#include "summary.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <math.h>
+#include <string.h>
+
+#include "error.h"
+#include "files.h"
+#include "revision.h"
+#include "state_hash.h"
+
+static void text(FILE *f, const char *key, const char *value) {
+    fprintf(f, "  \"%s\": \"", key);
+    for (const char *p = value; *p != '\0'; p++) {
+        if (*p == '"' || *p == '\\') {
+            fputc('\\', f);
+        }
+        fputc((unsigned char)*p < ' ' ? ' ' : *p, f);
+    }
+    fputs("\",\n", f);
+}
+
+static void integer(FILE *f, const char *key, int64_t value) {
+    fprintf(f, "  \"%s\": %" PRId64 ",\n", key, value);
+}
+
+/* JSON knows no infinity: null where there is no value. */
+static void number(FILE *f, const char *key, double value) {
+    if (isfinite(value)) {
+        fprintf(f, "  \"%s\": %.17g,\n", key, value);
+    } else {
+        fprintf(f, "  \"%s\": null,\n", key);
+    }
+}
+
+static void write_run(FILE *f, const rg_summary *m, const rg_solver *s, const rg_estimate *e) {
+    text(f, "case", s->input->name);
+    integer(f, "elements", e->elements);
+    integer(f, "interfaces", e->interfaces);
+    integer(f, "dofs", e->dofs);
+    integer(f, "ranks", s->ranks);
+    integer(f, "threads", s->threads);
+    text(f, "instruction_set", s->kernels->name);
+    integer(f, "steps", s->step);
+    number(f, "time_end", s->time);
+    number(f, "dt_critical", e->dt_critical);
+    number(f, "dt_first", m->dt_first);
+    number(f, "dt_last", s->dt);
+    integer(f, "limiting_element", s->limiting);
+    text(f, "limiting_state", s->limiting_state);
+    number(f, "setup_s", m->setup_seconds);
+    number(f, "wall_s", m->loop_seconds + m->output_seconds);
+    number(f, "output_s", m->output_seconds);
+    number(f, "us_per_tet_step", m->us_per_tet_step);
+}
+
+static void write_physics(FILE *f, const rg_summary *m, const rg_ledger *l) {
+    number(f, "energy_error_rel", l->worst);
+    number(f, "energy_largest_J", l->largest);
+    number(f, "dissipated_J", l->last.dissipated);
+    number(f, "first_fracture_time_s", m->first_fracture);
+    number(f, "broken_area_m2", l->last.broken_area);
+    number(f, "failed_area_m2", l->last.failed_area);
+    integer(f, "halo_doubles_per_face", 3 * RG_FNODES + 3 * RG_FCORNERS);
+    fprintf(f, "  \"momentum\": [%.17g, %.17g, %.17g],\n", l->last.momentum[0], l->last.momentum[1],
+            l->last.momentum[2]);
+    fprintf(f, "  \"angular_momentum\": [%.17g, %.17g, %.17g],\n", l->last.angular_momentum[0],
+            l->last.angular_momentum[1], l->last.angular_momentum[2]);
+    text(f, "status", m->failure[0] == '\0' ? "completed" : m->failure);
+}
+
+void rg_summary_write(rg_summary *m, rg_solver *s, const rg_ledger *l, const rg_estimate *e) {
+    uint64_t hash = rg_state_hash(s);
+    m->first_fracture = rg_first_fracture(s);
+    double work = (double)e->elements * (double)s->step;
+    m->us_per_tet_step = work > 0 ? 1e6 * m->loop_seconds * s->ranks * s->threads / work : 0;
+    if (s->rank != 0) {
+        return;
+    }
+    FILE *f = rg_open_in(s->input->output.dir, "summary.json");
+    fputs("{\n", f);
+    write_run(f, m, s, e);
+    write_physics(f, m, l);
+    number(f, "bytes_per_tet", e->bytes_per_element);
+    fprintf(f, "  \"state_hash\": \"%016" PRIx64 "\",\n  \"revision\": \"%s\"\n}\n", hash, RG_REVISION);
+    if (fclose(f) != 0) {
+        rg_fatal(RG_FAILURE, "%s/summary.json: cannot be written: %s", s->input->output.dir, strerror(errno));
+    }
+}
+
+void rg_summary_print(const rg_summary *m, const rg_solver *s, const rg_ledger *l, FILE *out) {
+    fprintf(out, "set-up %.2f s, time loop %.2f s, output %.2f s: %.3g us of core time per element and step\n",
+            m->setup_seconds, m->loop_seconds, m->output_seconds, m->us_per_tet_step);
+    fprintf(out, "energy error %.2g of the largest energy, %.4g J\n", l->worst, l->largest);
+    if (isfinite(m->first_fracture)) {
+        fprintf(out, "first fracture at %.5g s; broken %.4g m2, dissipated %.4g J\n", m->first_fracture,
+                l->last.broken_area, l->last.dissipated);
+    }
+    fprintf(out, "results in %s\n", s->input->output.dir);
+}

@@ -1,0 +1,23 @@
+/* What a run leaves behind in one page: summary.json, and the same in words. */
+#ifndef RG_SUMMARY_H
+#define RG_SUMMARY_H
+
+#include "estimate.h"
+#include "ledger.h"
+
+typedef struct {
+    double dt_first;       /* s */
+    double setup_seconds;  /* wall time before the time loop */
+    double loop_seconds;   /* wall time of the time loop without output */
+    double output_seconds; /* wall time of output within the time loop */
+    const char *failure;   /* "" where the run reached its end */
+    double us_per_tet_step, first_fracture; /* filled by rg_summary_write; us of core time; s, infinite for none */
+} rg_summary;
+
+/* Collective; rank 0 writes summary.json in the output directory. */
+void rg_summary_write(rg_summary *m, rg_solver *s, const rg_ledger *l, const rg_estimate *e);
+
+/* For a person; after rg_summary_write. Rank 0. */
+void rg_summary_print(const rg_summary *m, const rg_solver *s, const rg_ledger *l, FILE *out);
+
+#endif

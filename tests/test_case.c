@@ -1,0 +1,622 @@
+/* The case file: what it means, that its echo reads back bit by bit, and that every mistake is named with its
+ * place. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#include "../src/case.h"
+#include "../src/case_key.h"
+
+#ifndef RG_SOURCE_ROOT
+#define RG_SOURCE_ROOT "." /* run from the root of the tree */
+#endif
+
+#define CASES RG_SOURCE_ROOT "/bench/cases/"
+
+/* The smallest case; the tests of mistakes change one place of it and know its lines and columns. */
+static const char base[] = "mesh:\n"
+                           "  cells: [2, 2, 4]\n"
+                           "  size: [1e-3, 1e-3, 2e-3]\n"
+                           "material:\n"
+                           "  model: neo-hookean\n"
+                           "  young: 260e9\n"
+                           "  poisson: 0.21\n"
+                           "  density: 3690\n"
+                           "interface:\n"
+                           "  law: linear\n"
+                           "  strength: 400e6\n"
+                           "  energy: 34\n"
+                           "boundary:\n"
+                           "  - {set: z+, component: z, velocity: 6.086}\n"
+                           "time:\n"
+                           "  end: 1e-6\n"
+                           "output:\n"
+                           "  probes:\n"
+                           "    - {name: p, at: [0, 0, 1e-3]}\n";
+
+static char directory[] = "/tmp/test_case.XXXXXX";
+static char path[64]; /* of the case file that the tests write */
+
+static int set_up(void **state) {
+    (void)state;
+    snprintf(path, sizeof path, "%s/bar.yaml", mkdtemp(directory) == NULL ? "" : directory);
+    return 0;
+}
+
+static int tear_down(void **state) {
+    (void)state;
+    remove(path);
+    return rmdir(directory);
+}
+
+static void write_bytes(const char *text, size_t size) {
+    FILE *file = fopen(path, "wb");
+    assert_non_null(file);
+    assert_int_equal(fwrite(text, 1, size, file), size);
+    assert_int_equal(fclose(file), 0);
+}
+
+/* Writes the base case with `from` (all of it if NULL) replaced by `to`. */
+static void write_changed(const char *from, const char *to) {
+    char text[4096];
+    const char *found = from == NULL ? base : strstr(base, from);
+    assert_non_null(found);
+    const char *rest = from == NULL ? "" : found + strlen(from);
+    snprintf(text, sizeof text, "%.*s%s%s", (int)(found - base), base, to, rest);
+    write_bytes(text, strlen(text));
+}
+
+/* Reads `file`; *messages is what it printed. Free both. */
+static rg_case *read_case(const char *file, int overrides, const char *const override[], char **messages) {
+    size_t size = 0;
+    FILE *errors = open_memstream(messages, &size);
+    assert_non_null(errors);
+    rg_case *c = rg_case_read(file, overrides, override, errors);
+    assert_int_equal(fclose(errors), 0);
+    return c;
+}
+
+static rg_case *read_good(const char *file, int overrides, const char *const override[]) {
+    char *messages = NULL;
+    rg_case *c = read_case(file, overrides, override, &messages);
+    assert_string_equal(messages, "");
+    assert_non_null(c);
+    free(messages);
+    return c;
+}
+
+/* Expects exactly `lines`, in each of which a leading ':' stands for the file's path and ':'. */
+static void expect_messages(int overrides, const char *const override[], const char *lines) {
+    char expected[8192] = "", *messages = NULL;
+    for (const char *line = lines; *line != '\0';) {
+        int length = (int)(strchr(line, '\n') - line) + 1;
+        size_t used = strlen(expected);
+        snprintf(expected + used, sizeof expected - used, "%s%.*s", *line == ':' ? path : "", length, line);
+        line += length;
+    }
+    rg_case *c = read_case(path, overrides, override, &messages);
+    assert_string_equal(messages, expected);
+    assert_null(c);
+    free(messages);
+}
+
+/* ---- what a case means ---- */
+
+static void test_values(void **state) {
+    (void)state;
+    write_bytes(base, strlen(base));
+    rg_case *c = read_good(path, 0, NULL);
+    const double origin[3] = {0};
+    assert_string_equal(c->path, path);
+    assert_string_equal(c->name, "bar");
+    assert_true(c->mesh.cells[0] == 2 && c->mesh.cells[1] == 2 && c->mesh.cells[2] == 4);
+    assert_true(c->mesh.size[0] == 1e-3 && c->mesh.size[1] == 1e-3 && c->mesh.size[2] == 2e-3);
+    assert_memory_equal(c->mesh.origin, origin, sizeof origin);
+    assert_true(c->material.young == 260e9 && c->material.poisson == 0.21 && c->material.density == 3690);
+    assert_true(c->interface.law == RG_LAW_LINEAR && c->interface.strength == 400e6);
+    assert_true(c->interface.energy == 34 && c->time.end == 1e-6);
+    assert_int_equal(c->boundaries, 1);
+    assert_string_equal(c->boundary[0].set, "z+");
+    assert_int_equal(c->boundary[0].component, 2);
+    assert_false(c->boundary[0].is_displacement);
+    assert_string_equal(rg_expr_text(c->boundary[0].value), "6.086");
+    assert_int_equal(c->output.probes, 1);
+    assert_string_equal(c->output.probe[0].name, "p");
+    assert_true(c->output.probe[0].at[2] == 1e-3);
+    rg_case_free(c);
+}
+
+static void test_defaults(void **state) {
+    (void)state;
+    write_bytes(base, strlen(base));
+    rg_case *c = read_good(path, 0, NULL);
+    assert_true(c->mesh.jitter == 0 && c->mesh.seed == 1 && c->mesh.file == NULL);
+    assert_true(c->interface.form == RG_FORM_VARIATIONAL && c->interface.penalty == RG_PENALTY_ELASTIC);
+    assert_true(c->interface.beta_s == 4 && c->interface.beta == 1);
+    assert_true(c->interface.activation == RG_ACTIVATION_CONTINUOUS);
+    assert_true(c->interface.contact == RG_CONTACT_PENALTY && c->mass == RG_DEFAULT_MASS);
+    assert_true(c->time.safety == RG_DEFAULT_SAFETY && c->time.steps == 0);
+    assert_string_equal(c->output.dir, "results/bar");
+    assert_true(c->output.interval_steps == 0 && c->output.interval_time == 1e-6 / 50);
+    assert_true(c->output.fields == 63 && c->output.energy_limit == 0.05);
+    for (int k = 0; k < 3; k++) {
+        assert_null(c->initial.displacement[k]);
+        assert_null(c->initial.velocity[k]);
+    }
+    rg_case_free(c);
+}
+
+static void test_overrides(void **state) {
+    (void)state;
+    static const char *const set[] = {"mesh.cells=[3,3,30]",
+                                      "mesh.jitter=0.25",
+                                      "mass=lumped",
+                                      "interface.form=incomplete",
+                                      "output.interval=7",
+                                      "output.fields=[]",
+                                      "time.steps=12",
+                                      "boundary=[{set: x-, component: y, displacement: t}]",
+                                      "initial.velocity.z=-z/2e-3",
+                                      "output.dir='a=b.c'",
+                                      "initial.displacement={x: 1e-6}",
+                                      "output.probes=[]"};
+    write_bytes(base, strlen(base));
+    rg_case *c = read_good(path, sizeof set / sizeof set[0], set);
+    assert_true(c->mesh.cells[0] == 3 && c->mesh.cells[2] == 30 && c->mesh.jitter == 0.25);
+    assert_true(c->mass == RG_MASS_LUMPED && c->interface.form == RG_FORM_INCOMPLETE);
+    assert_true(c->output.interval_steps == 7 && c->output.interval_time == 0);
+    assert_true(c->output.fields == 0 && c->time.steps == 12);
+    assert_int_equal(c->boundaries, 1);
+    assert_string_equal(c->boundary[0].set, "x-");
+    assert_true(c->boundary[0].component == 1 && c->boundary[0].is_displacement);
+    assert_string_equal(rg_expr_text(c->initial.velocity[2]), "-z/2e-3");
+    assert_string_equal(rg_expr_text(c->initial.displacement[0]), "1e-6");
+    assert_string_equal(c->output.dir, "a=b.c");
+    assert_int_equal(c->output.probes, 0);
+    rg_case_free(c);
+}
+
+static void test_interval_kinds(void **state) {
+    (void)state;
+    static const char *const steps[] = {"output.interval=1"}, *const seconds[] = {"output.interval=2.5e-8"};
+    write_bytes(base, strlen(base));
+    rg_case *c = read_good(path, 1, steps);
+    assert_true(c->output.interval_steps == 1 && c->output.interval_time == 0);
+    rg_case_free(c);
+    c = read_good(path, 1, seconds);
+    assert_true(c->output.interval_steps == 0 && c->output.interval_time == 2.5e-8);
+    rg_case_free(c);
+}
+
+static void test_expressions(void **state) {
+    (void)state;
+    static const struct {
+        const char *text;
+        bool position, time;
+        double value; /* at x = (2, 3, 5), t = 7 */
+    } expected[] = {
+        {"-6.25", false, false, -6.25},     {"2*pi/pi", false, false, 2}, {"x+10*y+100*z", true, false, 532},
+        {"'t>6 ? t : -1'", false, true, 7}, {"'x*t^2'", true, true, 98},  {"-1*cos(pi*z)", true, false, 1},
+        {"x==2", true, false, 1},           {"'3'", false, false, 3},
+    };
+    const double at[3] = {2, 3, 5}, elsewhere[3] = {-1, 0, 4};
+    for (size_t i = 0; i < sizeof expected / sizeof expected[0]; i++) {
+        char line[64];
+        snprintf(line, sizeof line, "velocity: %s}", expected[i].text);
+        write_changed("velocity: 6.086}", line);
+        rg_case *c = read_good(path, 0, NULL);
+        const rg_expr *e = c->boundary[0].value;
+        rg_expr_value(e, elsewhere, 0);
+        assert_true(rg_expr_value(e, at, 7) == expected[i].value);
+        assert_int_equal(rg_expr_uses_position(e), expected[i].position);
+        assert_int_equal(rg_expr_uses_time(e), expected[i].time);
+        rg_case_free(c);
+    }
+}
+
+/* ---- echo ---- */
+
+static char *echo(const rg_case *c) {
+    char *text = NULL;
+    size_t size = 0;
+    FILE *out = open_memstream(&text, &size);
+    assert_non_null(out);
+    rg_case_echo(c, out);
+    assert_int_equal(fclose(out), 0);
+    return text;
+}
+
+static void same_expr(const rg_expr *a, const rg_expr *b) {
+    assert_int_equal(a == NULL, b == NULL);
+    if (a != NULL) {
+        assert_string_equal(rg_expr_text(a), rg_expr_text(b));
+    }
+}
+
+static void same_lists(const rg_case *a, const rg_case *b) {
+    assert_int_equal(a->boundaries, b->boundaries);
+    for (int i = 0; i < a->boundaries; i++) {
+        assert_string_equal(a->boundary[i].set, b->boundary[i].set);
+        assert_int_equal(a->boundary[i].component, b->boundary[i].component);
+        assert_int_equal(a->boundary[i].is_displacement, b->boundary[i].is_displacement);
+        same_expr(a->boundary[i].value, b->boundary[i].value);
+    }
+    assert_int_equal(a->output.probes, b->output.probes);
+    for (int i = 0; i < a->output.probes; i++) {
+        assert_string_equal(a->output.probe[i].name, b->output.probe[i].name);
+        assert_memory_equal(a->output.probe[i].at, b->output.probe[i].at, sizeof a->output.probe[i].at);
+    }
+}
+
+/* Bit by bit. */
+static void same_case(const rg_case *a, const rg_case *b) {
+    assert_memory_equal(a->mesh.cells, b->mesh.cells, sizeof a->mesh.cells);
+    assert_memory_equal(a->mesh.size, b->mesh.size, sizeof a->mesh.size);
+    assert_memory_equal(a->mesh.origin, b->mesh.origin, sizeof a->mesh.origin);
+    assert_memory_equal(&a->mesh.jitter, &b->mesh.jitter, sizeof a->mesh.jitter);
+    assert_true(a->mesh.seed == b->mesh.seed && a->mass == b->mass);
+    assert_memory_equal(&a->material, &b->material, sizeof a->material);
+    assert_true(a->interface.form == b->interface.form && a->interface.penalty == b->interface.penalty);
+    assert_true(a->interface.law == b->interface.law && a->interface.contact == b->interface.contact);
+    assert_true(a->interface.activation == b->interface.activation);
+    const double of_a[] = {a->interface.beta_s,     a->interface.strength, a->interface.energy,
+                           a->interface.beta,       a->time.end,           a->time.safety,
+                           a->output.interval_time, a->output.energy_limit};
+    const double of_b[] = {b->interface.beta_s,     b->interface.strength, b->interface.energy,
+                           b->interface.beta,       b->time.end,           b->time.safety,
+                           b->output.interval_time, b->output.energy_limit};
+    assert_memory_equal(of_a, of_b, sizeof of_a);
+    assert_true(a->time.steps == b->time.steps && a->output.interval_steps == b->output.interval_steps);
+    assert_true(a->output.fields == b->output.fields);
+    assert_string_equal(a->output.dir, b->output.dir);
+    for (int k = 0; k < 3; k++) {
+        same_expr(a->initial.displacement[k], b->initial.displacement[k]);
+        same_expr(a->initial.velocity[k], b->initial.velocity[k]);
+    }
+    same_lists(a, b);
+}
+
+static void check_round_trip(const char *file, int overrides, const char *const override[]) {
+    rg_case *c = read_good(file, overrides, override);
+    char *text = echo(c);
+    write_bytes(text, strlen(text));
+    rg_case *again = read_good(path, 0, NULL);
+    char *second = echo(again);
+    same_case(c, again);
+    assert_string_equal(text, second);
+    free(second);
+    free(text);
+    rg_case_free(again);
+    rg_case_free(c);
+}
+
+static void test_round_trip_of_cases(void **state) {
+    (void)state;
+    check_round_trip(CASES "spall.yaml", 0, NULL);
+    check_round_trip(CASES "spall-jittered.yaml", 0, NULL);
+    check_round_trip(CASES "free-bar.yaml", 0, NULL);
+    check_round_trip(CASES "torn-bar.yaml", 0, NULL);
+}
+
+static void test_round_trip_of_everything(void **state) {
+    (void)state;
+    static const char *const set[] = {
+        "mesh.origin=[0.1, -3e-17, -0.0]",
+        "mesh.seed=9223372036854775807",
+        "material.young=123456789012.34567",
+        "interface.penalty=isotropic",
+        "interface.activation=total",
+        "interface.contact=flux",
+        "mass=lumped",
+        "initial.displacement={x: 1e-6*x, z: -0}",
+        "initial.velocity={y: 'sin(x) + 1'}",
+        "boundary=[{set: x-, component: y, displacement: 'x >= 0 ? t : 1'}]",
+        "time.end=1e-7",
+        "time.steps=3",
+        "output.dir=\"a \\\"b\\\" \\\\ \\t: # \\u00e9\"",
+        "output.interval=3",
+        "output.probes=[{name: a-B_1, at: [0.1, 0, 0]}, {name: b, at: [0.1, 0, 1e-3]}]",
+        "output.fields=[crack, velocity]"};
+    write_bytes(base, strlen(base));
+    check_round_trip(path, sizeof set / sizeof set[0], set);
+}
+
+/* A default interval of two seconds must not come back as two steps. */
+static void test_round_trip_of_long_run(void **state) {
+    (void)state;
+    static const char *const set[] = {"time.end=100"};
+    write_bytes(base, strlen(base));
+    rg_case *c = read_good(path, 1, set);
+    assert_true(c->output.interval_time == 2 && c->output.interval_steps == 0);
+    rg_case_free(c);
+    check_round_trip(path, 1, set);
+}
+
+/* Units and defaults stand in the echo for people to read. */
+static void test_echo_text(void **state) {
+    (void)state;
+    write_bytes(base, strlen(base));
+    rg_case *c = read_good(path, 0, NULL);
+    char *text = echo(c);
+    assert_non_null(strstr(text, "\n  young: 260000000000 # Pa\n"));
+    assert_non_null(strstr(text, "\n  safety: 0.5\n"));
+    assert_non_null(strstr(text, "\n  - set: \"z+\"\n    component: z\n    velocity: 6.086 # m/s\n"));
+    assert_null(strstr(text, "initial"));
+    free(text);
+    rg_case_free(c);
+}
+
+/* The annotated case shows every key that exists. */
+static void test_spall_shows_every_key(void **state) {
+    (void)state;
+    static char text[16384];
+    FILE *file = fopen(CASES "spall.yaml", "r");
+    assert_non_null(file);
+    text[fread(text, 1, sizeof text - 1, file)] = '\0';
+    fclose(file);
+    for (int i = 0; i < rg_case_table.keys; i++) {
+        char word[64];
+        const char *name = rg_case_table.key[i].name, *dot = strrchr(name, '.');
+        snprintf(word, sizeof word, "%s:", dot == NULL ? name : dot + 1);
+        if (strstr(text, word) == NULL) {
+            fail_msg("spall.yaml does not show %s", name);
+        }
+    }
+}
+
+/* ---- mistakes ---- */
+
+#define CELLS    "allowed: [x, y, z], each integer >= 1 and <= 100000\n"
+#define CELL     "allowed: integer >= 1 and <= 100000\n"
+#define SIZE     "allowed: [x, y, z], each number > 0 (m)\n"
+#define YOUNG    "allowed: number > 0 (Pa)\n"
+#define SETS     "allowed: x-, x+, y-, y+, z-, z+"
+#define MOTION   "allowed: number or expression in x, y, z, t (m/s)\n"
+#define ONE_OF   "allowed: exactly one of velocity, displacement\n"
+#define ENTRIES  "allowed: list of {set, component, velocity or displacement}\n"
+#define INTERVAL "allowed: integer >= 1 (steps), or number > 0 and < 1 (simulated seconds)\n"
+#define FIELDS   "allowed: list from displacement, velocity, stress, mean_stress, principal_stress, crack"
+#define NAMES    "allowed: letters, digits, _ and -; unique among the probes\n"
+#define UNUSED   ": not used, because interface.law is none\n"
+#define SPECIAL  ": anchors, aliases and tags are not supported\n"
+
+static const struct mistake {
+    const char *from, *to, *messages;
+} mistakes[] = {
+    /* missing, unknown, repeated keys */
+    {"  cells: [2, 2, 4]\n", "", ":2:3: mesh.cells: missing; " CELLS},
+    {"  law: linear\n", "", ":10:3: interface.law: missing; allowed: none, linear\n"},
+    {"  strength: 400e6\n", "", ":10:3: interface.strength: missing; " YOUNG},
+    {"time:\n  end: 1e-6\n", "", ":1:1: time.end: missing; allowed: number > 0 (s)\n"},
+    {"mesh:\n  cells: [2, 2, 4]\n  size: [1e-3, 1e-3, 2e-3]\n", "mesh:\n",
+     ":1:1: mesh: no value\n:1:1: mesh.cells: missing; " CELLS ":1:1: mesh.size: missing; " SIZE},
+    {"cells", "cels",
+     ":2:3: mesh.cels: unknown key; did you mean 'mesh.cells'?\n:2:3: mesh.cells: missing; " CELLS},
+    {"material:\n", "material:\n  poisson_ratio: 0.2\n",
+     ":5:3: material.poisson_ratio: unknown key; did you mean 'material.poisson'?\n"},
+    {"mesh:\n", "cells: [1, 1, 1]\nmesh:\n", ":1:1: cells: unknown key; did you mean 'mesh.cells'?\n"},
+    {"mesh:\n", "fracture: true\nmesh:\n", ":1:1: fracture: unknown key\n"},
+    {"velocity: 6.086", "velocity: 6.086, unit: 1", ":14:46: boundary[0].unit: unknown key\n"},
+    {"mesh:\n", "mesh.jitter: 0.1\nmesh:\n",
+     ":1:1: mesh.jitter: unknown key: the parts of a dotted key stand on lines of their own\n"},
+    {"  density: 3690\n", "  density: 3690\n  density: 3691\n",
+     ":9:3: material.density: given twice, first at line 8 column 3\n"},
+    {"time:\n", "mesh: {}\ntime:\n", ":15:1: mesh: given twice, first at line 1 column 1\n"},
+    {"time:\n  end: 1e-6", "time: 3", ":15:7: time: 3: not a mapping of keys\n"},
+    /* numbers */
+    {"[2, 2, 4]", "[2, 2]", ":2:10: mesh.cells: [2, 2]: wrong number of entries; " CELLS},
+    {"[2, 2, 4]", "4", ":2:10: mesh.cells: 4: not a list; " CELLS},
+    {"[2, 2, 4]", "[2, 2.5, 0]",
+     ":2:14: mesh.cells[1]: 2.5: not an integer; " CELL ":2:19: mesh.cells[2]: 0: out of range; " CELL},
+    {"[2, 2, 4]", "[2, 2, 99999999999999999999]",
+     ":2:17: mesh.cells[2]: 99999999999999999999: out of range; " CELL},
+    {"young: 260e9", "young: '260e9'",
+     ":6:10: material.young: \"260e9\": a text (in quotes), not a number; " YOUNG},
+    {"young: 260e9", "young: 260 GPa", ":6:10: material.young: 260 GPa: not a number; " YOUNG},
+    {"young: 260e9", "young: 0x10", ":6:10: material.young: 0x10: not a number; " YOUNG},
+    {"young: 260e9", "young: {a: 1}", ":6:10: material.young: {a: 1}: not a number; " YOUNG},
+    {"young: 260e9", "young: .inf", ":6:10: material.young: .inf: not finite; " YOUNG},
+    {"young: 260e9", "young: .NaN", ":6:10: material.young: .NaN: not finite; " YOUNG},
+    {"young: 260e9", "young: 1e999", ":6:10: material.young: 1e999: not finite; " YOUNG},
+    {"young: 260e9", "young: 0", ":6:10: material.young: 0: out of range; " YOUNG},
+    {"young: 260e9", "young:", ":6:3: material.young: no value; " YOUNG},
+    {"0.21", "0.5", ":7:12: material.poisson: 0.5: out of range; allowed: number >= 0 and < 0.5\n"},
+    {"mesh:\n", "mesh:\n  jitter: 0.31\n  seed: -1\n",
+     ":2:11: mesh.jitter: 0.31: out of range; allowed: number >= 0 and <= 0.3\n"
+     ":3:9: mesh.seed: -1: out of range; allowed: integer >= 0\n"},
+    {"  end: 1e-6\n", "  end: 1e-6\n  safety: 0\n  steps: 0\n",
+     ":17:11: time.safety: 0: out of range; allowed: number > 0 and <= 1\n"
+     ":18:10: time.steps: 0: out of range; allowed: integer >= 1\n"},
+    {"output:\n", "output:\n  interval: 0\n", ":18:13: output.interval: 0: out of range; " INTERVAL},
+    {"output:\n", "output:\n  interval: 1.5\n", ":18:13: output.interval: 1.5: out of range; " INTERVAL},
+    {"output:\n", "output:\n  interval: often\n", ":18:13: output.interval: often: not a number; " INTERVAL},
+    /* words */
+    {"neo-hookean", "neohookean",
+     ":5:10: material.model: neohookean: not one of the allowed words; allowed: neo-hookean; "
+     "did you mean 'neo-hookean'?\n"},
+    {"linear", "lnear",
+     ":10:8: interface.law: lnear: not one of the allowed words; allowed: none, linear; did you mean "
+     "'linear'?\n"},
+    {"linear", "none", ":11:3: interface.strength: 400e6" UNUSED ":12:3: interface.energy: 34" UNUSED},
+    {"  law: linear\n  strength: 400e6\n  energy: 34\n", "  law: none\n  contact: flux\n",
+     ":11:3: interface.contact: flux" UNUSED},
+    {"output:\n", "output:\n  dir: 12\n",
+     ":18:8: output.dir: 12: not a text (put it in quotes to make it one); allowed: text\n"},
+    {"output:\n", "output:\n  fields: [stres, crack, crack]\n",
+     ":18:12: output.fields[0]: stres: not one of the allowed words; " FIELDS "; did you mean 'stress'?\n"
+     ":18:26: output.fields[2]: crack: given twice; " FIELDS "\n"},
+    {"output:\n", "output:\n  fields: crack\n", ":18:11: output.fields: crack: not a list; " FIELDS "\n"},
+    {"mesh:\n", "mesh:\n  file: a.msh\n",
+     ":2:9: mesh.file: a.msh: reading mesh files is not supported yet\n"
+     ":3:3: mesh.cells: [2, 2, 4]: cannot be given together with mesh.file\n"
+     ":4:3: mesh.size: [1e-3, 1e-3, 2e-3]: cannot be given together with mesh.file\n"},
+    /* boundary */
+    {"set: z+", "set: z",
+     ":14:11: boundary[0].set: z: not one of the allowed words; " SETS "; did you mean 'z-'?\n"},
+    {"set: z+", "set: top", ":14:11: boundary[0].set: top: not one of the allowed words; " SETS "\n"},
+    {"component: z", "component: w",
+     ":14:26: boundary[0].component: w: not one of the allowed words; allowed: x, y, z\n"},
+    {", velocity: 6.086", "", ":14:5: boundary[0]: missing velocity or displacement; " ONE_OF},
+    {"velocity: 6.086", "velocity: 6.086, displacement: 1",
+     ":14:46: boundary[0]: velocity and displacement both given; " ONE_OF},
+    {"time:\n", "  - {set: z+, component: z, displacement: 0}\ntime:\n",
+     ":15:5: boundary[1]: set z+ component z is prescribed twice, first at line 14 column 5\n"},
+    {"  - {set: z+, component: z, velocity: 6.086}", "  set: z+",
+     ":14:3: boundary: {set: z+}: not a list; " ENTRIES},
+    {"  - {set: z+, component: z, velocity: 6.086}", "  - 3",
+     ":14:5: boundary[0]: 3: not a mapping of keys; " ENTRIES},
+    /* expressions */
+    {"velocity: 6.086", "velocity: 6.0*sinn(t)",
+     ":14:39: boundary[0].velocity: 6.0*sinn(t): Unexpected token \"sinn\" found at position 4.; " MOTION},
+    {"velocity: 6.086", "velocity: 'x, y'",
+     ":14:39: boundary[0].velocity: \"x, y\": 2 values where one is needed; " MOTION},
+    {"velocity: 6.086", "velocity: 1/0", ":14:39: boundary[0].velocity: 1/0: not finite; " MOTION},
+    {"velocity: 6.086", "velocity: .nan", ":14:39: boundary[0].velocity: .nan: not finite; " MOTION},
+    {"velocity: 6.086", "velocity: x=3",
+     ":14:39: boundary[0].velocity: x=3: an assignment is not an expression; " MOTION},
+    {"velocity: 6.086", "velocity: [1]",
+     ":14:39: boundary[0].velocity: [1]: not a number or expression; " MOTION},
+    {"mesh:\n", "initial: {velocity: {z: 2*t}}\nmesh:\n",
+     ":1:25: initial.velocity.z: 2*t: depends on t, but this is the state at the start; "
+     "allowed: number or expression in x, y, z (m/s)\n"},
+    /* probes */
+    {"name: p", "name: p mm", ":19:14: output.probes[0].name: p mm: not a name; " NAMES},
+    {"1e-3]}", "2.1e-3]}",
+     ":19:28: output.probes[0].at[2]: 2.1e-3: outside the box; allowed: number >= 0 and <= 0.002 (m)\n"},
+    {"1e-3]}\n", "1e-3]}\n    - {name: p, at: [0, 0]}\n",
+     ":20:14: output.probes[1].name: p: the name of an earlier probe; " NAMES
+     ":20:21: output.probes[1].at: [0, 0]: wrong number of entries; allowed: [x, y, z], each number (m)\n"},
+    /* YAML */
+    {"mesh:\n", "mesh:\n\tjitter: 0\n",
+     ":2:1: not valid YAML: tab character may not be used as indentation\n"},
+    {"[2, 2, 4]", "[2, 2, 4", ":4:1: not valid YAML: wrongly indented flow sequence\n"},
+    {"  cells", "cells", ":3:3: not valid YAML: invalid indentation in mapping\n"},
+    {"mesh:\n", "mesh: &a\n", ":2:3" SPECIAL},
+    {"260e9", "*a", ":6:10" SPECIAL},
+    {"time:\n", "  - {set: *a, component: z, velocity: 0}\n  - {set: z-, component: z, velocity: 0}\ntime:\n",
+     ":15:11" SPECIAL},
+    {"260e9", "\x01", ":6:10: byte 0x01 is not text (UTF-8)\n"},
+    {"260e9", "\xff", ":6:10: byte 0xff is not text (UTF-8)\n"},
+    {"260e9", "\"a\\0b\"", ":6:10: a text cannot hold the character NUL\n"},
+    {"mesh:\n", "? [a]\n: 3\nmesh:\n", ":1:3: a key must be a single word\n"},
+    {NULL, "", ":1:1: the file is empty\n"},
+    {NULL, "# nothing\n", ":1:1: the file is empty\n"},
+    {NULL, "- 1\n", ":1:1: [1]: a case is a mapping of keys\n"},
+    {NULL, "a: 1\n---\nb: 1\n", ":3:1: a second YAML document; a case is one document\n"},
+};
+
+static void test_mistakes(void **state) {
+    (void)state;
+    for (size_t i = 0; i < sizeof mistakes / sizeof mistakes[0]; i++) {
+        write_changed(mistakes[i].from, mistakes[i].to);
+        expect_messages(0, NULL, mistakes[i].messages);
+    }
+}
+
+/* An embedded NUL must not hide what follows it. */
+static void test_nul_byte(void **state) {
+    (void)state;
+    write_bytes("a: 1\0\nb: 2\n", 11);
+    expect_messages(0, NULL, ":1:5: byte 0x00 is not text (UTF-8)\n");
+}
+
+static void test_deep_nesting(void **state) {
+    (void)state;
+    static char text[20001];
+    memset(text, '[', 20000);
+    write_bytes(text, 20000);
+    expect_messages(0, NULL, ":1:33: nested too deeply\n");
+}
+
+static void test_override_mistakes(void **state) {
+    (void)state;
+    static const struct {
+        const char *set, *message;
+    } wrong[] = {
+        {"foo", "expected --set section.key=value"},
+        {"=3", "expected --set section.key=value"},
+        {"mesh.=3", "expected --set section.key=value"},
+        {"mesh.jiter=0.1", "mesh.jiter: unknown key; did you mean 'mesh.jitter'?"},
+        {"mesh.jitter=0.5", "mesh.jitter: 0.5: out of range; allowed: number >= 0 and <= 0.3"},
+        {"mesh.jitter='0'",
+         "mesh.jitter: \"0\": a text (in quotes), not a number; allowed: number >= 0 and <= 0.3"},
+        {"time.end=", "no value behind the '='"},
+        {"time.end=[1", "not valid YAML: flow sequence without a closing bracket"},
+        {"boundary.0=3", "boundary.0: cannot be set: what it belongs to is not a mapping of keys"},
+        {"time={safety: 1}", "time.end: missing; allowed: number > 0 (s)"},
+    };
+    write_bytes(base, strlen(base));
+    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+        char expected[256];
+        snprintf(expected, sizeof expected, "--set %s: %s\n", wrong[i].set, wrong[i].message);
+        expect_messages(1, &wrong[i].set, expected);
+    }
+    static const char *const twice[] = {"time.end=1e-6", "time.end=2e-6"};
+    expect_messages(2, twice, "--set time.end=2e-6: time.end: set twice\n");
+}
+
+/* One run shows all problems, in the order of the file, those of overrides last. */
+static void test_all_at_once(void **state) {
+    (void)state;
+    static const char *const set[] = {"time.end=-1", "mass=heavy"};
+    write_changed(NULL, "output: {energy_limit: 0, intervall: 3}\n"
+                        "mesh:\n  cells: [2, x, 4]\n  size: [1e-3, 1e-3]\n"
+                        "material: {model: neo-hookean, young: 1, poisson: 0.7}\n"
+                        "interface:\n  law: linear\n  energy: 0\n");
+    expect_messages(
+        2, set,
+        ":1:24: output.energy_limit: 0: out of range; allowed: number > 0\n"
+        ":1:27: output.intervall: unknown key; did you mean 'output.interval'?\n"
+        ":3:14: mesh.cells[1]: x: not a number; " CELL
+        ":4:9: mesh.size: [1e-3, 1e-3]: wrong number of entries; " SIZE
+        ":5:11: material.density: missing; allowed: number > 0 (kg/m3)\n"
+        ":5:51: material.poisson: 0.7: out of range; allowed: number >= 0 and < 0.5\n"
+        ":7:3: interface.strength: missing; " YOUNG
+        ":8:11: interface.energy: 0: out of range; allowed: number > 0 (J/m2)\n"
+        "--set mass=heavy: mass: heavy: not one of the allowed words; allowed: consistent, lumped\n"
+        "--set time.end=-1: time.end: -1: out of range; allowed: number > 0 (s)\n");
+}
+
+static void test_unreadable(void **state) {
+    (void)state;
+    static const char *const file[] = {"/nonexistent/a.yaml", "/tmp"};
+    static const char *const expected[] = {"/nonexistent/a.yaml: cannot be read: No such file or directory\n",
+                                           "/tmp: cannot be read: Is a directory\n"};
+    for (int i = 0; i < 2; i++) {
+        char *messages = NULL;
+        rg_case *c = read_case(file[i], 0, NULL, &messages);
+        assert_string_equal(messages, expected[i]);
+        assert_null(c);
+        free(messages);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_values),
+        cmocka_unit_test(test_defaults),
+        cmocka_unit_test(test_overrides),
+        cmocka_unit_test(test_interval_kinds),
+        cmocka_unit_test(test_expressions),
+        cmocka_unit_test(test_round_trip_of_cases),
+        cmocka_unit_test(test_round_trip_of_everything),
+        cmocka_unit_test(test_round_trip_of_long_run),
+        cmocka_unit_test(test_echo_text),
+        cmocka_unit_test(test_spall_shows_every_key),
+        cmocka_unit_test(test_mistakes),
+        cmocka_unit_test(test_nul_byte),
+        cmocka_unit_test(test_deep_nesting),
+        cmocka_unit_test(test_override_mistakes),
+        cmocka_unit_test(test_all_at_once),
+        cmocka_unit_test(test_unreadable),
+    };
+    return cmocka_run_group_tests(tests, set_up, tear_down);
+}
