@@ -5,9 +5,9 @@
  *     F_g + R_g = I + sum_k d_k(g) (x) grad l_k,
  *     d_k(g) = (4a - 1) u_k + 4a sum_j u_kj + 4 (b - a) u_kg                        (element; u_kk = u_k)
  *              - 6/(b - a) ( m_g^k - a sum_i m_i^k )                                (lift; no m_k^k)
- * with a, b the coordinates of the four-point rule and m_i^k = sum_q w_q l_i(q) [u]_q the moments of the jump on the
- * face opposite corner k (Ten Eyck & Lew 2006; the outward normal is N_k area_k = -3 V grad l_k). Conversely, with
- * q_k(g) = (V/4) P_g grad l_k, nodal forces and corner tractions are the transposed sums. */
+ * with a, b the coordinates of the four-point rule and m_i^k = sum_q w_q l_i(q) [u]_q the moments of the jump
+ * on the face opposite corner k (Ten Eyck & Lew 2006; the outward normal is N_k area_k = -3 V grad l_k).
+ * Conversely, with q_k(g) = (V/4) P_g grad l_k, nodal forces and corner tractions are the transposed sums. */
 #include "neo_hookean.h"
 #include "isa.h"
 #include "tet10.h"
@@ -40,8 +40,8 @@ RG_INLINE void moments_of_nodes(vec3 jump[RG_FNODES], vec3 m[RG_FCORNERS]) {
     }
 }
 
-/* Where points of a face have left the lift, its moments are the sum over the points that remain. Lanes without
- * such points keep their bits, so that a lane's result does not depend on its companions. */
+/* Where points of a face have left the lift, its moments are the sum over the points that remain. Lanes
+ * without such points keep their bits, so that a lane's result does not depend on its companions. */
 static __attribute__((noinline)) void moments_of_points(vec3 jump[RG_FNODES], const uint8_t unlinked[],
                                                         vec3 m[RG_FCORNERS]) {
     vec3 point[RG_POINTS];
@@ -202,8 +202,7 @@ RG_INLINE void bulk_vector(const rg_bulk_args *args, size_t block, int lane, boo
         }
     }
     store_force(q, Q, args->force + block * RG_NODE_BLOCK + lane);
-    store_traction(q, Q,
-                   args->traction + block * RG_TRACTION_BLOCK + lane);
+    store_traction(q, Q, args->traction + block * RG_TRACTION_BLOCK + lane);
     rg_store(args->stiffening + block * RG_LANES + lane, stiffening + bad);
 }
 

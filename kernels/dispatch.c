@@ -11,8 +11,12 @@
     void rg_bulk_state_##isa(const rg_bulk_state_args *, size_t, size_t);                                    \
     void rg_kinetic_##isa(const rg_kinetic_args *, size_t, size_t);                                          \
     void rg_interface_state_##isa(const rg_interface_state_args *, size_t, size_t);                          \
-    static const rg_kernels set_##isa = {label,           rg_bulk_##isa,    rg_interface_##isa,              \
-                                         rg_update_##isa, rg_bulk_state_##isa, rg_kinetic_##isa,             \
+    static const rg_kernels set_##isa = {label,                                                              \
+                                         rg_bulk_##isa,                                                      \
+                                         rg_interface_##isa,                                                 \
+                                         rg_update_##isa,                                                    \
+                                         rg_bulk_state_##isa,                                                \
+                                         rg_kinetic_##isa,                                                   \
                                          rg_interface_state_##isa}
 
 #ifdef RG_X86

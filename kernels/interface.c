@@ -1,9 +1,9 @@
 /* The 12-node interface kernel: DG traction, fracture, cohesive law and contact at the six points of a face.
  *
  * A face without damage costs only the DG terms and a bound on its traction; the normal of the deformed
- * mid-surface, the criterion and the cohesive law are computed, out of line, where a lane needs them. Lanes that do
- * not need them keep their bits: a face's result never depends on the faces that share its block.
- * All tractions are area-weighted: they carry the reference area of the face as a factor (N). */
+ * mid-surface, the criterion and the cohesive law are computed, out of line, where a lane needs them. Lanes
+ * that do not need them keep their bits: a face's result never depends on the faces that share its block. All
+ * tractions are area-weighted: they carry the reference area of the face as a factor (N). */
 #include "cohesive_linear.h"
 #include "isa.h"
 #include "tet10.h"
@@ -60,8 +60,8 @@ RG_INLINE void jump_at_points(interface *s) {
 RG_INLINE void mean_traction(interface *s) {
     rg_int link[2] = {side(s, 0), side(s, 1)}, base[2];
     for (int k = 0; k < 2; k++) {
-        base[k] = rg_lane_offset(link[k] >> 2, RG_TRACTION_BLOCK) +
-                  (link[k] & 3) * (RG_FCORNERS * 3 * RG_LANES);
+        base[k] =
+            rg_lane_offset(link[k] >> 2, RG_TRACTION_BLOCK) + (link[k] & 3) * (RG_FCORNERS * 3 * RG_LANES);
     }
     for (int c = 0; c < 3; c++) {
         rg_vec t[RG_FCORNERS];
@@ -108,7 +108,8 @@ RG_INLINE void store_nodal_force(const interface *s) {
     for (int c = 0; c < 3; c++) {
         rg_vec corner[2], edge[2], sum[2];
         for (int k = 0; k < 2; k++) {
-            sum[k] = rg_tri[k].weight * (s->total[3 * k][c] + s->total[3 * k + 1][c] + s->total[3 * k + 2][c]);
+            sum[k] =
+                rg_tri[k].weight * (s->total[3 * k][c] + s->total[3 * k + 1][c] + s->total[3 * k + 2][c]);
             corner[k] = rg_splat(rg_tri[k].weight * (rg_tri[k].corner - rg_tri[k].other));
             edge[k] = rg_splat(rg_tri[k].weight * (rg_tri[k].facing - rg_tri[k].adjacent));
         }
@@ -123,7 +124,7 @@ RG_INLINE void store_nodal_force(const interface *s) {
     }
 }
 
-/* ---- Damaged faces -------------------------------------------------------------------------------------------- */
+/* ---- Damaged faces ---- */
 
 /* Derivatives of the six shape functions along xi and eta (l = 1 - xi - eta, xi, eta) at point q. */
 RG_INLINE void face_derivatives(int q, double xi[RG_FNODES], double eta[RG_FNODES]) {
@@ -131,8 +132,7 @@ RG_INLINE void face_derivatives(int q, double xi[RG_FNODES], double eta[RG_FNODE
     for (int i = 0; i < 3; i++) {
         l[i] = i == q % 3 ? rg_tri[q / 3].r : rg_tri[q / 3].p;
     }
-    const double dxi[RG_FNODES] = {1 - 4 * l[0],        4 * l[1] - 1, 0, 4 * (l[0] - l[1]), 4 * l[2],
-                                   -4 * l[2]};
+    const double dxi[RG_FNODES] = {1 - 4 * l[0], 4 * l[1] - 1, 0, 4 * (l[0] - l[1]), 4 * l[2], -4 * l[2]};
     const double deta[RG_FNODES] = {1 - 4 * l[0], 0, 4 * l[2] - 1, -4 * l[1], 4 * l[1], 4 * (l[0] - l[2])};
     memcpy(xi, dxi, sizeof dxi);
     memcpy(eta, deta, sizeof deta);
@@ -194,9 +194,10 @@ RG_INLINE void store_where(double *p, rg_mask m, rg_vec x) {
     rg_store(p, rg_select(m, x, rg_load(p)));
 }
 
-/* Fracture criterion at unbroken points (5.3; beta = 0: 5.17), on the Cauchy traction: which lanes switch now. The
- * crack state starts so that the cohesive traction continues the one at the switch in direction and size (Papoulia's
- * time continuity): the opening is measured from `origin` = [u] - eps d, d along the traction. */
+/* Fracture criterion at unbroken points (5.3; beta = 0: 5.17), on the Cauchy traction: which lanes switch
+ * now. The crack state starts so that the cohesive traction continues the one at the switch in direction and
+ * size (Papoulia's time continuity): the opening is measured from `origin` = [u] - eps d, d along the
+ * traction. */
 RG_INLINE rg_mask switch_points(const interface *s, int q, const vec3 n, rg_vec area, rg_mask intact) {
     const rg_cohesive *law = &s->args->law;
     vec3 t, tau, d;
@@ -209,7 +210,8 @@ RG_INLINE rg_mask switch_points(const interface *s, int q, const vec3 n, rg_vec 
         tau[c] = t[c] - tn * n[c];
     }
     rg_vec effective = rg_sqrt(tension * tension + shear * rg_dot(tau, tau));
-    rg_mask tested = rg_dot(s->mean[q], s->mean[q]) > test_bound(s);
+    rg_mask tested =
+        (s->area > 0.0) & (rg_dot(s->mean[q], s->mean[q]) > test_bound(s)); /* padding has no area */
     rg_mask now = intact & tested & (effective > law->strength);
     if (!rg_any(now)) {
         return now;
@@ -245,8 +247,8 @@ RG_INLINE void crack_opening(const interface *s, int q, const vec3 n, opening *o
     o->effective = rg_sqrt(beta2 * rg_dot(o->tangential, o->tangential) + open * open);
 }
 
-/* Replaces the DG traction at broken points by the cohesive law and contact. Returns the points that keep their DG
- * terms because they are closed under flux contact. */
+/* Replaces the DG traction at broken points by the cohesive law and contact. Returns the points that keep
+ * their DG terms because they are closed under flux contact. */
 RG_INLINE rg_mask broken_traction(interface *s, int q, const vec3 n, rg_mask broken) {
     const rg_cohesive *law = &s->args->law;
     opening o;
@@ -315,7 +317,7 @@ void RG_ISA_NAME(rg_interface)(const rg_interface_args *args, size_t begin, size
     }
 }
 
-/* ---- Energies ------------------------------------------------------------------------------------------------- */
+/* ---- Energies ---- */
 
 RG_INLINE void broken_energy(const interface *s, int q, const vec3 n, rg_mask broken, rg_mask unlinked,
                              rg_vec sum[RG_E_INTERFACE]) {

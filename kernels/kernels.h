@@ -1,9 +1,10 @@
 /* What the kernels compute, as one table of functions per instruction set.
  *
  * A kernel works on whole blocks [begin, end) of RG_LANES elements or interfaces. It reads where it must (its
- * neighbours' traces) and writes only what belongs to its own blocks. So loops over blocks need no colours, no
- * atomics and no order: each sum has the order that the mesh gives it (bulk, then faces 0 to 3), whatever the
- * number of ranks and threads. Equations: A. N. Seagraves, MIT 2010, and the papers named at each kernel. */
+ * neighbours' traces) and writes only what belongs to its own blocks. So loops over blocks need no colours,
+ * no atomics and no order: each sum has the order that the mesh gives it (bulk, then faces 0 to 3), whatever
+ * the number of ranks and threads. Equations: A. N. Seagraves, MIT 2010, and the papers named at each kernel.
+ */
 #ifndef RG_KERNELS_H
 #define RG_KERNELS_H
 
@@ -19,43 +20,46 @@ typedef struct {
 /* Bulk: tet10 at the lifted gradient F + R (Ten Eyck & Lew 2006), or at F alone. */
 typedef struct {
     rg_material material;
-    bool lift;                /* variational form: add the lifted jumps R to F */
-    const double *u;          /* displacement, own and ghost blocks (m) */
-    const double *geom;       /* element geometry */
-    const int32_t *neighbour; /* links: 4 * element + face on the other side; the own face where there is none */
+    bool lift;          /* variational form: add the lifted jumps R to F */
+    const double *u;    /* displacement, own and ghost blocks (m) */
+    const double *geom; /* element geometry */
+    const int32_t
+        *neighbour; /* links: 4 * element + face on the other side; the own face where there is none */
     const int32_t *interface; /* links: 2 * interface + side; the zero interface where there is none */
     const uint8_t *cracked;   /* [block]: not 0 where some face of the block has an unlinked point */
     const uint8_t *unlinked;  /* [interface]: bit q set where point q has left the lift */
     double *force;            /* out: internal nodal force of the bulk, -dW/du (N) */
     double *traction;         /* out: area-weighted corner tractions area_f P N_outward (N) */
-    double *stiffening;       /* out: [block][lane], largest ratio of the acoustic tensor to its value at F = I */
+    double *stiffening; /* out: [block][lane], largest ratio of the acoustic tensor to its value at F = I */
 } rg_bulk_args;
 
 /* 12-node interface. The minus side is the element with the lower global number, N points from minus to plus,
  * jump [u] = u+ - u-. Force on the minus side is +g, on the plus side -g. */
 typedef struct {
-    double strength;         /* sigma_c (Pa); infinite: never breaks */
-    double opening;          /* delta_c (m) */
-    double beta;             /* weight of shear, in the criterion (5.3) and in the law; 0: normal only (5.17) */
-    double contact_below;    /* contact acts where the normal opening is below this: 0, or +inf for its linear part */
-    bool total;              /* activation: the law takes the total jump, not the jump since the switch */
-    bool flux;               /* contact: all DG terms return on closure, not a one-sided penalty */
+    double strength;      /* sigma_c (Pa); infinite: never breaks */
+    double opening;       /* delta_c (m) */
+    double beta;          /* weight of shear, in the criterion (5.3) and in the law; 0: normal only (5.17) */
+    double contact_below; /* contact acts where the normal opening is below this: 0, or +inf for its linear
+                             part */
+    bool total;           /* activation: the law takes the total jump, not the jump since the switch */
+    bool flux;            /* contact: all DG terms return on closure, not a one-sided penalty */
 } rg_cohesive;
 
 typedef struct {
     rg_cohesive law;
-    double time;              /* time of the state (s), recorded where a point switches */
-    const double *u;          /* displacement (m) */
-    const double *traction;   /* area-weighted corner tractions of both sides (N) */
-    const int32_t *side[2];   /* [interface]: 4 * element + face on the minus and on the plus side */
-    const double *geom;       /* interface geometry */
-    uint8_t *broken;          /* [interface] in/out: bit q set where point q has switched */
-    uint8_t *unlinked;        /* [interface] in/out: bit q set where point q has no DG terms (never set for a closed
-                                 point under flux contact) */
-    uint8_t *active;          /* [block] in/out: not 0 where some lane of the block has a broken point */
-    double *crack;            /* crack state, in/out */
-    size_t crack_stride;      /* doubles from one block's crack state to the next: RG_CRACK_BLOCK, or 0 to share one */
-    double *force;            /* out: g, nodal force on the minus side (N) */
+    double time;            /* time of the state (s), recorded where a point switches */
+    const double *u;        /* displacement (m) */
+    const double *traction; /* area-weighted corner tractions of both sides (N) */
+    const int32_t *side[2]; /* [interface]: 4 * element + face on the minus and on the plus side */
+    const double *geom;     /* interface geometry */
+    uint8_t *broken;        /* [interface] in/out: bit q set where point q has switched */
+    uint8_t *unlinked; /* [interface] in/out: bit q set where point q has no DG terms (never set for a closed
+                          point under flux contact) */
+    uint8_t *active;   /* [block] in/out: not 0 where some lane of the block has a broken point */
+    double *crack;     /* crack state, in/out */
+    size_t crack_stride; /* doubles from one block's crack state to the next: RG_CRACK_BLOCK, or 0 to share
+                            one */
+    double *force;       /* out: g, nodal force on the minus side (N) */
 } rg_interface_args;
 
 /* Central difference: v += dt M^-1 (bulk + interface force); u += dt v. */
@@ -68,11 +72,11 @@ typedef struct {
     const double *iforce;     /* interface, with a zero block behind the last */
     const int32_t *interface; /* links: 2 * interface + side */
     double *velocity;
-    double *u;                /* NULL: leave displacements alone */
+    double *u; /* NULL: leave displacements alone */
 } rg_update_args;
 
-/* State for ledger and output, per element or interface. Output rows count from the first block asked for: block
- * `begin` writes row 0. */
+/* State for ledger and output, per element or interface. Output rows count from the first block asked for:
+ * block `begin` writes row 0. */
 typedef struct {
     const rg_bulk_args *bulk;
     double *energy; /* out, or NULL: [row][lane] sum_g (V/4) W(F_g + R_g) (J) */
@@ -104,9 +108,9 @@ typedef struct {
     void (*interface_state)(const rg_interface_state_args *args, size_t begin, size_t end);
 } rg_kernels;
 
-/* The opening from which a continuous activation starts is eps = RG_ONSET sigma_c h_s / (beta_s (lambda + 2 mu)),
- * that is RG_ONSET strength area / (PEN_ISO + PEN_NORM): small against the jump at which the penalty alone would
- * carry the strength, large against rounding. */
+/* The opening from which a continuous activation starts is eps = RG_ONSET sigma_c h_s / (beta_s (lambda + 2
+ * mu)), that is RG_ONSET strength area / (PEN_ISO + PEN_NORM): small against the jump at which the penalty
+ * alone would carry the strength, large against rounding. */
 #define RG_ONSET 0.02
 
 extern const rg_kernels rg_kernels_reference; /* scalar, written after the equations; never used by a run */
@@ -114,8 +118,8 @@ extern const rg_kernels rg_kernels_reference; /* scalar, written after the equat
 /* All sets this machine can run, fastest first; returns their number (at most `capacity`). */
 int rg_kernels_available(const rg_kernels *sets[], int capacity);
 
-/* The set to use: the one that environment variable RHEGMA_ISA names, else the fastest. NULL if the named one does
- * not exist or cannot run here. */
+/* The set to use: the one that environment variable RHEGMA_ISA names, else the fastest. NULL if the named one
+ * does not exist or cannot run here. */
 const rg_kernels *rg_kernels_select(void);
 
 #endif

@@ -1,8 +1,8 @@
 /* The one place that states how fields lie in memory.
  *
- * Every field is a structure of arrays in blocks of RG_LANES elements (or interfaces): the lane is the fastest
- * index, so a kernel loads a vector of eight elements with one aligned load, and every array is padded to whole
- * blocks, so no kernel has a scalar remainder.
+ * Every field is a structure of arrays in blocks of RG_LANES elements (or interfaces): the lane is the
+ * fastest index, so a kernel loads a vector of eight elements with one aligned load, and every array is
+ * padded to whole blocks, so no kernel has a scalar remainder.
  *
  *   displacement, velocity, force   [element block][10 nodes][3][lane]
  *   element geometry                [element block][RG_GEOM][lane]
@@ -12,11 +12,11 @@
  *   interface nodal force           [interface block][6 nodes][3][lane]
  *   crack state                     [interface block][6 points][RG_CRACK][lane]
  *
- * Element convention: the four vertices of a tetrahedron are sorted by ascending global vertex number. Its nodes
- * are in the order of VTK_QUADRATIC_TETRA (corners 0-3, mid-edges 01 12 02 03 13 23); local face f is the one
- * opposite corner f, its corners ascending, its six nodes in the order corner 0 1 2, mid-edge 01 12 02. Because of
- * the sorting both neighbours of a face list its nodes in the same order: no permutation is ever needed. The price
- * is that half of the elements are left-handed, which only output has to know. */
+ * Element convention: the four vertices of a tetrahedron are sorted by ascending global vertex number. Its
+ * nodes are in the order of VTK_QUADRATIC_TETRA (corners 0-3, mid-edges 01 12 02 03 13 23); local face f is
+ * the one opposite corner f, its corners ascending, its six nodes in the order corner 0 1 2, mid-edge 01 12
+ * 02. Because of the sorting both neighbours of a face list its nodes in the same order: no permutation is
+ * ever needed. The price is that half of the elements are left-handed, which only output has to know. */
 #ifndef RG_LAYOUT_H
 #define RG_LAYOUT_H
 
@@ -34,35 +34,37 @@ enum {
 };
 
 enum { /* element geometry: grad l_k of barycentric coordinates k = 0, 1, 2 (1/m), volume (m^3) */
-    RG_GEOM_GRAD = 0,
-    RG_GEOM_VOLUME = 9,
-    RG_GEOM = 10,
+       RG_GEOM_GRAD = 0,
+       RG_GEOM_VOLUME = 9,
+       RG_GEOM = 10,
 };
 
-enum { /* interface geometry */
-    RG_IGEOM_NORMAL = 0,   /* unit normal from the minus to the plus element, reference configuration */
-    RG_IGEOM_AREA = 3,     /* m^2; 0 in padding */
-    RG_IGEOM_PEN_ISO = 4,  /* area (beta_s/h_s) mu */
-    RG_IGEOM_PEN_NORM = 5, /* area (beta_s/h_s) (lambda + mu): the penalty is (PEN_ISO I + PEN_NORM N(x)N) [u] */
-    RG_IGEOM_EDGE = 6,     /* edges corner 0 -> 1 and 0 -> 2, 6 components (m); their cross product is +-2 area N */
-    RG_IGEOM = 12,
+enum {                       /* interface geometry */
+       RG_IGEOM_NORMAL = 0,  /* unit normal from the minus to the plus element, reference configuration */
+       RG_IGEOM_AREA = 3,    /* m^2; 0 in padding */
+       RG_IGEOM_PEN_ISO = 4, /* area (beta_s/h_s) mu */
+       RG_IGEOM_PEN_NORM =
+           5, /* area (beta_s/h_s) (lambda + mu): the penalty is (PEN_ISO I + PEN_NORM N(x)N) [u] */
+       RG_IGEOM_EDGE =
+           6, /* edges corner 0 -> 1 and 0 -> 2, 6 components (m); their cross product is +-2 area N */
+       RG_IGEOM = 12,
 };
 
 enum { /* crack state of one interface point; meaningful only where the point's bit in `broken` is set */
-    RG_CRACK_OPENING = 0, /* largest effective opening so far, delta_max (m) */
-    RG_CRACK_ORIGIN = 1,  /* jump from which the opening is measured, 3 components (m) */
-    RG_CRACK_TIME = 4,    /* time at which the point switched (s) */
-    RG_CRACK = 5,
+       RG_CRACK_OPENING = 0, /* largest effective opening so far, delta_max (m) */
+       RG_CRACK_ORIGIN = 1,  /* jump from which the opening is measured, 3 components (m) */
+       RG_CRACK_TIME = 4,    /* time at which the point switched (s) */
+       RG_CRACK = 5,
 };
 
 enum { /* doubles per block */
-    RG_NODE_BLOCK = RG_NODES * 3 * RG_LANES,
-    RG_TRACTION_BLOCK = RG_FACES * RG_FCORNERS * 3 * RG_LANES,
-    RG_GEOM_BLOCK = RG_GEOM * RG_LANES,
-    RG_LINK_BLOCK = RG_FACES * RG_LANES,
-    RG_IGEOM_BLOCK = RG_IGEOM * RG_LANES,
-    RG_IFORCE_BLOCK = RG_FNODES * 3 * RG_LANES,
-    RG_CRACK_BLOCK = RG_POINTS * RG_CRACK * RG_LANES,
+       RG_NODE_BLOCK = RG_NODES * 3 * RG_LANES,
+       RG_TRACTION_BLOCK = RG_FACES * RG_FCORNERS * 3 * RG_LANES,
+       RG_GEOM_BLOCK = RG_GEOM * RG_LANES,
+       RG_LINK_BLOCK = RG_FACES * RG_LANES,
+       RG_IGEOM_BLOCK = RG_IGEOM * RG_LANES,
+       RG_IFORCE_BLOCK = RG_FNODES * 3 * RG_LANES,
+       RG_CRACK_BLOCK = RG_POINTS * RG_CRACK * RG_LANES,
 };
 
 /* Nodes of local face f in the order both neighbours share. */
@@ -79,7 +81,8 @@ static inline size_t rg_node_index(size_t e, int n, int c) {
 
 /* Index of component c at corner i (0-2) of face f of element e. */
 static inline size_t rg_traction_index(size_t e, int f, int i, int c) {
-    return (e / RG_LANES) * RG_TRACTION_BLOCK + (size_t)((f * RG_FCORNERS + i) * 3 + c) * RG_LANES + e % RG_LANES;
+    return (e / RG_LANES) * RG_TRACTION_BLOCK + (size_t)((f * RG_FCORNERS + i) * 3 + c) * RG_LANES +
+           e % RG_LANES;
 }
 
 static inline size_t rg_geom_index(size_t e, int k) {
@@ -103,8 +106,8 @@ static inline size_t rg_crack_index(size_t i, int q, int k) {
 }
 
 /* Interface-side link of an element's face: the interface's number and the side the element is on (0 minus, 1
- * plus). Element-side link: the element's number and its local face. Both fit 32 bits: at most 2^29 elements per
- * rank. */
+ * plus). Element-side link: the element's number and its local face. Both fit 32 bits: at most 2^29 elements
+ * per rank. */
 static inline int32_t rg_link(int32_t number, int32_t low, int32_t base) {
     return number * base + low;
 }

@@ -13,8 +13,8 @@ RG_INLINE void rg_cofactor(rg_vec F[3][3], rg_vec cof[3][3]) {
 }
 
 /* First Piola-Kirchhoff stress P = mu F + (lambda log J - mu) F^-T (Pa). Also gives cof(F), J and log J. */
-RG_INLINE void rg_neo_hookean_stress(const rg_material *m, rg_vec F[3][3], rg_vec P[3][3],
-                                     rg_vec cof[3][3], rg_vec *J, rg_vec *log_J) {
+RG_INLINE void rg_neo_hookean_stress(const rg_material *m, rg_vec F[3][3], rg_vec P[3][3], rg_vec cof[3][3],
+                                     rg_vec *J, rg_vec *log_J) {
     rg_cofactor(F, cof);
     *J = rg_dot(F[0], cof[0]);
     *log_J = rg_log(*J);
@@ -26,8 +26,8 @@ RG_INLINE void rg_neo_hookean_stress(const rg_material *m, rg_vec F[3][3], rg_ve
     }
 }
 
-/* Energy density W (J/m^3). With F = I + H, tr F^T F - 3 is summed as 2 tr H + H:H, and log J is small too, so that
- * the energy of a small strain is not lost in the rounding of a large one. */
+/* Energy density W (J/m^3). With F = I + H, tr F^T F - 3 is summed as 2 tr H + H:H, and log J is small too,
+ * so that the energy of a small strain is not lost in the rounding of a large one. */
 RG_INLINE rg_vec rg_neo_hookean_energy(const rg_material *m, rg_vec F[3][3], rg_vec log_J) {
     rg_vec trace = {0}, square = {0};
     for (int i = 0; i < 3; i++) {
@@ -40,9 +40,9 @@ RG_INLINE rg_vec rg_neo_hookean_energy(const rg_material *m, rg_vec F[3][3], rg_
     return 0.5 * m->lambda * log_J * log_J + m->mu * (trace - log_J) + 0.5 * m->mu * square;
 }
 
-/* Bound on how much the acoustic tensor, mu |N|^2 I + (lambda + mu - lambda log J) a (x) a with a = F^-T N, exceeds
- * its largest value lambda + 2 mu at F = I: |a|^2 is at most the largest absolute row sum of F^-1 F^-T. Not a number
- * where F is not or J <= 0. */
+/* Bound on how much the acoustic tensor, mu |N|^2 I + (lambda + mu - lambda log J) a (x) a with a = F^-T N,
+ * exceeds its largest value lambda + 2 mu at F = I: |a|^2 is at most the largest absolute row sum of F^-1
+ * F^-T. Not a number where F is not or J <= 0. */
 RG_INLINE rg_vec rg_neo_hookean_stiffening(const rg_material *m, rg_vec cof[3][3], rg_vec J, rg_vec log_J) {
     rg_vec row[3] = {{0}, {0}, {0}};
     for (int i = 0; i < 3; i++) {

@@ -219,6 +219,7 @@ void rg_reference_bulk_state(const rg_bulk_state_args *args, size_t begin, size_
     for (size_t e = begin * RG_LANES; e < end * RG_LANES; e++) {
         element el;
         double energy = 0;
+        size_t row = e / RG_LANES - begin;
         load(args->bulk, e, &el);
         for (int g = 0; g < RG_GAUSS; g++) {
             double f[3][3], s[6];
@@ -226,9 +227,9 @@ void rg_reference_bulk_state(const rg_bulk_state_args *args, size_t begin, size_
             energy += el.volume / 4 * energy_density(&args->bulk->material, f);
             cauchy_stress(&args->bulk->material, f, s);
             for (int k = 0; args->cauchy && k < 6; k++)
-                args->cauchy[(e / RG_LANES * 24 + (size_t)(g * 6 + k)) * RG_LANES + e % RG_LANES] = s[k];
+                args->cauchy[(row * 24 + (size_t)(g * 6 + k)) * RG_LANES + e % RG_LANES] = s[k];
         }
         if (args->energy)
-            args->energy[e] = energy;
+            args->energy[row * RG_LANES + e % RG_LANES] = energy;
     }
 }

@@ -165,7 +165,7 @@ static void set_bit(uint8_t *mask, int q, bool on) {
 
 /* Traction of point q, area-weighted; advances its state. */
 static void point_traction(const rg_interface_args *args, size_t i, int q, const point *p, double t[3]) {
-    double direction[3], *crack[RG_CRACK];
+    double direction[3] = {0, 0, 0}, *crack[RG_CRACK];
     bool broken = args->broken[i] >> q & 1;
     for (int c = 0; c < 3; c++)
         t[c] = p->dg[c];
@@ -226,11 +226,12 @@ static void point_energy(const rg_interface_args *args, size_t i, int q, double 
 }
 
 void rg_reference_interface_state(const rg_interface_state_args *args, size_t begin, size_t end) {
-    for (size_t i = begin * RG_LANES; args->energy && i < end * RG_LANES; i++) {
+    for (size_t i = begin * RG_LANES; i < end * RG_LANES; i++) {
         double energy[RG_E_INTERFACE] = {0};
+        size_t row = i / RG_LANES - begin;
         for (int q = 0; q < RG_POINTS; q++)
             point_energy(args->interface, i, q, energy);
-        for (int k = 0; k < RG_E_INTERFACE; k++)
-            args->energy[(i / RG_LANES * RG_E_INTERFACE + (size_t)k) * RG_LANES + i % RG_LANES] = energy[k];
+        for (size_t k = 0; k < RG_E_INTERFACE; k++)
+            args->energy[(row * RG_E_INTERFACE + k) * RG_LANES + i % RG_LANES] = energy[k];
     }
 }

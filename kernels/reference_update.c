@@ -105,7 +105,8 @@ void rg_reference_update(const rg_update_args *args, size_t begin, size_t end) {
                     acceleration += inv[a][b] * f[b][c] / mass;
                 size_t k = rg_node_index(e, a, c);
                 args->velocity[k] += args->dt_velocity * acceleration;
-                args->u[k] += args->dt_displacement * args->velocity[k];
+                if (args->u)
+                    args->u[k] += args->dt_displacement * args->velocity[k];
             }
     }
 }
@@ -120,7 +121,7 @@ void rg_reference_kinetic(const rg_kinetic_args *args, size_t begin, size_t end)
                 for (int c = 0; c < 3; c++)
                     sum += m[a][b] * args->velocity[rg_node_index(e, a, c)] *
                            args->velocity[rg_node_index(e, b, c)];
-        if (args->energy)
-            args->energy[e] = args->density * args->geom[rg_geom_index(e, RG_GEOM_VOLUME)] * sum / 2;
+        args->energy[e - begin * RG_LANES] =
+            args->density * args->geom[rg_geom_index(e, RG_GEOM_VOLUME)] * sum / 2;
     }
 }

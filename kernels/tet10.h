@@ -5,32 +5,32 @@
 
 #include "vec.h"
 
-/* Four-point rule: barycentric coordinate RG_GAUSS_B at the own corner, RG_GAUSS_A at the others; weight 1/4. */
-#define RG_GAUSS_A 0.13819660112501051518
-#define RG_GAUSS_B 0.58541019662496845446
+/* Four-point rule: barycentric coordinate RG_GAUSS_B at the own corner, RG_GAUSS_A at the others; weight 1/4.
+ */
+#define RG_GAUSS_A  0.13819660112501051518
+#define RG_GAUSS_B  0.58541019662496845446
 #define RG_GAUSS_BA (RG_GAUSS_B - RG_GAUSS_A)
 
-/* Six-point rule of a triangle: points 0-2 have 1 - 2p at corner i and p at the others, points 3-5 likewise. */
+/* Six-point rule of a triangle: points 0-2 have 1 - 2p at corner i and p at the others, points 3-5 likewise.
+ */
 #define RG_TRI_P0 0.445948490915965
 #define RG_TRI_W0 0.223381589678011
 #define RG_TRI_P1 0.091576213509771
 #define RG_TRI_W1 0.109951743655322
 
-/* Shape functions of a six-node triangle at a point with coordinate r = 1 - 2p at its corner and p at the others. */
+/* Shape functions of a six-node triangle at a point with coordinate r = 1 - 2p at its corner and p at the
+ * others. */
 typedef struct {
     double p, r, weight;
-    double corner, other;     /* N of the point's own corner, of the other corners: l (2 l - 1) */
-    double adjacent, facing;  /* N of the two mid-edges at the own corner, of the one facing it: 4 l l' */
+    double corner, other;    /* N of the point's own corner, of the other corners: l (2 l - 1) */
+    double adjacent, facing; /* N of the two mid-edges at the own corner, of the one facing it: 4 l l' */
 } rg_tri_rule;
 
 #define RG_TRI_RULE(P, W)                                                                                    \
-    {P,                                                                                                      \
-     1 - 2 * (P),                                                                                            \
-     W,                                                                                                      \
-     (1 - 2 * (P)) * (1 - 4 * (P)),                                                                          \
-     (P) * (2 * (P)-1),                                                                                      \
-     4 * (P) * (1 - 2 * (P)),                                                                                \
-     4 * (P) * (P)}
+    {                                                                                                        \
+        P, 1 - 2 * (P), W, (1 - 2 * (P)) * (1 - 4 * (P)), (P) * (2 * (P)-1), 4 * (P) * (1 - 2 * (P)),        \
+            4 * (P) * (P)                                                                                    \
+    }
 
 static const rg_tri_rule rg_tri[2] = {RG_TRI_RULE(RG_TRI_P0, RG_TRI_W0), RG_TRI_RULE(RG_TRI_P1, RG_TRI_W1)};
 

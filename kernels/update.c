@@ -1,6 +1,7 @@
-/* Central difference, element by element: the elements own their nodes, so the mass matrix is one constant 10 x 10
- * matrix times rho V. Consistent mass: its inverse has the entries 100, 10 (corner-corner), 2.5, 10 (corner-edge),
- * 28.75, -6.875, 10 (edge-edge), applied here through sums. Lumped: HRZ, corners 1/36, mid-edges 4/27. */
+/* Central difference, element by element: the elements own their nodes, so the mass matrix is one constant 10
+ * x 10 matrix times rho V. Consistent mass: its inverse has the entries 100, 10 (corner-corner), 2.5, 10
+ * (corner-edge), 28.75, -6.875, 10 (edge-edge), applied here through sums. Lumped: HRZ, corners 1/36,
+ * mid-edges 4/27. */
 #include "isa.h"
 #include "tet10.h"
 
@@ -8,8 +9,8 @@
 static const int edge_corner[6][2] = {{0, 1}, {1, 2}, {0, 2}, {0, 3}, {1, 3}, {2, 3}};
 static const int edge_opposite[6] = {5, 3, 4, 1, 2, 0};
 
-/* Nodal force of one component: bulk first, then the faces in their local order. The order is the mesh's, so the
- * sum has the same bits however the mesh is distributed. */
+/* Nodal force of one component: bulk first, then the faces in their local order. The order is the mesh's, so
+ * the sum has the same bits however the mesh is distributed. */
 RG_INLINE void sum_force(const rg_update_args *args, size_t block, int lane, int c, rg_vec f[RG_NODES]) {
     const double *force = args->force + block * RG_NODE_BLOCK + lane;
     for (int n = 0; n < RG_NODES; n++) {
@@ -90,8 +91,8 @@ void RG_ISA_NAME(rg_update)(const rg_update_args *args, size_t begin, size_t end
     }
 }
 
-/* v M v / (rho V) for one component, consistent: entries of 420 M are 6, 1 (corner-corner), -4, -6 (corner-edge), 32,
- * 16, 8 (edge-edge). */
+/* v M v / (rho V) for one component, consistent: entries of 420 M are 6, 1 (corner-corner), -4, -6
+ * (corner-edge), 32, 16, 8 (edge-edge). */
 RG_INLINE rg_vec consistent_square(const rg_vec v[RG_NODES]) {
     rg_vec corners = v[0] + v[1] + v[2] + v[3], edges = {0}, corner_squares = {0}, edge_terms = {0};
     for (int i = 0; i < 4; i++) {
@@ -103,8 +104,8 @@ RG_INLINE rg_vec consistent_square(const rg_vec v[RG_NODES]) {
         edge_terms += own * (16.0 * own - 8.0 * v[4 + edge_opposite[e]] +
                              4.0 * (v[edge_corner[e][0]] + v[edge_corner[e][1]]));
     }
-    rg_vec sum = 5.0 * corner_squares + corners * corners - 12.0 * corners * edges + 16.0 * edges * edges +
-                 edge_terms;
+    rg_vec sum =
+        5.0 * corner_squares + corners * corners - 12.0 * corners * edges + 16.0 * edges * edges + edge_terms;
     return sum / 420.0;
 }
 

@@ -1,8 +1,9 @@
-/* Vectors of doubles as wide as the instruction set this file is compiled for, with the operators of C, so that a
- * kernel reads like its equations. A block of RG_LANES lanes is RG_LANES / RG_VLEN vectors.
+/* Vectors of doubles as wide as the instruction set this file is compiled for, with the operators of C, so
+ * that a kernel reads like its equations. A block of RG_LANES lanes is RG_LANES / RG_VLEN vectors.
  *
- * GCC's and Clang's vector types do the arithmetic; intrinsics stand only where the language has no word (gather,
- * table look-up, maximum). Arrays of vectors are passed without const: C17 does not convert pointers to arrays. */
+ * GCC's and Clang's vector types do the arithmetic; intrinsics stand only where the language has no word
+ * (gather, table look-up, maximum). Arrays of vectors are passed without const: C17 does not convert pointers
+ * to arrays. */
 #ifndef RG_VEC_H
 #define RG_VEC_H
 
@@ -122,7 +123,8 @@ RG_INLINE void rg_cross(const rg_vec a[3], const rg_vec b[3], rg_vec out[3]) {
  * log x = e log 2 + 2 artanh s, s = (m - 1)/(m + 1). */
 RG_INLINE rg_vec rg_log(rg_vec x) {
     const rg_mask sqrt_half = (rg_mask){0} + INT64_C(0x3fe6a09e667f3bcd);
-    const rg_mask magic = (rg_mask){0} + INT64_C(0x4338000000000000); /* 1.5 * 2^52: its low bits count units */
+    const rg_mask magic =
+        (rg_mask){0} + INT64_C(0x4338000000000000); /* 1.5 * 2^52: its low bits count units */
     const double unit = 0x1.8p52, log2_high = 0x1.62e42fefa3800p-1, log2_low = 0x1.ef35793c76730p-45;
     rg_mask bits = (rg_mask)x;
     rg_mask e = (bits - sqrt_half) >> 52;

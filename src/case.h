@@ -21,10 +21,10 @@ typedef enum { RG_MASS_CONSISTENT, RG_MASS_LUMPED } rg_mass;
 enum {
     RG_FIELD_DISPLACEMENT = 1,
     RG_FIELD_VELOCITY = 2,
-    RG_FIELD_STRESS = 4,    /* Cauchy stress, mean per element */
-    RG_FIELD_MEAN = 8,      /* mean stress */
+    RG_FIELD_STRESS = 4,     /* Cauchy stress, mean per element */
+    RG_FIELD_MEAN = 8,       /* mean stress */
     RG_FIELD_PRINCIPAL = 16, /* principal stresses, largest first */
-    RG_FIELD_CRACK = 32,    /* crack surface */
+    RG_FIELD_CRACK = 32,     /* crack surface */
 };
 
 typedef struct {
@@ -35,7 +35,7 @@ typedef struct {
 } rg_boundary;
 
 typedef struct {
-    char *name; /* column prefix in history.csv */
+    char *name;   /* column prefix in history.csv */
     double at[3]; /* reference position (m) */
 } rg_probe;
 
@@ -84,18 +84,21 @@ typedef struct {
     } output;
 } rg_case;
 
-/* Reads the case file at `path`, applies `overrides` (each "a.b=value", value in YAML syntax) and checks it all.
- * Returns NULL after printing every problem to `errors`, one a line (file:line:column: key: value: what is wrong,
- * the allowed range, the nearest known key); for overrides the place is "--set a.b=value". The caller owns the result
- * and frees it with rg_case_free. Reads nothing but the file, writes nothing but `errors`. */
+/* Reads the case file at `path`, applies `overrides` (each "a.b=value", value in YAML syntax) and checks it
+ * all. Returns NULL after printing every problem to `errors`, one a line (file:line:column: key: value: what
+ * is wrong, the allowed range, the nearest known key); for overrides the place is "--set a.b=value". The
+ * caller owns the result and frees it with rg_case_free. Reads nothing but the file, writes nothing but
+ * `errors`. */
 rg_case *rg_case_read(const char *path, int overrides, const char *const override[], FILE *errors);
 
-/* Writes the full set of values used, defaults included, as a YAML case file that reads back to the same case. */
+/* Writes the full set of values used, defaults included, as a YAML case file that reads back to the same
+ * case. */
 void rg_case_echo(const rg_case *c, FILE *out);
 
 void rg_case_free(rg_case *c);
 
-/* Expression as its source text, whether it depends on position or on time, and its value. Not thread-safe. */
+/* Expression as its source text, whether it depends on position or on time, and its value. Not thread-safe.
+ */
 const char *rg_expr_text(const rg_expr *e);
 bool rg_expr_uses_position(const rg_expr *e);
 bool rg_expr_uses_time(const rg_expr *e);

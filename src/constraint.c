@@ -38,9 +38,10 @@ struct rg_constraints {
     double dt;
 };
 
-/* ---- Patterns ------------------------------------------------------------------------------------------------- */
+/* ---- Patterns ---- */
 
-/* Inverts the leading n x n part of a symmetric positive definite matrix (Gauss-Jordan, no pivoting needed). */
+/* Inverts the leading n x n part of a symmetric positive definite matrix (Gauss-Jordan, no pivoting needed).
+ */
 static void invert(int n, double a[RG_NODES][RG_NODES], double inverse[RG_NODES][RG_NODES]) {
     for (int i = 0; i < n; i++) {
         for (int j = 0; j < n; j++) {
@@ -87,14 +88,15 @@ static const pattern *pattern_of(rg_constraints *k, unsigned mask) {
     for (int f = p->constrained; f < RG_NODES; f++) {
         for (int i = 0; i < p->constrained; i++) {
             for (int j = 0; j < p->constrained; j++) {
-                p->follow[f][i] += rg_inverse_mass_entry(k->lumped, p->node[f], p->node[j]) * p->impulse[j][i];
+                p->follow[f][i] +=
+                    rg_inverse_mass_entry(k->lumped, p->node[f], p->node[j]) * p->impulse[j][i];
             }
         }
     }
     return k->patterns[mask] = p;
 }
 
-/* ---- Set-up --------------------------------------------------------------------------------------------------- */
+/* ---- Set-up ---- */
 
 static int set_number(const rg_part *part, const char *name) {
     for (int i = 0; i < part->sets; i++) {
@@ -105,7 +107,8 @@ static int set_number(const rg_part *part, const char *name) {
     rg_fatal(RG_USAGE, "boundary: the mesh has no set named '%s'", name);
 }
 
-/* Boundary that prescribes component c of each node of an element, -1 for none; returns the mask of those nodes. */
+/* Boundary that prescribes component c of each node of an element, -1 for none; returns the mask of those
+ * nodes. */
 static unsigned constrained_nodes(const rg_constraints *k, const int *set, size_t slot, int c,
                                   int16_t which[RG_NODES]) {
     unsigned mask = 0;
@@ -165,7 +168,7 @@ rg_constraints *rg_constraints_make(const rg_case *c, const rg_domain *d, const 
     return k;
 }
 
-/* ---- Values --------------------------------------------------------------------------------------------------- */
+/* ---- Values ---- */
 
 static double value_at(const rg_constraints *k, const entry *e, int i, double time) {
     double x[3];
@@ -194,7 +197,8 @@ void rg_constraints_start(rg_constraints *k, const double *u, const double *velo
     }
 }
 
-void rg_constraints_set(rg_constraints *k, double time_velocity, double time_displacement, double dt_displacement) {
+void rg_constraints_set(rg_constraints *k, double time_velocity, double time_displacement,
+                        double dt_displacement) {
     k->dt = dt_displacement;
     for (size_t n = 0; k->varies && n < k->entries; n++) {
         entry *e = &k->entry[n];
@@ -210,10 +214,11 @@ void rg_constraints_set(rg_constraints *k, double time_velocity, double time_dis
     }
 }
 
-/* ---- Correction ----------------------------------------------------------------------------------------------- */
+/* ---- Correction ---- */
 
-/* Adds to the velocities of an entry's nodes what brings the constrained ones to `target`; gives that change for
- * all nodes, in pattern order, and returns the work of the impulse for velocities `before` ahead of it. */
+/* Adds to the velocities of an entry's nodes what brings the constrained ones to `target`; gives that change
+ * for all nodes, in pattern order, and returns the work of the impulse for velocities `before` ahead of it.
+ */
 static double correct(const entry *e, const double *target, double *velocity, double change[RG_NODES]) {
     const pattern *p = e->pattern;
     double work = 0;
@@ -240,7 +245,8 @@ static double correct(const entry *e, const double *target, double *velocity, do
     return work;
 }
 
-void rg_constraints_apply(rg_constraints *k, size_t tile, double *velocity, double *u, double dt_displacement) {
+void rg_constraints_apply(rg_constraints *k, size_t tile, double *velocity, double *u,
+                          double dt_displacement) {
     for (size_t n = k->tile_begin[tile]; n < k->tile_begin[tile + 1]; n++) {
         entry *e = &k->entry[n];
         double change[RG_NODES];

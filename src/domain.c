@@ -83,7 +83,7 @@ static void allocate_elements(rg_domain *d) {
     size_t slots = d->blocks * RG_LANES;
     d->corner = RG_NEW(double, 12 * slots);
     d->set = RG_NEW(int8_t, 4 * slots);
-    d->geom = RG_NEW(double, d->blocks * RG_GEOM_BLOCK);
+    d->geom = RG_NEW(double, d->blocks *RG_GEOM_BLOCK);
     d->neighbour = RG_NEW(int32_t, d->blocks * RG_LINK_BLOCK);
     d->interface = RG_NEW(int32_t, d->blocks * RG_LINK_BLOCK);
 }
@@ -134,10 +134,12 @@ static void fill_elements(rg_domain *d, const rg_part *part, const rg_gid_map *m
     }
 }
 
-rg_domain *rg_domain_build(const rg_part *part, int rank, const rg_interface_material *m, size_t tile_elements) {
+rg_domain *rg_domain_build(const rg_part *part, int rank, const rg_interface_material *m,
+                           size_t tile_elements) {
     rg_domain *d = RG_NEW(rg_domain, 1);
     if (part->elements > INT32_MAX / 8) {
-        rg_fatal(RG_USAGE, "%d elements on one rank are too many for 32-bit links; use more ranks", part->elements);
+        rg_fatal(RG_USAGE, "%d elements on one rank are too many for 32-bit links; use more ranks",
+                 part->elements);
     }
     d->elements = (size_t)part->elements;
     d->boundary_blocks = round_up((size_t)part->boundary) / RG_LANES;
@@ -155,8 +157,8 @@ void rg_domain_free(rg_domain *d) {
     if (d == NULL) {
         return;
     }
-    void *blocks[] = {d->id,      d->corner,  d->set,   d->geom,    d->neighbour,   d->interface,
-                      d->tile,    d->side[0], d->side[1], d->igeom, d->counted,     d->shared_face};
+    void *blocks[] = {d->id,   d->corner,  d->set,     d->geom,  d->neighbour, d->interface,
+                      d->tile, d->side[0], d->side[1], d->igeom, d->counted,   d->shared_face};
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) {
         rg_free(blocks[i]);
     }

@@ -1,7 +1,8 @@
 #include "element.h"
 
 /* Ends of each node: a corner is both ends of itself. */
-static const int node_end[RG_NODES][2] = {{0, 0}, {1, 1}, {2, 2}, {3, 3}, {0, 1}, {1, 2}, {0, 2}, {0, 3}, {1, 3}, {2, 3}};
+static const int node_end[RG_NODES][2] = {{0, 0}, {1, 1}, {2, 2}, {3, 3}, {0, 1},
+                                          {1, 2}, {0, 2}, {0, 3}, {1, 3}, {2, 3}};
 
 void rg_node_position(const double *corner, int node, double x[3]) {
     const int *end = node_end[node];

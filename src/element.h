@@ -1,4 +1,5 @@
-/* The 10-node tetrahedron outside the time loop: positions, shape functions, mass. Scalar, for set-up and output. */
+/* The 10-node tetrahedron outside the time loop: positions, shape functions, mass. Scalar, for set-up and
+ * output. */
 #ifndef RG_ELEMENT_H
 #define RG_ELEMENT_H
 

@@ -5,13 +5,15 @@
 
 #include "mem.h"
 
-/* Length of the cohesive zone of mode I, plane strain: (9 pi/32) E/(1 - nu^2) G_c/sigma_c^2 (thesis 2; Rice 1968). */
+/* Length of the cohesive zone of mode I, plane strain: (9 pi/32) E/(1 - nu^2) G_c/sigma_c^2 (thesis 2; Rice
+ * 1968). */
 static double cohesive_zone(const rg_case *c) {
     if (c->interface.law == RG_LAW_NONE) {
         return INFINITY;
     }
     double modulus = c->material.young / (1 - c->material.poisson * c->material.poisson);
-    return 9 * 3.14159265358979324 / 32 * modulus * c->interface.energy / (c->interface.strength * c->interface.strength);
+    return 9 * 3.14159265358979324 / 32 * modulus * c->interface.energy /
+           (c->interface.strength * c->interface.strength);
 }
 
 static double largest_edge(const rg_solver *s) {
@@ -61,25 +63,30 @@ rg_estimate rg_estimate_run(const rg_solver *s) {
 
 void rg_estimate_print(const rg_solver *s, const rg_estimate *e, FILE *out) {
     const rg_case *c = s->input;
-    fprintf(out, "elements       %" PRId64 " (%" PRId64 " degrees of freedom), %" PRId64 " interfaces\n", e->elements,
-            e->dofs, e->interfaces);
+    fprintf(out, "elements       %" PRId64 " (%" PRId64 " degrees of freedom), %" PRId64 " interfaces\n",
+            e->elements, e->dofs, e->interfaces);
     fprintf(out, "wave speeds    dilatational %.1f m/s, shear %.1f m/s\n", e->c_dilatational, e->c_shear);
-    fprintf(out, "time step      %.4g s = %.3g of the critical %.4g s, set by element %" PRId64 " with its faces %s\n", e->dt,
-            c->time.safety, e->dt_critical, s->limiting, s->limiting_state);
-    fprintf(out, "steps          %" PRId64 " to %.4g s\n", e->steps, fmin(c->time.end, (double)e->steps * e->dt));
+    fprintf(out,
+            "time step      %.4g s = %.3g of the critical %.4g s, set by element %" PRId64
+            " with its faces %s\n",
+            e->dt, c->time.safety, e->dt_critical, s->limiting, s->limiting_state);
+    fprintf(out, "steps          %" PRId64 " to %.4g s\n", e->steps,
+            fmin(c->time.end, (double)e->steps * e->dt));
     fprintf(out, "memory         %.0f bytes per element, %.0f with cracks everywhere; %.3g GB in all\n",
             e->bytes_per_element, e->peak_bytes_per_element,
             e->peak_bytes_per_element * (double)e->elements * 1e-9);
-    fprintf(out, "time loop      about %.3g s on %d ranks x %d threads (%s)\n", e->seconds, s->ranks, s->threads,
-            s->kernels->name);
+    fprintf(out, "time loop      about %.3g s on %d ranks x %d threads (%s)\n", e->seconds, s->ranks,
+            s->threads, s->kernels->name);
     if (isfinite(e->cohesive_zone)) {
         double ratio = e->cohesive_zone / e->largest_edge;
         fprintf(out, "cohesive zone  %.3g m, %.2g times the longest edge (%.3g m)\n", e->cohesive_zone, ratio,
                 e->largest_edge);
         if (ratio < 2) {
-            fprintf(out, "warning: the cohesive zone is not resolved: it should span at least two edges, here %.2g; "
-                         "the dissipated energy will depend on the mesh\n",
-                    ratio);
+            fprintf(
+                out,
+                "warning: the cohesive zone is not resolved: it should span at least two edges, here %.2g; "
+                "the dissipated energy will depend on the mesh\n",
+                ratio);
         }
     }
 }

@@ -1,5 +1,5 @@
-/* What is known of a run before it starts: counts, wave speeds, time step, memory, time, resolution of the cohesive
- * zone. */
+/* What is known of a run before it starts: counts, wave speeds, time step, memory, time, resolution of the
+ * cohesive zone. */
 #ifndef RG_ESTIMATE_H
 #define RG_ESTIMATE_H
 
@@ -13,9 +13,9 @@ typedef struct {
     double dt_critical, dt;         /* 2/omega, and times safety (s) */
     int64_t steps;
     double bytes_per_element, peak_bytes_per_element; /* fields; and with set-up and cracks everywhere */
-    double seconds;                 /* estimate for the time loop on these ranks and threads */
-    double cohesive_zone;           /* length (m); infinite where nothing breaks */
-    double largest_edge;            /* of the faces between elements (m) */
+    double seconds;       /* estimate for the time loop on these ranks and threads */
+    double cohesive_zone; /* length (m); infinite where nothing breaks */
+    double largest_edge;  /* of the faces between elements (m) */
 } rg_estimate;
 
 /* Collective; needs rg_spectrum to have run. */

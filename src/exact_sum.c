@@ -5,8 +5,8 @@
 
 enum { CARRY_EVERY = 1 << 29 };
 
-/* Moves what exceeds 32 bits of a limb into the next, leaving limbs in [0, 2^32) but the last, which keeps the
- * sign. */
+/* Moves what exceeds 32 bits of a limb into the next, leaving limbs in [0, 2^32) but the last, which keeps
+ * the sign. */
 static void carry(rg_exact_sum *sum) {
     for (int k = 0; k + 1 < RG_EXACT_LIMBS; k++) {
         int64_t up = sum->limb[k] >> 32;
@@ -69,8 +69,8 @@ double rg_exact_value(rg_exact_sum *sum) {
     while (top > 0 && magnitude.limb[top] == 0) {
         top--;
     }
-    /* The three highest limbs hold 65 to 96 bits; the rest only decides a tie and is dropped: the bits are the same
-     * wherever the same sum is formed, which is what counts here. */
+    /* The three highest limbs hold 65 to 96 bits; the rest only decides a tie and is dropped: the bits are
+     * the same wherever the same sum is formed, which is what counts here. */
     double value = 0;
     for (int k = top; k >= 0 && k > top - 3; k--) {
         value += ldexp((double)magnitude.limb[k], 32 * k - 1074);
@@ -82,5 +82,6 @@ void rg_exact_allreduce(rg_exact_sum *sums, int count, MPI_Comm comm) {
     for (int i = 0; i < count; i++) {
         carry(&sums[i]);
     }
-    MPI_Allreduce(MPI_IN_PLACE, sums, count * (int)(sizeof *sums / sizeof(int64_t)), MPI_INT64_T, MPI_SUM, comm);
+    MPI_Allreduce(MPI_IN_PLACE, sums, count * (int)(sizeof *sums / sizeof(int64_t)), MPI_INT64_T, MPI_SUM,
+                  comm);
 }

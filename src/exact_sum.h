@@ -1,8 +1,8 @@
 /* Exact sums of doubles: the same bits in any order, on any number of ranks and threads.
  *
- * A double is an integer times 2^-1074; the accumulator holds the sum as such an integer, in 64-bit limbs that each
- * carry 32 bits and have the rest as room for carries (a small superaccumulator, after Kulisch; Neal,
- * arXiv 1505.05571). */
+ * A double is an integer times 2^-1074; the accumulator holds the sum as such an integer, in 64-bit limbs
+ * that each carry 32 bits and have the rest as room for carries (a small superaccumulator, after Kulisch;
+ * Neal, arXiv 1505.05571). */
 #ifndef RG_EXACT_SUM_H
 #define RG_EXACT_SUM_H
 

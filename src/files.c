@@ -79,7 +79,8 @@ static void finish_row(rg_csv *t) {
 
 void rg_csv_energy_header(rg_csv *t) {
     if (t->file != NULL) {
-        fputs("step,time,kinetic,bulk,penalty,cohesive,contact,dissipated,external_work,total,error_rel,broken_area,"
+        fputs("step,time,kinetic,bulk,penalty,cohesive,contact,dissipated,external_work,total,error_rel,"
+              "broken_area,"
               "failed_area,momentum_x,momentum_y,momentum_z,angular_x,angular_y,angular_z",
               t->file);
         finish_row(t);
@@ -90,11 +91,24 @@ void rg_csv_energy(rg_csv *t, const rg_energy *e) {
     if (t->file == NULL) {
         return;
     }
-    const double row[] = {e->time,        e->kinetic,     e->bulk,        e->penalty,
-                          e->cohesive,    e->contact,     e->dissipated,  e->external,
-                          e->total,       e->error,       e->broken_area, e->failed_area,
-                          e->momentum[0], e->momentum[1], e->momentum[2], e->angular_momentum[0],
-                          e->angular_momentum[1], e->angular_momentum[2]};
+    const double row[] = {e->time,
+                          e->kinetic,
+                          e->bulk,
+                          e->penalty,
+                          e->cohesive,
+                          e->contact,
+                          e->dissipated,
+                          e->external,
+                          e->total,
+                          e->error,
+                          e->broken_area,
+                          e->failed_area,
+                          e->momentum[0],
+                          e->momentum[1],
+                          e->momentum[2],
+                          e->angular_momentum[0],
+                          e->angular_momentum[1],
+                          e->angular_momentum[2]};
     fprintf(t->file, "%" PRId64, e->step);
     for (size_t i = 0; i < sizeof row / sizeof *row; i++) {
         fprintf(t->file, ",%.17g", row[i]);

@@ -6,7 +6,8 @@
 
 #include "ledger.h"
 
-/* Creates `path` and its parents where they do not exist. Ends the run with a message on failure. Collective. */
+/* Creates `path` and its parents where they do not exist. Ends the run with a message on failure. Collective.
+ */
 void rg_make_directory(const char *path, MPI_Comm comm);
 
 /* Opens dir/name for writing; ends the run with a message on failure. */

@@ -8,11 +8,11 @@
 
 /* One interface before it has its place. */
 typedef struct {
-    uint64_t group;        /* tile it lies in; then "between tiles"; then "shared" */
-    int32_t link[2];       /* 4 * slot + face of the minus and the plus side */
-    int32_t own;           /* index in the part of an own element */
+    uint64_t group;  /* tile it lies in; then "between tiles"; then "shared" */
+    int32_t link[2]; /* 4 * slot + face of the minus and the plus side */
+    int32_t own;     /* index in the part of an own element */
     int8_t own_face;
-    int8_t own_side;       /* 0: the own element is minus */
+    int8_t own_side; /* 0: the own element is minus */
 } face;
 
 static int by_sweep(const void *a, const void *b) {
@@ -48,7 +48,8 @@ static uint64_t group_of(const rg_domain *d, const uint32_t *tile, int32_t slot,
 }
 
 /* Every interior face once: from its minus side, or from the own side if the other rank has the other one. */
-static face *collect(const rg_domain *d, const rg_part *part, int rank, const rg_gid_map *slot, size_t *count) {
+static face *collect(const rg_domain *d, const rg_part *part, int rank, const rg_gid_map *slot,
+                     size_t *count) {
     face *list = RG_NEW(face, 4 * (size_t)part->elements + 1);
     uint32_t *tile = tile_of_block(d);
     size_t n = 0;
@@ -74,8 +75,8 @@ static face *collect(const rg_domain *d, const rg_part *part, int rank, const rg
     return list;
 }
 
-/* Edges, unit normal (minus to plus), area and penalties, from the corners of the own element's face: both ranks of
- * a shared face see the same corners in the same order, so they get the same bits. */
+/* Edges, unit normal (minus to plus), area and penalties, from the corners of the own element's face: both
+ * ranks of a shared face see the same corners in the same order, so they get the same bits. */
 static void set_geometry(rg_domain *d, size_t i, const rg_element *e, const face *f,
                          const rg_interface_material *m) {
     const double *x[3];

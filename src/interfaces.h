@@ -1,4 +1,5 @@
-/* The interfaces of a domain: found from the elements' neighbours, sorted for the sweep, with their geometry. */
+/* The interfaces of a domain: found from the elements' neighbours, sorted for the sweep, with their geometry.
+ */
 #ifndef RG_INTERFACES_H
 #define RG_INTERFACES_H
 

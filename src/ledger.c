@@ -4,8 +4,18 @@
 
 #include "element.h"
 
-enum { KINETIC, BULK, INTERFACE, DISSIPATED = INTERFACE + RG_E_DISSIPATED, EXTERNAL, BROKEN, FAILED, MOMENTUM,
-       ANGULAR = MOMENTUM + 3, SUMS = ANGULAR + 3 };
+enum {
+    KINETIC,
+    BULK,
+    INTERFACE,
+    DISSIPATED = INTERFACE + RG_E_DISSIPATED,
+    EXTERNAL,
+    BROKEN,
+    FAILED,
+    MOMENTUM,
+    ANGULAR = MOMENTUM + 3,
+    SUMS = ANGULAR + 3
+};
 
 enum { CHUNK = 16 }; /* blocks whose energies fit a small buffer */
 
@@ -78,7 +88,8 @@ static void interface_energies(rg_solver *s, size_t begin, size_t end, rg_exact_
         }
         for (int k = 0; k < RG_E_INTERFACE; k++) {
             size_t row = i / RG_LANES - begin;
-            rg_exact_add(&sum[INTERFACE + k], energy[(row * RG_E_INTERFACE + (size_t)k) * RG_LANES + i % RG_LANES]);
+            rg_exact_add(&sum[INTERFACE + k],
+                         energy[(row * RG_E_INTERFACE + (size_t)k) * RG_LANES + i % RG_LANES]);
         }
         if (s->broken[i]) {
             add_areas(sum, s, i);

@@ -1,4 +1,5 @@
-/* The energy ledger: kinetic + bulk + penalty + cohesive + contact + dissipated - external work = constant. */
+/* The energy ledger: kinetic + bulk + penalty + cohesive + contact + dissipated - external work = constant.
+ */
 #ifndef RG_LEDGER_H
 #define RG_LEDGER_H
 
@@ -7,7 +8,8 @@
 typedef struct {
     int64_t step;
     double time;
-    double kinetic, bulk, penalty, cohesive, contact, dissipated, external; /* J; external: work done on the body */
+    double kinetic, bulk, penalty, cohesive, contact, dissipated,
+        external;       /* J; external: work done on the body */
     double total;       /* sum of the parts less the external work (J) */
     double error;       /* change of the total since the start, over the largest energy seen */
     double broken_area; /* of the points that switched (m^2) */
@@ -22,8 +24,9 @@ typedef struct {
     rg_energy last;
 } rg_ledger;
 
-/* Takes stock of the current state, at the time of the displacements. Sums are exact: the same bits on any ranks
- * and threads. Overwrites `scratch` of the solver with the velocity at that time. Collective; returns &l->last. */
+/* Takes stock of the current state, at the time of the displacements. Sums are exact: the same bits on any
+ * ranks and threads. Overwrites `scratch` of the solver with the velocity at that time. Collective; returns
+ * &l->last. */
 const rg_energy *rg_ledger_take(rg_ledger *l, rg_solver *s);
 
 /* Time at which the first point switched (s); infinite if none has. Collective. */

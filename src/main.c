@@ -10,14 +10,15 @@
 #include "revision.h"
 #include "run.h"
 
-static const char usage[] = "usage: rhegma run CASE.yaml [options]     run a case\n"
-                            "       rhegma check CASE.yaml [options]   say what a run would do, without running\n"
-                            "       rhegma --version | --help\n"
-                            "options:\n"
-                            "  --set a.b=value   override a value of the case file (repeatable)\n"
-                            "  -o DIR            output directory (output.dir)\n"
-                            "  -q, --quiet       no progress\n"
-                            "ranks: mpirun -n N rhegma ...; threads: OMP_NUM_THREADS; instruction set: RHEGMA_ISA\n";
+static const char usage[] =
+    "usage: rhegma run CASE.yaml [options]     run a case\n"
+    "       rhegma check CASE.yaml [options]   say what a run would do, without running\n"
+    "       rhegma --version | --help\n"
+    "options:\n"
+    "  --set a.b=value   override a value of the case file (repeatable)\n"
+    "  -o DIR            output directory (output.dir)\n"
+    "  -q, --quiet       no progress\n"
+    "ranks: mpirun -n N rhegma ...; threads: OMP_NUM_THREADS; instruction set: RHEGMA_ISA\n";
 
 typedef struct {
     const char *command, *path;
@@ -109,7 +110,8 @@ static int execute(int argc, char **argv, int rank) {
         return RG_USAGE;
     }
     rg_flush_denormals();
-    int status = strcmp(a.command, "run") == 0 ? rg_run(c, MPI_COMM_WORLD, a.quiet) : rg_check(c, MPI_COMM_WORLD);
+    int status =
+        strcmp(a.command, "run") == 0 ? rg_run(c, MPI_COMM_WORLD, a.quiet) : rg_check(c, MPI_COMM_WORLD);
     rg_case_free(c);
     return status;
 }

@@ -4,8 +4,8 @@
 
 #include <stddef.h>
 
-/* `count` items of `size` bytes, aligned to 64 bytes, zeroed; pages are not touched before their first use, so that
- * the thread which uses them places them. Free with rg_free. */
+/* `count` items of `size` bytes, aligned to 64 bytes, zeroed; pages are not touched before their first use,
+ * so that the thread which uses them places them. Free with rg_free. */
 void *rg_alloc(size_t count, size_t size);
 
 /* Grows or shrinks a block from rg_realloc(NULL, ...); not aligned, for set-up only. Free with rg_free. */
@@ -13,7 +13,8 @@ void *rg_realloc(void *block, size_t count, size_t size);
 
 void rg_free(void *block);
 
-/* Bytes that rg_alloc has given and rg_free has not taken back (address space; untouched pages cost nothing). */
+/* Bytes that rg_alloc has given and rg_free has not taken back (address space; untouched pages cost nothing).
+ */
 size_t rg_alloc_total(void);
 
 #define RG_NEW(type, count) ((type *)rg_alloc((count), sizeof(type)))

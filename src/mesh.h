@@ -13,19 +13,19 @@ enum { RG_MAX_SETS = 64 };
 /* The whole mesh. Held by rank 0 only, during set-up. */
 typedef struct {
     rg_gid vertices, elements;
-    double *x;        /* [vertices][3] m */
-    rg_gid *corner;   /* [elements][4], ascending within an element (see kernels/layout.h) */
+    double *x;         /* [vertices][3] m */
+    rg_gid *corner;    /* [elements][4], ascending within an element (see kernels/layout.h) */
     rg_gid *neighbour; /* [elements][4]: element across local face f (opposite corner f); -1 on the surface */
-    int8_t *face;     /* [elements][4]: the neighbour's local face number; -1 on the surface */
-    int8_t *set;      /* [elements][4]: named set of a surface face; -1 for none */
+    int8_t *face;      /* [elements][4]: the neighbour's local face number; -1 on the surface */
+    int8_t *set;       /* [elements][4]: named set of a surface face; -1 for none */
     int sets;
     char *set_name[RG_MAX_SETS];
 } rg_mesh;
 
-/* Box of nx ny nz cubes of 6 tetrahedra (Kuhn: all around one main diagonal, so that neighbours match), from `origin`
- * to origin + size, surface sets "x-", "x+", "y-", "y+", "z-", "z+". Interior vertices are moved by up to `jitter`
- * times the smallest cell edge in each component, by a counter-based hash of seed and vertex number. Ends the run with
- * a message if an element is turned inside out (names it). */
+/* Box of nx ny nz cubes of 6 tetrahedra (Kuhn: all around one main diagonal, so that neighbours match), from
+ * `origin` to origin + size, surface sets "x-", "x+", "y-", "y+", "z-", "z+". Interior vertices are moved by
+ * up to `jitter` times the smallest cell edge in each component, by a counter-based hash of seed and vertex
+ * number. Ends the run with a message if an element is turned inside out (names it). */
 rg_mesh *rg_mesh_box(const int64_t cells[3], const double origin[3], const double size[3], double jitter,
                      int64_t seed);
 
@@ -34,24 +34,24 @@ void rg_mesh_connect(rg_mesh *mesh);
 
 void rg_mesh_free(rg_mesh *mesh);
 
-/* METIS k-way partition of the dual graph, fixed seed: part[elements] in 0..parts-1, no part empty. Ends the run with
- * a message if there are more parts than elements. */
+/* METIS k-way partition of the dual graph, fixed seed: part[elements] in 0..parts-1, no part empty. Ends the
+ * run with a message if there are more parts than elements. */
 void rg_mesh_partition(const rg_mesh *mesh, int parts, int32_t *part);
 
 /* One element with all that its rank must know of it. */
 typedef struct {
     rg_gid id;
-    double x[4][3];        /* corners (m) */
-    double volume;         /* m^3, > 0 */
-    rg_gid neighbour[4];   /* -1 on the surface */
+    double x[4][3];         /* corners (m) */
+    double volume;          /* m^3, > 0 */
+    rg_gid neighbour[4];    /* -1 on the surface */
     double other_volume[4]; /* the neighbour's volume (m^3); own volume on the surface */
-    int32_t owner[4];      /* rank of the neighbour; -1 on the surface */
-    int8_t face[4];        /* the neighbour's local face; -1 on the surface */
-    int8_t set[4];         /* surface set, -1 for none */
+    int32_t owner[4];       /* rank of the neighbour; -1 on the surface */
+    int8_t face[4];         /* the neighbour's local face; -1 on the surface */
+    int8_t set[4];          /* surface set, -1 for none */
 } rg_element;
 
-/* The part of the mesh that a rank owns, in the order in which it is swept: first the elements that share a face
- * with another rank, then the others, each along a Hilbert curve through the centroids. */
+/* The part of the mesh that a rank owns, in the order in which it is swept: first the elements that share a
+ * face with another rank, then the others, each along a Hilbert curve through the centroids. */
 typedef struct {
     rg_gid total;      /* elements of the whole mesh */
     rg_gid interfaces; /* interior faces of the whole mesh */
@@ -63,8 +63,8 @@ typedef struct {
     char *set_name[RG_MAX_SETS];
 } rg_part;
 
-/* Collective. Rank 0 gives the mesh (others NULL), partitions it for the ranks of `comm` and sends each its part.
- * The caller owns the result. */
+/* Collective. Rank 0 gives the mesh (others NULL), partitions it for the ranks of `comm` and sends each its
+ * part. The caller owns the result. */
 rg_part *rg_part_distribute(const rg_mesh *mesh, MPI_Comm comm);
 
 void rg_part_free(rg_part *part);

@@ -13,14 +13,14 @@
 
 enum { VALUES = 12, CAPACITY = 256 }; /* per probe and sample; samples between two flushes */
 
-static const char *const column[VALUES] = {"ux", "uy",  "uz",  "vx",  "vy",  "vz",
+static const char *const column[VALUES] = {"ux",  "uy",  "uz",  "vx",  "vy",  "vz",
                                            "sxx", "syy", "szz", "syz", "sxz", "sxy"};
 
 struct rg_probes {
     MPI_Comm comm;
     int rank, probes, samples;
-    rg_lid *slot; /* [probes]; -1 where another rank has it */
-    double (*at)[4]; /* [probes]: barycentric coordinates */
+    rg_lid *slot;                 /* [probes]; -1 where another rank has it */
+    double (*at)[4];              /* [probes]: barycentric coordinates */
     double *time, *value, *total; /* [CAPACITY], [CAPACITY][probes][VALUES]; total: on rank 0 */
     FILE *file;
 };

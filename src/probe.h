@@ -6,8 +6,8 @@
 
 typedef struct rg_probes rg_probes;
 
-/* Finds the elements that hold the probes (of several, the one with the lowest number) and, on rank 0, creates
- * dir/history.csv if there are any. Collective. */
+/* Finds the elements that hold the probes (of several, the one with the lowest number) and, on rank 0,
+ * creates dir/history.csv if there are any. Collective. */
 rg_probes *rg_probes_open(const rg_solver *s, const char *dir);
 
 /* Records the current state. Collective only when the buffer is full. */

@@ -33,8 +33,8 @@ typedef struct {
     char failure[400];
 } run;
 
-/* Time step for the current stiffening, in steps of 9 % so that it seldom changes (a leapfrog conserves energy at a
- * constant step). */
+/* Time step for the current stiffening, in steps of 9 % so that it seldom changes (a leapfrog conserves
+ * energy at a constant step). */
 static double step_size(const run *r, double stiffening) {
     double dt = r->dt_reference;
     if (stiffening > STIFFENING_FREE) {
@@ -64,7 +64,8 @@ static void locate_failure(run *r) {
     }
     MPI_Allreduce(MPI_IN_PLACE, x, 3, MPI_DOUBLE, MPI_SUM, s->comm);
     snprintf(r->failure, sizeof r->failure,
-             "the state is not finite (or an element is inside out) at step %" PRId64 ", time %.6g s, dt %.4g s: element %" PRId64
+             "the state is not finite (or an element is inside out) at step %" PRId64
+             ", time %.6g s, dt %.4g s: element %" PRId64
              " at (%.4g, %.4g, %.4g) m; last good output at %.6g s",
              s->step, s->time, s->dt, first, x[0], x[1], x[2], r->good_time);
 }
@@ -97,7 +98,8 @@ static void output(run *r) {
                  "the energy error %.3g passed the limit %.3g (output.energy_limit) at step %" PRId64
                  ", time %.6g s; the time step is set by element %" PRId64
                  "; last good output at %.6g s; a smaller time.safety may help",
-                 e->error, r->input->output.energy_limit, e->step, e->time, r->solver->limiting, r->good_time);
+                 e->error, r->input->output.energy_limit, e->step, e->time, r->solver->limiting,
+                 r->good_time);
     } else {
         r->good_time = e->time;
     }

@@ -7,8 +7,9 @@
 
 #include "case.h"
 
-/* Runs the case. Returns the exit status: RG_OK, or RG_FAILURE when the run stopped early because its energy or its
- * state went wrong (a message says where). `quiet` leaves out progress and summary on the terminal. Collective. */
+/* Runs the case. Returns the exit status: RG_OK, or RG_FAILURE when the run stopped early because its energy
+ * or its state went wrong (a message says where). `quiet` leaves out progress and summary on the terminal.
+ * Collective. */
 int rg_run(const rg_case *c, MPI_Comm comm, bool quiet);
 
 /* Prints what rg_run would do, without running. Collective. */

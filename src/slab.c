@@ -73,7 +73,8 @@ rg_slab *rg_slab_make(const rg_domain *d, rg_gid total, MPI_Comm comm) {
     MPI_Alltoall(s->send, 1, MPI_INT, s->receive, 1, MPI_INT, comm);
     offsets(s->send, s->send_at, ranks);
     offsets(s->receive, s->receive_at, ranks);
-    MPI_Alltoallv(id, s->send, s->send_at, MPI_INT64_T, arrived, s->receive, s->receive_at, MPI_INT64_T, comm);
+    MPI_Alltoallv(id, s->send, s->send_at, MPI_INT64_T, arrived, s->receive, s->receive_at, MPI_INT64_T,
+                  comm);
     for (size_t i = 0; i < s->count; i++) {
         s->place[i] = (size_t)(arrived[i] - s->first);
     }

@@ -1,16 +1,16 @@
-/* From the partition to the global order: every rank gets a contiguous slab of the global element numbers, so that
- * what is written does not depend on the partition. */
+/* From the partition to the global order: every rank gets a contiguous slab of the global element numbers, so
+ * that what is written does not depend on the partition. */
 #ifndef RG_SLAB_H
 #define RG_SLAB_H
 
 #include "domain.h"
 
 typedef struct {
-    rg_gid first;       /* this rank's slab */
+    rg_gid first; /* this rank's slab */
     size_t count;
-    size_t own;         /* own elements, in the order of `slot` */
-    rg_lid *slot;       /* [own]: slots of the own elements by ascending global number */
-    size_t *place;      /* [count]: row of the slab that each received record belongs to */
+    size_t own;    /* own elements, in the order of `slot` */
+    rg_lid *slot;  /* [own]: slots of the own elements by ascending global number */
+    size_t *place; /* [count]: row of the slab that each received record belongs to */
     int *send, *send_at, *receive, *receive_at; /* [ranks]: records */
     MPI_Comm comm;
 } rg_slab;

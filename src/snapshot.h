@@ -13,7 +13,8 @@ typedef struct {
     double *record, *sorted; /* one field of the own elements, and of the slab */
 } rg_snapshots;
 
-/* Opens the field file in the case's output directory; does nothing where no fields are asked for. Collective. */
+/* Opens the field file in the case's output directory; does nothing where no fields are asked for.
+ * Collective. */
 rg_snapshots *rg_snapshots_open(const rg_solver *s);
 
 /* Writes the current state. Collective. */

@@ -8,10 +8,11 @@
 #include "error.h"
 #include "mem.h"
 
-/* Elements of a tile: about 0.5 MB of fields, so that the interfaces inside find their tractions in the cache. */
+/* Elements of a tile: about 0.5 MB of fields, so that the interfaces inside find their tractions in the
+ * cache. */
 enum { TILE_ELEMENTS = 256 };
 
-/* ---- Set-up --------------------------------------------------------------------------------------------------- */
+/* ---- Set-up ---- */
 
 static size_t displacement_index(int32_t link, int k) {
     return rg_node_index((size_t)link / RG_FACES, rg_face_node[link % RG_FACES][k / 3], k % 3);
@@ -40,8 +41,8 @@ static void allocate_fields(rg_solver *s) {
     s->iforce = RG_NEW(double, faces *RG_IFORCE_BLOCK);
     s->crack = RG_NEW(double, faces *RG_CRACK_BLOCK);
     s->cracked = RG_NEW(uint8_t, d->blocks + 1);
-    s->broken = RG_NEW(uint8_t, faces *RG_LANES);
-    s->unlinked = RG_NEW(uint8_t, faces *RG_LANES);
+    s->broken = RG_NEW(uint8_t, faces * RG_LANES);
+    s->unlinked = RG_NEW(uint8_t, faces * RG_LANES);
     s->active = RG_NEW(uint8_t, faces);
 }
 
@@ -77,21 +78,22 @@ static void bind_kernels(rg_solver *s) {
                              .force = s->force,
                              .traction = s->traction,
                              .stiffening = s->stiffening};
-    s->interface = (rg_interface_args){.law = {.strength = breaks ? c->interface.strength : INFINITY,
-                                               .opening = breaks ? 2 * c->interface.energy / c->interface.strength : 1,
-                                               .beta = c->interface.beta,
-                                               .total = c->interface.activation == RG_ACTIVATION_TOTAL,
-                                               .flux = c->interface.contact == RG_CONTACT_FLUX},
-                                       .u = s->u,
-                                       .traction = s->traction,
-                                       .side = {d->side[0], d->side[1]},
-                                       .geom = d->igeom,
-                                       .broken = s->broken,
-                                       .unlinked = s->unlinked,
-                                       .active = s->active,
-                                       .crack = s->crack,
-                                       .crack_stride = RG_CRACK_BLOCK,
-                                       .force = s->iforce};
+    s->interface =
+        (rg_interface_args){.law = {.strength = breaks ? c->interface.strength : INFINITY,
+                                    .opening = breaks ? 2 * c->interface.energy / c->interface.strength : 1,
+                                    .beta = c->interface.beta,
+                                    .total = c->interface.activation == RG_ACTIVATION_TOTAL,
+                                    .flux = c->interface.contact == RG_CONTACT_FLUX},
+                            .u = s->u,
+                            .traction = s->traction,
+                            .side = {d->side[0], d->side[1]},
+                            .geom = d->igeom,
+                            .broken = s->broken,
+                            .unlinked = s->unlinked,
+                            .active = s->active,
+                            .crack = s->crack,
+                            .crack_stride = RG_CRACK_BLOCK,
+                            .force = s->iforce};
     s->update = (rg_update_args){.density = c->material.density,
                                  .lumped = c->mass == RG_MASS_LUMPED,
                                  .geom = d->geom,
@@ -137,7 +139,7 @@ rg_solver *rg_solver_make(const rg_case *input, MPI_Comm comm) {
     return s;
 }
 
-/* ---- Passes (inside a parallel region) ------------------------------------------------------------------------ */
+/* ---- Passes (inside a parallel region) ---- */
 
 /* Tells the elements beside broken points, so that the lift leaves those points out. */
 static void mark_cracked(rg_solver *s, size_t begin, size_t end) {
@@ -247,7 +249,7 @@ void rg_solver_forces(rg_solver *s) {
     pass(s, false);
 }
 
-/* ---- Time ----------------------------------------------------------------------------------------------------- */
+/* ---- Time ---- */
 
 double rg_solver_stiffening(rg_solver *s) {
     double local = largest(s->tile_stiffening, s->domain->tiles), global;
@@ -325,8 +327,9 @@ void rg_solver_free(rg_solver *s) {
     if (s == NULL) {
         return;
     }
-    void *blocks[] = {s->u,      s->velocity,   s->scratch,         s->force,   s->traction, s->iforce,  s->crack,
-                      s->stiffening, s->tile_stiffening, s->cracked, s->broken,   s->unlinked, s->active};
+    void *blocks[] = {s->u,      s->velocity, s->scratch,    s->force,           s->traction,
+                      s->iforce, s->crack,    s->stiffening, s->tile_stiffening, s->cracked,
+                      s->broken, s->unlinked, s->active};
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) {
         rg_free(blocks[i]);
     }

@@ -31,11 +31,11 @@ typedef struct {
     rg_interface_args interface;
     rg_update_args update;
 
-    double omega2;        /* largest squared frequency of any state a face can take (1/s^2) */
-    rg_gid limiting;      /* element that sets it */
+    double omega2;   /* largest squared frequency of any state a face can take (1/s^2) */
+    rg_gid limiting; /* element that sets it */
     const char *limiting_state;
-    double pass_seconds;  /* of one evaluation of all forces, as measured at set-up */
-    double time, dt;      /* of the current state (s); dt is the step that led to it */
+    double pass_seconds; /* of one evaluation of all forces, as measured at set-up */
+    double time, dt;     /* of the current state (s); dt is the step that led to it */
     int64_t step;
 } rg_solver;
 
@@ -54,8 +54,8 @@ void rg_solver_forces(rg_solver *s);
 /* Largest stiffening over all ranks since the last evaluation of forces; not finite if the state is not. */
 double rg_solver_stiffening(rg_solver *s);
 
-/* Velocity at the time of the displacements into `scratch` (they are half a step apart), with the constraints;
- * returns the work they do in this half step (J), as an exact sum of this rank. */
+/* Velocity at the time of the displacements into `scratch` (they are half a step apart), with the
+ * constraints; returns the work they do in this half step (J), as an exact sum of this rank. */
 void rg_solver_velocity_now(rg_solver *s, rg_exact_sum *work);
 
 /* The same for one block of elements, without the work. Not collective. */

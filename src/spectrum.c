@@ -6,13 +6,15 @@
 #include "hash.h"
 #include "mem.h"
 
-enum { MAX_ITERATIONS = 80, CHECK_EVERY = 8, POWER_ITERATIONS = 120 };
+enum { MAX_ITERATIONS = 80, CHECK_EVERY = 8, POWER_ITERATIONS = 60 };
 
-#define TOLERANCE 1e-4 /* relative change of omega^2 between two checks */
-#define MARGIN    1e-3 /* relative, added to omega^2: the iteration approaches it from below */
+#define TOLERANCE 1e-2 /* relative change of omega^2 between two checks */
+#define MARGIN                                                                                               \
+    2e-2 /* relative, added to omega^2: the iteration approaches it from below, and faces closed here and    \
+          * there exceed all closed by up to 1 % (measured on cubes of 6 tets) */
 #define AMPLITUDE 1e-7 /* displacement over element height: linear to 1e-6, clear of rounding to 1e-9 */
 
-/* ---- Vectors: arrays laid out like the velocity ----------------------------------------------------------------- */
+/* ---- Vectors: arrays laid out like the velocity ---- */
 
 static size_t values(const rg_solver *s) {
     return s->domain->blocks * RG_NODE_BLOCK;
@@ -79,7 +81,7 @@ static void randomize(rg_solver *s, double *q) {
     }
 }
 
-/* ---- Operator ------------------------------------------------------------------------------------------------- */
+/* ---- Operator ---- */
 
 typedef struct {
     rg_solver *s;
@@ -140,7 +142,8 @@ static void swap(double **a, double **b) {
     *b = t;
 }
 
-/* One step: q_j in `q`, q_{j-1} in `before`; leaves q_{j+1} in `q` and q_j in `before`. False if the space is full. */
+/* One step: q_j in `q`, q_{j-1} in `before`; leaves q_{j+1} in `q` and q_j in `before`. False if the space is
+ * full. */
 static bool lanczos_step(const operator_t *op, lanczos *z, int j, double **q, double **before) {
     rg_solver *s = op->s;
     combine(s, j > 0 ? -z->beta[j - 1] : 0, *before, 0, *q);
@@ -194,10 +197,10 @@ static double power_eigenvalue(const operator_t *op) {
     return largest;
 }
 
-/* ---- The element that limits ---------------------------------------------------------------------------------- */
+/* ---- The element that limits ---- */
 
-/* Eigenvector of the tridiagonal matrix for its largest eigenvalue, by recurrence (well behaved for an extreme one
- * that has converged). */
+/* Eigenvector of the tridiagonal matrix for its largest eigenvalue, by recurrence (well behaved for an
+ * extreme one that has converged). */
 static void tridiagonal_vector(const lanczos *z, double theta, double y[MAX_ITERATIONS]) {
     y[0] = 1;
     for (int j = 0; j + 1 < z->n; j++) {
@@ -235,6 +238,10 @@ static rg_gid dominant_element(rg_solver *s, const double *x) {
 /* Repeats the iteration, which needs no stored vectors, and sums the Ritz vector. */
 static rg_gid limiting_element(const operator_t *op, const lanczos *known, double theta) {
     rg_solver *s = op->s;
+    if (known->n == 0) { /* power iteration: its last vector is the eigenvector */
+        power_eigenvalue(op);
+        return dominant_element(s, s->velocity);
+    }
     double y[MAX_ITERATIONS], *q = s->velocity, *before = s->scratch;
     double *ritz = RG_NEW(double, values(s));
     lanczos again = *known;
@@ -251,24 +258,17 @@ static rg_gid limiting_element(const operator_t *op, const lanczos *known, doubl
     return id;
 }
 
-/* ---- States of the faces -------------------------------------------------------------------------------------- */
+/* ---- States of the faces ---- */
 
-typedef enum { INTACT, CLOSED, MIXED } state;
-static const char *const state_name[] = {"intact", "closed", "partly closed"};
+typedef enum { INTACT, CLOSED, STATES } state;
+static const char *const state_name[] = {"intact", "broken and closed"};
 
-static bool is_closed(const rg_solver *s, size_t i, state which) {
-    if (which != MIXED) {
-        return which == CLOSED;
-    }
-    int32_t minus = s->domain->side[0][i];
-    return rg_hash(1, (uint64_t)(RG_FACES * s->domain->id[minus / RG_FACES] + minus % RG_FACES)) & 1;
-}
-
-/* Puts the faces into a state, or (INTACT) back as they were. `shared` is one block of crack state for all. */
+/* Puts the faces into a state, or (INTACT) back as they were. `shared` is one block of crack state for all.
+ */
 static void set_state(rg_solver *s, state which, double *shared) {
     const rg_domain *d = s->domain;
     for (size_t i = 0; i < d->iblocks * RG_LANES; i++) {
-        s->broken[i] = s->unlinked[i] = is_closed(s, i, which) ? (1 << RG_POINTS) - 1 : 0;
+        s->broken[i] = s->unlinked[i] = which == CLOSED ? (1 << RG_POINTS) - 1 : 0;
     }
     memset(s->active, which != INTACT, d->iblocks);
     memset(s->cracked, which != INTACT, d->blocks);
@@ -314,22 +314,23 @@ void rg_spectrum(rg_solver *s) {
     const rg_material *m = &s->bulk.material;
     operator_t op = {.s = s, .height = smallest_height(s)};
     op.scale = (m->lambda + 2 * m->mu) / m->density / (op.height * op.height);
-    double *shared = RG_NEW(double, RG_CRACK_BLOCK);
+    double *shared = RG_NEW(double, RG_CRACK_BLOCK), worst = 0;
     bool closes = s->input->interface.law != RG_LAW_NONE && s->input->interface.contact != RG_CONTACT_FLUX;
-    int states = closes ? 3 : 1;
-    s->omega2 = 0;
-    for (int which = 0; which < states; which++) {
-        lanczos z = {0};
-        set_state(s, (state)which, shared);
+    lanczos run[STATES] = {{0}};
+    state limiting = INTACT;
+    for (state which = INTACT; which < (closes ? STATES : 1); which++) {
+        set_state(s, which, shared);
         bool symmetric = s->bulk.lift || which == CLOSED;
-        double theta = symmetric ? lanczos_eigenvalue(&op, &z) : power_eigenvalue(&op);
-        if (theta * op.scale * (1 + MARGIN) > s->omega2) {
-            s->omega2 = theta * op.scale * (1 + MARGIN);
-            s->limiting_state = state_name[which];
-            s->limiting =
-                symmetric ? limiting_element(&op, &z, theta) : dominant_element(s, s->velocity);
+        double theta = symmetric ? lanczos_eigenvalue(&op, &run[which]) : power_eigenvalue(&op);
+        if (theta > worst) {
+            worst = theta;
+            limiting = which;
         }
     }
+    s->omega2 = worst * op.scale * (1 + MARGIN);
+    s->limiting_state = state_name[limiting];
+    set_state(s, limiting, shared);
+    s->limiting = limiting_element(&op, &run[limiting], worst);
     set_state(s, INTACT, shared);
     s->interface = saved;
     rest(s);

@@ -90,7 +90,8 @@ void rg_summary_write(rg_summary *m, rg_solver *s, const rg_ledger *l, const rg_
 }
 
 void rg_summary_print(const rg_summary *m, const rg_solver *s, const rg_ledger *l, FILE *out) {
-    fprintf(out, "set-up %.2f s, time loop %.2f s, output %.2f s: %.3g us of core time per element and step\n",
+    fprintf(out,
+            "set-up %.2f s, time loop %.2f s, output %.2f s: %.3g us of core time per element and step\n",
             m->setup_seconds, m->loop_seconds, m->output_seconds, m->us_per_tet_step);
     fprintf(out, "energy error %.2g of the largest energy, %.4g J\n", l->worst, l->largest);
     if (isfinite(m->first_fracture)) {

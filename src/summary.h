@@ -11,7 +11,8 @@ typedef struct {
     double loop_seconds;   /* wall time of the time loop without output */
     double output_seconds; /* wall time of output within the time loop */
     const char *failure;   /* "" where the run reached its end */
-    double us_per_tet_step, first_fracture; /* filled by rg_summary_write; us of core time; s, infinite for none */
+    double us_per_tet_step,
+        first_fracture; /* filled by rg_summary_write; us of core time; s, infinite for none */
 } rg_summary;
 
 /* Collective; rank 0 writes summary.json in the output directory. */
