@@ -279,7 +279,7 @@ static __attribute__((noinline)) void damaged(interface *s) {
     vec3 n[RG_POINTS];
     rg_vec area[RG_POINTS];
     mid_surface(s, n, area);
-    uint8_t broken[RG_VLEN], unlinked[RG_VLEN], any = 0;
+    uint8_t broken[RG_VLEN], unlinked[RG_VLEN] = {0}, any = 0;
     memcpy(broken, args->broken + first, sizeof broken);
     for (int q = 0; q < RG_POINTS; q++) {
         rg_mask cracked = bit_mask(broken, q);

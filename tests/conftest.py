@@ -1,0 +1,113 @@
+"""Runs the built program for the system tests. A finished run is kept for the session: asking for it again is free.
+
+The program is the one that environment variable RHEGMA names, else build/rhegma of this tree."""
+
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+import tempfile
+
+import h5py
+import numpy as np
+import pytest
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+PROGRAM = pathlib.Path(os.environ.get("RHEGMA", ROOT / "build" / "rhegma")).resolve()
+BENCH = ROOT / "bench" / "cases"
+CASES = ROOT / "tests" / "cases"
+TIMEOUT = 300  # seconds: a run that hangs is a failure
+ENVIRONMENT = {
+    "OMPI_ALLOW_RUN_AS_ROOT": "1",
+    "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
+    "OMPI_MCA_rmaps_base_oversubscribe": "1",
+    "OMPI_MCA_mpi_yield_when_idle": "1",
+    "OMP_WAIT_POLICY": "passive",
+}
+
+
+def launch(*arguments, ranks=1, threads=1, cwd=None, **environment):
+    """The program with these arguments, to its end: a CompletedProcess with text."""
+    mpirun = ["mpirun", "--bind-to", "none", "-n", str(ranks)] if ranks > 1 else []
+    env = {**os.environ, **ENVIRONMENT, "OMP_NUM_THREADS": str(threads), **environment}
+    return subprocess.run([*mpirun, str(PROGRAM), *map(str, arguments)], env=env, cwd=cwd, capture_output=True,
+                          text=True, timeout=TIMEOUT)
+
+
+def overrides(sets):
+    """{"a.b": value} as command-line options; JSON is YAML."""
+    return [word for key, value in sets.items() for word in ("--set", f"{key}={json.dumps(value)}")]
+
+
+class Run:
+    """A run that has ended: its streams and what it left in its output directory."""
+
+    def __init__(self, directory, process):
+        self.dir = directory
+        self.stdout, self.stderr = process.stdout, process.stderr
+
+    @property
+    def summary(self):
+        return json.loads((self.dir / "summary.json").read_text())
+
+    @property
+    def energy(self):
+        return np.atleast_1d(np.genfromtxt(self.dir / "energy.csv", delimiter=",", names=True))
+
+    @property
+    def history(self):
+        return np.atleast_1d(np.genfromtxt(self.dir / "history.csv", delimiter=",", names=True))
+
+    def frames(self):
+        """Every output moment: {"time", field name, "crack/" + field name: array}."""
+        with h5py.File(self.dir / "fields.h5") as file:
+            return [frame(file["frames"][name]) for name in sorted(file["frames"])]
+
+    def points(self):
+        """Reference positions of the nodes, in the order of the nodal fields."""
+        with h5py.File(self.dir / "fields.h5") as file:
+            return file["mesh/points"][:]
+
+
+def frame(group):
+    values = {"time": group.attrs["time"]}
+    group.visititems(lambda name, node: values.update({name: node[:]}) if isinstance(node, h5py.Dataset) else None)
+    return values
+
+
+@pytest.fixture(scope="session")
+def scratch(request):
+    """A directory that is removed at the end, unless a test failed."""
+    directory = pathlib.Path(tempfile.mkdtemp(prefix="rhegma-tests-"))
+    yield directory
+    if request.session.testsfailed == 0:
+        shutil.rmtree(directory)
+
+
+@pytest.fixture(scope="session")
+def run(scratch):
+    """run(case, ranks=1, threads=1, sets={"a.b": value}, expect=0, **environment): a finished Run."""
+    finished = {}
+
+    def go(case, ranks=1, threads=1, sets=None, expect=0, **environment):
+        arguments = ["run", case, "-q", *overrides(sets or {})]
+        key = (ranks, threads, *arguments, *sorted(environment.items()))
+        if key not in finished:
+            directory = scratch / f"{len(finished):03d}-{pathlib.Path(case).stem}"
+            process = launch(*arguments, "-o", directory, ranks=ranks, threads=threads, **environment)
+            assert process.returncode == expect, process.stderr
+            finished[key] = Run(directory, process)
+        return finished[key]
+
+    return go
+
+
+@pytest.fixture(scope="session")
+def spall(run):
+    return run(BENCH / "spall.yaml", threads=2)
+
+
+@pytest.fixture(scope="session")
+def spall_run(spall):
+    return spall.dir
