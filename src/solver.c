@@ -219,6 +219,17 @@ static void finish(rg_halo *h, double *field) {
     rg_halo_unpack(h, field);
 }
 
+/* The largest stiffening of all ranks, for the next time step: known when the pass is over. */
+static void start_stiffening(rg_solver *s) {
+#pragma omp master
+    {
+        double here = largest(s->tile_stiffening, s->domain->tiles);
+        s->stiffening_here = isfinite(here) ? here : INFINITY;
+        MPI_Iallreduce(&s->stiffening_here, &s->stiffening_anywhere, 1, MPI_DOUBLE, MPI_MAX, s->comm,
+                       &s->stiffening_request);
+    }
+}
+
 /* One evaluation of all forces, preceded by the update of velocities and displacements if `update`. The first
  * message (traces of the displacement) runs under the interior elements, the second (tractions) under the
  * interfaces between tiles. */
@@ -239,10 +250,12 @@ static void pass(rg_solver *s, bool update) {
         sweep_tiles(s, 0, d->boundary_tiles, NULL);
         rg_halo_pack(s->halo_t, s->traction);
         start(s->halo_t);
+        start_stiffening(s);
         sweep_interfaces(s, d->between_begin, d->shared_begin, s->halo_t);
         finish(s->halo_t, s->traction);
         sweep_interfaces(s, d->shared_begin, d->iblocks, NULL);
     }
+    MPI_Wait(&s->stiffening_request, MPI_STATUS_IGNORE);
 }
 
 void rg_solver_forces(rg_solver *s) {
@@ -250,13 +263,6 @@ void rg_solver_forces(rg_solver *s) {
 }
 
 /* ---- Time ---- */
-
-double rg_solver_stiffening(rg_solver *s) {
-    double local = largest(s->tile_stiffening, s->domain->tiles), global;
-    local = isfinite(local) ? local : INFINITY;
-    MPI_Allreduce(&local, &global, 1, MPI_DOUBLE, MPI_MAX, s->comm);
-    return global;
-}
 
 static void set_initial(rg_solver *s) {
     const rg_case *c = s->input;

@@ -24,6 +24,8 @@ typedef struct {
     double *force, *traction, *iforce, *crack;
     double *stiffening; /* [own blocks][lane] */
     double *tile_stiffening;
+    double stiffening_here, stiffening_anywhere; /* largest on this rank, on all ranks; infinite if not finite */
+    MPI_Request stiffening_request;
     uint8_t *cracked, *broken, *unlinked, *active;
     rg_constraints *constraints;
 
@@ -50,9 +52,6 @@ void rg_solver_step(rg_solver *s, double dt);
 
 /* All forces of the current displacement: halo, bulk, interfaces. Collective. */
 void rg_solver_forces(rg_solver *s);
-
-/* Largest stiffening over all ranks since the last evaluation of forces; not finite if the state is not. */
-double rg_solver_stiffening(rg_solver *s);
 
 /* Velocity at the time of the displacements into `scratch` (they are half a step apart), with the
  * constraints; returns the work they do in this half step (J), as an exact sum of this rank. */
