@@ -49,14 +49,18 @@ RG_INLINE rg_int rg_load_int(const int32_t *p) {
     return x;
 }
 
-/* base[index], lane by lane. */
+/* base[index], lane by lane. Plain loads: measured a quarter faster for the whole step than the gather
+ * instruction on AMD Zen 5, and free of the microcode penalty that gathers carry on many Intel processors. */
 RG_INLINE rg_vec rg_gather(const double *base, rg_int index) {
+    int32_t i[RG_VLEN];
+    memcpy(i, &index, sizeof i);
 #if RG_VLEN == 8
-    return (rg_vec)_mm512_i32gather_pd((__m256i)index, base, 8);
+    return (rg_vec){base[i[0]], base[i[1]], base[i[2]], base[i[3]],
+                    base[i[4]], base[i[5]], base[i[6]], base[i[7]]};
 #elif RG_VLEN == 4
-    return (rg_vec)_mm256_i32gather_pd(base, (__m128i)index, 8);
+    return (rg_vec){base[i[0]], base[i[1]], base[i[2]], base[i[3]]};
 #else
-    return (rg_vec){base[index[0]], base[index[1]]};
+    return (rg_vec){base[i[0]], base[i[1]]};
 #endif
 }
 
