@@ -2,7 +2,7 @@
  * that a kernel reads like its equations. A block of RG_LANES lanes is RG_LANES / RG_VLEN vectors.
  *
  * GCC's and Clang's vector types do the arithmetic; intrinsics stand only where the language has no word
- * (gather, table look-up, maximum). Arrays of vectors are passed without const: C17 does not convert pointers
+ * (table look-up, maximum, square root). Arrays of vectors are passed without const: C17 does not convert pointers
  * to arrays. */
 #ifndef RG_VEC_H
 #define RG_VEC_H

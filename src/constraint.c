@@ -260,13 +260,24 @@ void rg_constraints_apply(rg_constraints *k, size_t tile, double *velocity, doub
     }
 }
 
+/* First entry of a slot not below `slot`: entries are in the order of the slots. */
+static size_t first_entry(const rg_constraints *k, size_t slot) {
+    size_t low = 0, high = k->entries;
+    while (low < high) {
+        size_t middle = low + (high - low) / 2;
+        if ((size_t)k->entry[middle].slot < slot) {
+            low = middle + 1;
+        } else {
+            high = middle;
+        }
+    }
+    return low;
+}
+
 void rg_constraints_peek(rg_constraints *k, size_t begin, size_t end, double time, double *velocity,
                          rg_exact_sum *work) {
-    for (size_t n = 0; n < k->entries; n++) {
+    for (size_t n = first_entry(k, begin); n < k->entries && (size_t)k->entry[n].slot < end; n++) {
         const entry *e = &k->entry[n];
-        if ((size_t)e->slot < begin || (size_t)e->slot >= end) {
-            continue;
-        }
         double target[RG_NODES], change[RG_NODES];
         for (int i = 0; i < e->pattern->constrained; i++) {
             target[i] = k->varies ? velocity_at(k, e, i, time) : e->target[i];

@@ -86,7 +86,8 @@ static bool output_due(run *r) {
 
 static bool done(const run *r) {
     const rg_case *c = r->input;
-    return r->solver->time >= c->time.end || (c->time.steps > 0 && r->solver->step >= c->time.steps);
+    return r->solver->time >= c->time.end * (1 - 1e-12) ||
+           (c->time.steps > 0 && r->solver->step >= c->time.steps);
 }
 
 /* Ledger, fields and progress of the current state. */
