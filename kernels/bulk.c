@@ -83,7 +83,7 @@ RG_INLINE void gather_moments(element *e) {
     for (int f = 0; f < RG_FACES; f++) {
         vec3 jump[RG_FNODES];
         const int32_t *link = e->args->neighbour + e->block * RG_LINK_BLOCK + f * RG_LANES + e->lane;
-        rg_gather_face(e->args->u, rg_load_int(link), jump);
+        rg_gather_face(e->args->u, link, jump);
         for (int a = 0; a < RG_FNODES; a++) {
             for (int c = 0; c < 3; c++) {
                 jump[a][c] -= node(e, rg_face_node[f][a], c);

@@ -27,8 +27,8 @@ RG_INLINE rg_vec geometry(const interface *s, int k) {
     return rg_load(s->geom + k * RG_LANES);
 }
 
-RG_INLINE rg_int side(const interface *s, int k) {
-    return rg_load_int(s->args->side[k] + s->block * RG_LANES + s->lane);
+RG_INLINE const int32_t *side(const interface *s, int k) {
+    return s->args->side[k] + s->block * RG_LANES + s->lane;
 }
 
 RG_INLINE void load_interface(interface *s, const rg_interface_args *args, size_t block, int lane) {
@@ -58,16 +58,19 @@ RG_INLINE void jump_at_points(interface *s) {
 
 /* <P> N at the points, from the corner tractions of both sides (each with its own outward normal). */
 RG_INLINE void mean_traction(interface *s) {
-    rg_int link[2] = {side(s, 0), side(s, 1)}, base[2];
+    rg_lanes at[2];
     for (int k = 0; k < 2; k++) {
-        base[k] =
-            rg_lane_offset(link[k] >> 2, RG_TRACTION_BLOCK) + (link[k] & 3) * (RG_FCORNERS * 3 * RG_LANES);
+        for (int l = 0; l < RG_VLEN; l++) {
+            uint32_t link = (uint32_t)side(s, k)[l];
+            at[k].lane[l] = rg_first_value(s->args->traction, link / RG_FACES, RG_TRACTION_BLOCK) +
+                            link % RG_FACES * (RG_FCORNERS * 3 * RG_LANES);
+        }
     }
     for (int c = 0; c < 3; c++) {
         rg_vec t[RG_FCORNERS];
         for (int i = 0; i < RG_FCORNERS; i++) {
-            const double *from = s->args->traction + (i * 3 + c) * RG_LANES;
-            t[i] = 0.5 * (rg_gather(from, base[0]) - rg_gather(from, base[1]));
+            int row = (i * 3 + c) * RG_LANES;
+            t[i] = 0.5 * (rg_gather(&at[0], row) - rg_gather(&at[1], row));
         }
         for (int q = 0; q < RG_POINTS; q++) {
             const rg_tri_rule *n = &rg_tri[q / 3];

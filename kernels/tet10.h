@@ -37,24 +37,22 @@ static const rg_tri_rule rg_tri[2] = {RG_TRI_RULE(RG_TRI_P0, RG_TRI_W0), RG_TRI_
 /* Face node (3-5) on the edge facing face corner i. */
 static const int rg_facing[3] = {4, 5, 3};
 
-/* Offsets of face node a within a block of nodal values, for local faces 0-3 (padded to eight). */
-#define RG_NODE_ROW(n) ((n)*3 * RG_LANES)
-static const int32_t rg_face_offset[RG_FNODES][8] = {
-    {RG_NODE_ROW(1), RG_NODE_ROW(0), RG_NODE_ROW(0), RG_NODE_ROW(0)},
-    {RG_NODE_ROW(2), RG_NODE_ROW(2), RG_NODE_ROW(1), RG_NODE_ROW(1)},
-    {RG_NODE_ROW(3), RG_NODE_ROW(3), RG_NODE_ROW(3), RG_NODE_ROW(2)},
-    {RG_NODE_ROW(5), RG_NODE_ROW(6), RG_NODE_ROW(4), RG_NODE_ROW(4)},
-    {RG_NODE_ROW(9), RG_NODE_ROW(9), RG_NODE_ROW(8), RG_NODE_ROW(5)},
-    {RG_NODE_ROW(8), RG_NODE_ROW(7), RG_NODE_ROW(7), RG_NODE_ROW(6)},
-};
-
-/* Six nodal vectors of the faces that `link` (4 * element + face) names. */
-RG_INLINE void rg_gather_face(const double *u, rg_int link, rg_vec out[RG_FNODES][3]) {
-    rg_int base = rg_lane_offset(link >> 2, RG_NODE_BLOCK), face = link & 3;
+/* Six nodal vectors of the faces that `link` (4 * element + face) names, one face per lane. */
+RG_INLINE void rg_gather_face(const double *u, const int32_t link[RG_VLEN], rg_vec out[RG_FNODES][3]) {
+    const double *element[RG_VLEN];
+    const int *node[RG_VLEN];
+    for (int l = 0; l < RG_VLEN; l++) {
+        uint32_t side = (uint32_t)link[l];
+        element[l] = rg_first_value(u, side / RG_FACES, RG_NODE_BLOCK);
+        node[l] = rg_face_node[side % RG_FACES];
+    }
     for (int a = 0; a < RG_FNODES; a++) {
-        rg_int index = base + rg_lookup4(rg_face_offset[a], face);
+        rg_lanes at;
+        for (int l = 0; l < RG_VLEN; l++) {
+            at.lane[l] = element[l] + node[l][a] * (3 * RG_LANES);
+        }
         for (int c = 0; c < 3; c++) {
-            out[a][c] = rg_gather(u + c * RG_LANES, index);
+            out[a][c] = rg_gather(&at, c * RG_LANES);
         }
     }
 }

@@ -9,20 +9,33 @@
 static const int edge_corner[6][2] = {{0, 1}, {1, 2}, {0, 2}, {0, 3}, {1, 3}, {2, 3}};
 static const int edge_opposite[6] = {5, 3, 4, 1, 2, 0};
 
-/* Nodal force of one component: bulk first, then the faces in their local order. The order is the mesh's, so
- * the sum has the same bits however the mesh is distributed. */
-RG_INLINE void sum_force(const rg_update_args *args, size_t block, int lane, int c, rg_vec f[RG_NODES]) {
+/* Adds the interface forces of face k to the nodal forces. */
+RG_INLINE void add_face(const rg_update_args *args, const int32_t link[RG_VLEN], int k,
+                        rg_vec f[3][RG_NODES]) {
+    rg_lanes at;
+    rg_vec sign;
+    for (int l = 0; l < RG_VLEN; l++) {
+        at.lane[l] = rg_first_value(args->iforce, (uint32_t)link[l] / 2, RG_IFORCE_BLOCK);
+        sign[l] = 1 - 2 * (link[l] & 1);
+    }
+    for (int a = 0; a < RG_FNODES; a++) {
+        for (int c = 0; c < 3; c++) {
+            f[c][rg_face_node[k][a]] += sign * rg_gather(&at, (a * 3 + c) * RG_LANES);
+        }
+    }
+}
+
+/* Nodal forces: bulk first, then the faces in their local order. The order is the mesh's, so the sum has the
+ * same bits however the mesh is distributed. */
+RG_INLINE void sum_force(const rg_update_args *args, size_t block, int lane, rg_vec f[3][RG_NODES]) {
     const double *force = args->force + block * RG_NODE_BLOCK + lane;
     for (int n = 0; n < RG_NODES; n++) {
-        f[n] = rg_load(force + (n * 3 + c) * RG_LANES);
+        for (int c = 0; c < 3; c++) {
+            f[c][n] = rg_load(force + (n * 3 + c) * RG_LANES);
+        }
     }
     for (int k = 0; k < RG_FACES; k++) {
-        rg_int link = rg_load_int(args->interface + block * RG_LINK_BLOCK + k * RG_LANES + lane);
-        rg_int base = rg_lane_offset(link >> 1, RG_IFORCE_BLOCK);
-        rg_vec sign = __builtin_convertvector(1 - 2 * (link & 1), rg_vec);
-        for (int a = 0; a < RG_FNODES; a++) {
-            f[rg_face_node[k][a]] += sign * rg_gather(args->iforce + (a * 3 + c) * RG_LANES, base);
-        }
+        add_face(args, args->interface + block * RG_LINK_BLOCK + k * RG_LANES + lane, k, f);
     }
 }
 
@@ -59,17 +72,17 @@ RG_INLINE void update_vector(const rg_update_args *args, size_t block, int lane,
     rg_vec volume = rg_load(args->geom + block * RG_GEOM_BLOCK + RG_GEOM_VOLUME * RG_LANES + lane);
     rg_vec scale = args->dt_velocity / (args->density * volume);
     double *velocity = args->velocity + block * RG_NODE_BLOCK + lane;
+    rg_vec f[3][RG_NODES];
+    sum_force(args, block, lane, f);
     for (int c = 0; c < 3; c++) {
-        rg_vec f[RG_NODES];
-        sum_force(args, block, lane, c, f);
         if (lumped) {
-            solve_lumped(f);
+            solve_lumped(f[c]);
         } else {
-            solve_consistent(f);
+            solve_consistent(f[c]);
         }
         for (int n = 0; n < RG_NODES; n++) {
             int row = (n * 3 + c) * RG_LANES;
-            rg_vec v = rg_load(velocity + row) + scale * f[n];
+            rg_vec v = rg_load(velocity + row) + scale * f[c][n];
             rg_store(velocity + row, v);
             if (args->u != NULL) {
                 double *u = args->u + block * RG_NODE_BLOCK + lane + row;

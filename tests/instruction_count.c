@@ -146,7 +146,8 @@ const char *instruction_count_unavailable(void) {
     if (!tried) {
         char command[128];
         tried = true;
-        snprintf(command, sizeof command, "objdump -d --no-show-raw-insn /proc/%ld/exe 2>/dev/null", (long)getpid());
+        snprintf(command, sizeof command, "objdump -d --no-show-raw-insn /proc/%ld/exe 2>/dev/null",
+                 (long)getpid());
         FILE *listing = popen(command, "r");
         if (listing != NULL) {
             read_code(listing);

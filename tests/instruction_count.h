@@ -1,6 +1,6 @@
-/* Floating-point operations that a call really executes: the call is single-stepped in a child process, and each
- * instruction it runs is looked up in the program's own disassembly. Exact for the object code at hand, with its
- * branches and loops, whatever the source looks like. */
+/* Floating-point operations that a call really executes: the call is single-stepped in a child process, and
+ * each instruction it runs is looked up in the program's own disassembly. Exact for the object code at hand,
+ * with its branches and loops, whatever the source looks like. */
 #ifndef RG_INSTRUCTION_COUNT_H
 #define RG_INSTRUCTION_COUNT_H
 

@@ -1,0 +1,211 @@
+#include "cost_model.h"
+
+#include "kernels.h"
+
+/* ---- Operations, per lane ---- */
+
+enum {
+    FMA = 2,
+    DOT = 5,   /* of 3-vectors: 1 + 2 FMA */
+    CROSS = 9, /* 3 (1 + FMA) */
+    LOG = 31,  /* s = (m - 1)/(m + 1), z, k: 5; polynomial 9 FMA; sum: 8 */
+};
+
+/* The jump of six nodal vectors. */
+enum { JUMP = 3 * RG_FNODES };
+
+/* Six nodal vectors to six points, per component: two sums of three, 2 x (1 + FMA) for the two rules, 2 FMA a
+ * point. */
+enum { TO_POINTS = 3 * (4 + 2 * (1 + FMA) + RG_POINTS * 2 * FMA) };
+
+/* ---- Bulk ---- */
+
+enum {
+    /* jump of each face; its three moments, per component: two sums of three, common part, 2 FMA each */
+    MOMENTS = RG_FACES * (JUMP + 3 * (4 + 1 + FMA + 3 * 2 * FMA)),
+    /* a face with unlinked points: values at points, times weight, 3 FMA into the moments */
+    UNLINKED = TO_POINTS + 3 * RG_POINTS * (1 + 3 * FMA),
+    /* parts of the 4 derivatives common to all points: sum of 3 edges, 1 + FMA */
+    COMMON = 4 * 3 * (3 + 1 + FMA),
+    COMMON_LIFT = 4 * 3 * (2 + FMA),
+    /* at a point: 4 derivatives, an FMA each; 3 differences; 3 x 3 sums of three products, plus I */
+    GRADIENT = 4 * 3 * FMA + 9 + 9 * (1 + 2 * FMA + 1),
+    GRADIENT_LIFT = 3 * 3 * FMA, /* no term on the face opposite the point */
+    /* first row of cof F and J, log J: all that the energy needs */
+    VOLUME_CHANGE = CROSS + DOT + LOG,
+    /* the other rows, p = (lambda log J - mu)/J, P = mu F + p cof F */
+    STRESS = 2 * CROSS + FMA + 1 + 9 * (1 + FMA),
+    /* bound on the acoustic tensor: cof^T cof (6 entries), row sums, /J^2, modulus, ratio, NaN guards */
+    STIFFENING = 6 * DOT + 9 + 2 + FMA + FMA + 1 + (1 + FMA) + FMA,
+    /* q_k = (V/4) P grad l_k and their sums; q_3 from the other three */
+    PROJECT = 9 * (DOT + 1 + 1) + 3 * 3,
+    /* nodal forces: 4 corners 1 + FMA, 6 edges 2 + 1 + FMA; corner tractions: FMA + 1 */
+    NODAL_FORCE = 3 * (4 * (1 + FMA) + 6 * (3 + FMA)),
+    CORNER_TRACTION = RG_FACES * RG_FCORNERS * 3 * (FMA + 1),
+    /* energy density: F - I and its square, trace, three terms; times V/4 into the sum */
+    ENERGY = 3 + 9 * FMA + 3 + (1 + 1 + 1 + 2 * FMA) + FMA,
+    CAUCHY = 6 * (DOT + 1), /* (P F^T)/J */
+};
+
+/* All up to the gradients at the four points. */
+static double gradient_flops(const rg_cost_variant *v) {
+    double sum = COMMON + RG_GAUSS * GRADIENT;
+    if (v->lift) {
+        sum += MOMENTS + COMMON_LIFT + RG_GAUSS * GRADIENT_LIFT + UNLINKED * v->unlinked;
+    }
+    return sum;
+}
+
+static double bulk_flops(const rg_cost_variant *v) {
+    return gradient_flops(v) + RG_GAUSS * (VOLUME_CHANGE + STRESS + STIFFENING + PROJECT) + NODAL_FORCE +
+           CORNER_TRACTION;
+}
+
+static double bulk_state_flops(const rg_cost_variant *v) {
+    return gradient_flops(v) + RG_GAUSS * (VOLUME_CHANGE + ENERGY + (v->cauchy ? STRESS + CAUCHY : 0));
+}
+
+/* ---- Interface ---- */
+
+enum {
+    /* corner tractions: half the difference; per component their sum, a product per rule, an FMA a point */
+    MEAN_TRACTION = RG_FCORNERS * 3 * 2 + 3 * (2 + 2 + RG_POINTS * FMA),
+    DG_TRACTION = RG_POINTS * (DOT + 1 + 3 * 2 * FMA), /* mean + iso [u] + norm (N.[u]) N */
+    TEST = 3 + RG_POINTS * DOT,                        /* bound, square of the traction */
+    /* per component: two weighted sums of three points; 1 + FMA for corners and for edges; 2 FMA a node */
+    FACE_FORCE = 3 * (2 * 3 + 2 * (1 + FMA) + RG_FNODES * 2 * FMA),
+    /* mean of the sides; at a point two tangents of 6 FMA a component, their cross product, length, n */
+    MID_SURFACE = CROSS + DOT + 2 * JUMP + RG_POINTS * (2 * 3 * RG_FNODES * FMA + CROSS + DOT + 2 + 1 + 3),
+    /* at a point: Cauchy traction, its normal part, tau, effective, and the bound again */
+    CRITERION = 3 + RG_POINTS * (3 + DOT + 3 * FMA + (DOT + 1 + FMA + 1) + DOT),
+    /* opening w, its normal part, tangential part, effective opening */
+    OPENING = 3 + DOT + 3 * FMA + (DOT + 1 + FMA + 1),
+    SECANT = 1 + 1 + 1 + 1,                               /* area strength (1/delta_max - 1/opening) */
+    LAW = OPENING + SECANT + 2 + 1 + FMA + 3 * (2 + FMA), /* normal part with contact; traction */
+    PENALTY_ENERGY = RG_POINTS * (DOT + DOT + 2 + FMA + 2),
+    /* stored, contact and dissipated energy of a point, each weighted and summed */
+    CRACK_ENERGY = OPENING + SECANT + 3 + 2 + 4 + 3 * 2,
+};
+
+static double interface_flops(const rg_cost_variant *v) {
+    return JUMP + TO_POINTS + MEAN_TRACTION + DG_TRACTION + (1 - v->damaged) * TEST + FACE_FORCE +
+           v->damaged * (MID_SURFACE + CRITERION + v->points * LAW);
+}
+
+static double interface_state_flops(const rg_cost_variant *v) {
+    return JUMP + TO_POINTS + PENALTY_ENERGY + v->damaged * (MID_SURFACE + RG_POINTS * CRACK_ENERGY);
+}
+
+/* ---- Update and kinetic energy ---- */
+
+enum {
+    ADD_FACES = 3 * RG_FACES * RG_FNODES * FMA,
+    /* sums over corners and edges: 12; a corner 3 + 2 FMA, an edge 1 + 3 FMA */
+    SOLVE_CONSISTENT = 3 * (12 + 4 * (3 + 2 * FMA) + 6 * (1 + 3 * FMA)),
+    SOLVE_LUMPED = 3 * RG_NODES,
+    ADVANCE = 3 * RG_NODES * FMA, /* v, or u */
+    SQUARE_CONSISTENT = 3 * (3 + 6 + 4 * FMA + 6 * (2 + 3 * FMA) + 10 + 2),
+    SQUARE_LUMPED = 3 * (RG_NODES * (1 + FMA) + 1),
+};
+
+static double update_flops(const rg_cost_variant *v) {
+    return 2 + ADD_FACES + (v->lumped ? SOLVE_LUMPED : SOLVE_CONSISTENT) +
+           ADVANCE * (v->displacement ? 2 : 1);
+}
+
+static double kinetic_flops(const rg_cost_variant *v) {
+    return 2 + (v->lumped ? SQUARE_LUMPED : SQUARE_CONSISTENT);
+}
+
+/* ---- Bytes, in rows: one value of each lane of a block ---- */
+
+enum {
+    NODAL = RG_NODES * 3,
+    TRACTION = RG_FACES * RG_FCORNERS * 3,
+    FACE = RG_FNODES * 3,
+    FLAT = RG_IGEOM_EDGE,             /* interface geometry without the edges */
+    EDGES = RG_IGEOM - RG_IGEOM_EDGE, /* of damaged faces only */
+    HISTORY = RG_CRACK_TIME,          /* of a broken point: opening and origin; the time is not read */
+    STRESSES = RG_GAUSS * 6,
+};
+
+#define ROW   (RG_LANES * (double)sizeof *((rg_bulk_args *)0)->force)
+#define LINKS ((double)sizeof(int32_t) * RG_LINK_BLOCK)
+#define SIDES ((double)sizeof(int32_t) * 2 * RG_LANES)
+
+typedef struct {
+    double in;      /* rows read */
+    double updated; /* rows read and written back */
+    double out;     /* rows only written: fetched first */
+    double index;   /* bytes of links and flags */
+} traffic;
+
+static traffic bulk_traffic(const rg_cost_variant *v, double out) {
+    traffic t = {.in = NODAL + RG_GEOM, .out = out};
+    if (v->lift) { /* links, one flag; where points are unlinked, interface links and the masks of two sides
+                    */
+        t.index = LINKS + 1 + (v->unlinked > 0 ? LINKS + v->interfaces * RG_LANES : 0);
+    }
+    return t;
+}
+
+/* Displacements (and tractions) of the elements belong to `interfaces` blocks of interfaces; an element's
+ * second and later faces find them in the cache. */
+static traffic interface_traffic(const rg_cost_variant *v, double gathered, double flat, double out) {
+    return (traffic){.in = gathered / v->interfaces + flat + v->damaged * (EDGES + HISTORY * RG_POINTS),
+                     .out = out,
+                     .index = SIDES + 1 + v->damaged * 2 * 2 * RG_LANES};
+}
+
+static traffic traffic_of(rg_cost_kernel kernel, const rg_cost_variant *v) {
+    switch (kernel) {
+    case RG_COST_BULK: /* out: forces, tractions, stiffening */
+        return bulk_traffic(v, NODAL + TRACTION + 1);
+    case RG_COST_BULK_STATE:
+        return bulk_traffic(v, 1 + (v->cauchy ? STRESSES : 0));
+    case RG_COST_INTERFACE:
+        return interface_traffic(v, NODAL + TRACTION, FLAT, FACE);
+    case RG_COST_INTERFACE_STATE: /* an intact face's penalty has its area in it */
+        return interface_traffic(v, NODAL, FLAT - 1 + v->damaged, RG_E_INTERFACE);
+    case RG_COST_UPDATE: /* in: bulk force, the forces of all interfaces, volume */
+        return (traffic){.in = NODAL + FACE * v->interfaces + 1,
+                         .updated = NODAL * (v->displacement ? 2 : 1),
+                         .index = LINKS};
+    default: /* kinetic: velocity and volume */
+        return (traffic){.in = NODAL + 1, .out = 1};
+    }
+}
+
+static double flops_of(rg_cost_kernel kernel, const rg_cost_variant *v) {
+    switch (kernel) {
+    case RG_COST_BULK:
+        return bulk_flops(v);
+    case RG_COST_BULK_STATE:
+        return bulk_state_flops(v);
+    case RG_COST_INTERFACE:
+        return interface_flops(v);
+    case RG_COST_INTERFACE_STATE:
+        return interface_state_flops(v);
+    case RG_COST_UPDATE:
+        return update_flops(v);
+    default:
+        return kinetic_flops(v);
+    }
+}
+
+rg_cost rg_cost_block(rg_cost_kernel kernel, const rg_cost_variant *v) {
+    traffic t = traffic_of(kernel, v);
+    return (rg_cost){.flops = RG_LANES * flops_of(kernel, v),
+                     .minimal = ROW * v->fill * (t.in + 2 * t.updated + t.out),
+                     .actual = ROW * (t.in + 2 * t.updated + 2 * t.out) + t.index};
+}
+
+rg_cost rg_cost_step(const rg_cost_variant *v, double inside) {
+    rg_cost bulk = rg_cost_block(RG_COST_BULK, v), interface = rg_cost_block(RG_COST_INTERFACE, v),
+            update = rg_cost_block(RG_COST_UPDATE, v);
+    double streamed = 2 * 2 * NODAL + RG_GEOM + v->interfaces * FLAT;
+    double cached = inside * (NODAL + TRACTION);
+    return (rg_cost){.flops = bulk.flops + v->interfaces * interface.flops + update.flops,
+                     .minimal = ROW * v->fill * streamed,
+                     .actual = bulk.actual + v->interfaces * interface.actual + update.actual - ROW * cached};
+}

@@ -1,0 +1,50 @@
+/* What a kernel call costs: floating-point operations and bytes, written down by hand from the equations, so
+ * that a measured time can be held against what the machine could do. perf/model.md explains the terms; a
+ * test compares the operations with those the object code executes and the bytes with those a call is seen to
+ * read and write. */
+#ifndef RG_COST_MODEL_H
+#define RG_COST_MODEL_H
+
+#include <stdbool.h>
+
+typedef enum {
+    RG_COST_BULK,
+    RG_COST_INTERFACE,
+    RG_COST_UPDATE,
+    RG_COST_BULK_STATE,
+    RG_COST_KINETIC,
+    RG_COST_INTERFACE_STATE,
+    RG_COST_KERNELS
+} rg_cost_kernel;
+
+/* The work asked for and the state of the mesh. Each kernel reads the members that concern it. */
+typedef struct {
+    bool lift;         /* bulk, bulk_state: variational form */
+    bool lumped;       /* update, kinetic: HRZ mass */
+    bool displacement; /* update: advances u too */
+    bool cauchy;       /* bulk_state: writes the stress, not the energy alone */
+    double unlinked; /* bulk, bulk_state: faces (0 to 4) of an element block with points that left the lift */
+    double damaged;  /* interface, interface_state: share of the blocks in which some point is broken */
+    double points;   /* interface: broken points (0 to 6) of such a block */
+    double interfaces; /* blocks of interfaces per block of elements; 2 in a large mesh */
+    double fill;       /* share of the lanes that carry an element or interface; the rest is padding */
+} rg_cost_variant;
+
+typedef struct {
+    double flops; /* additions, subtractions, multiplications, divisions and roots, padding included; a fused
+                     multiply-add is two; maxima, comparisons and selections are none */
+    double minimal; /* bytes: each real value in or out once; no indices, no padding */
+    double actual;  /* bytes to and from memory: whole blocks, with indices and flags; a line that is written
+                       without  having been read is fetched first (write-allocate); what neighbours share is
+                       fetched once */
+} rg_cost;
+
+/* Cost of one block (RG_LANES elements or interfaces). */
+rg_cost rg_cost_block(rg_cost_kernel kernel, const rg_cost_variant *v);
+
+/* Cost of one time step per block of elements: update, bulk and interfaces. `inside` is the share of the
+ * interfaces that find the displacements and tractions of their tile in the cache. Minimal: u and v in and
+ * out and the geometry in; everything else could stay in the cache. */
+rg_cost rg_cost_step(const rg_cost_variant *v, double inside);
+
+#endif

@@ -1,0 +1,373 @@
+/* The cost model against counting: its operations against those that the object code of each instruction set
+ * executes, its bytes against those that a call is seen to read and write. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "cost_model.h"
+#include "instruction_count.h"
+#include "kernel_input.h"
+
+#define FLOP_TOLERANCE 0.05 /* compilers fuse and share in their own way */
+#define BYTE_TOLERANCE 0.02 /* flags, and faces on the surface */
+
+enum { MAX_SETS = 4, LINE = 64 };
+
+/* An array that a kernel may read or write. */
+typedef struct {
+    void *data;
+    size_t bytes;
+    enum { REAL, LINK, FLAGS } kind;
+} array;
+
+/* A call that may be repeated: kernel, arguments, and every array it could touch. */
+typedef struct {
+    const char *name;
+    rg_cost_kernel kernel;
+    rg_cost_variant variant;
+    const rg_kernels *set;
+    input *in;
+    double *out[3];
+    rg_bulk_args bulk;
+    rg_bulk_state_args bulk_state;
+    rg_interface_args interface;
+    rg_interface_state_args interface_state;
+    rg_update_args update;
+    rg_kinetic_args kinetic;
+    array list[20];
+    size_t arrays;
+} call;
+
+static void run_blocks(const call *c, size_t elements, size_t interfaces) {
+    switch (c->kernel) {
+    case RG_COST_BULK:
+        c->set->bulk(&c->bulk, 0, elements);
+        break;
+    case RG_COST_BULK_STATE:
+        c->set->bulk_state(&c->bulk_state, 0, elements);
+        break;
+    case RG_COST_INTERFACE:
+        c->set->interface(&c->interface, 0, interfaces);
+        break;
+    case RG_COST_INTERFACE_STATE:
+        c->set->interface_state(&c->interface_state, 0, interfaces);
+        break;
+    case RG_COST_UPDATE:
+        c->set->update(&c->update, 0, elements);
+        break;
+    default:
+        c->set->kinetic(&c->kinetic, 0, elements);
+        break;
+    }
+}
+
+static void run_one_block(void *context) {
+    run_blocks(context, 1, 1);
+}
+
+static void run_all(const call *c) {
+    run_blocks(c, INPUT_EBLOCKS, INPUT_IBLOCKS);
+}
+
+/* ---- The calls ---- */
+
+static void touch(call *c, void *data, size_t bytes, int kind) {
+    c->list[c->arrays++] = (array){data, bytes, kind};
+}
+
+static void touch_real(call *c, double *data, size_t blocks, size_t per_block) {
+    touch(c, data, blocks * per_block * sizeof *data, REAL);
+}
+
+static void list_arrays(call *c) {
+    input *in = c->in;
+    touch_real(c, in->u, INPUT_EBLOCKS, RG_NODE_BLOCK);
+    touch_real(c, in->velocity, INPUT_EBLOCKS, RG_NODE_BLOCK);
+    touch_real(c, in->pull, INPUT_EBLOCKS, RG_NODE_BLOCK);
+    touch_real(c, in->geom, INPUT_EBLOCKS, RG_GEOM_BLOCK);
+    touch_real(c, in->traction, INPUT_EBLOCKS, RG_TRACTION_BLOCK);
+    touch_real(c, in->igeom, INPUT_IBLOCKS, RG_IGEOM_BLOCK);
+    touch_real(c, in->ipull, INPUT_IBLOCKS, RG_IFORCE_BLOCK); /* without the block of zeros */
+    touch_real(c, in->crack, INPUT_IBLOCKS, RG_CRACK_BLOCK);
+    touch(c, in->neighbour, INPUT_ESLOTS * RG_FACES * sizeof(int32_t), LINK);
+    touch(c, in->interface, INPUT_ESLOTS * RG_FACES * sizeof(int32_t), LINK);
+    touch(c, in->side[0], INPUT_ISLOTS * sizeof(int32_t), LINK);
+    touch(c, in->side[1], INPUT_ISLOTS * sizeof(int32_t), LINK);
+    touch(c, in->broken, INPUT_ISLOTS, FLAGS);
+    touch(c, in->unlinked, INPUT_ISLOTS, FLAGS);
+    touch(c, in->active, INPUT_IBLOCKS, FLAGS);
+    for (size_t k = 0; k < 3; k++)
+        touch_real(c, c->out[k], INPUT_IBLOCKS, RG_TRACTION_BLOCK);
+}
+
+static void bind_elements(call *c) {
+    const rg_cost_variant *v = &c->variant;
+    input *in = c->in;
+    c->bulk = input_bulk_args(in, c->out[0], c->out[1], c->out[2]);
+    c->bulk.lift = v->lift;
+    c->bulk_state = (rg_bulk_state_args){&c->bulk, c->out[0], v->cauchy ? c->out[1] : NULL};
+    c->update = (rg_update_args){.density = in->material.density,
+                                 .dt_velocity = 1e-9,
+                                 .dt_displacement = 2e-9,
+                                 .lumped = v->lumped,
+                                 .geom = in->geom,
+                                 .force = in->pull,
+                                 .iforce = in->ipull,
+                                 .interface = in->interface,
+                                 .velocity = in->velocity,
+                                 .u = v->displacement ? in->u : NULL};
+    c->kinetic = (rg_kinetic_args){in->material.density, v->lumped, in->geom, in->velocity, c->out[0]};
+}
+
+static void bind_interfaces(call *c) {
+    input *in = c->in;
+    c->interface = (rg_interface_args){.law = in->law,
+                                       .u = in->u,
+                                       .traction = in->traction,
+                                       .side = {in->side[0], in->side[1]},
+                                       .geom = in->igeom,
+                                       .broken = in->broken,
+                                       .unlinked = in->unlinked,
+                                       .active = in->active,
+                                       .crack = in->crack,
+                                       .crack_stride = RG_CRACK_BLOCK,
+                                       .force = c->out[0]};
+    c->interface_state = (rg_interface_state_args){&c->interface, c->out[0]};
+}
+
+/* Breaks every point where the variant says so. A run that is repeated must not switch points: whole faces,
+ * in effect unloaded after the first call. */
+static call *make_call(const char *name, rg_cost_kernel kernel, rg_cost_variant variant,
+                       const rg_kernels *set) {
+    call *c = input_alloc(sizeof *c);
+    bool broken = variant.damaged > 0 || variant.unlinked > 0;
+    rg_cohesive law = {.strength = broken ? 4e8 : INFINITY, .opening = 1.7e-7, .beta = 1};
+    *c = (call){.name = name, .kernel = kernel, .variant = variant, .set = set};
+    c->in = input_make(INPUT_SMALL, law, 11, 0);
+    if (broken)
+        input_break(c->in, probability);
+    c->variant.fill = 1;
+    c->variant.interfaces = (double)INPUT_IBLOCKS / INPUT_EBLOCKS;
+    for (int k = 0; k < 3; k++)
+        c->out[k] = input_alloc(INPUT_IBLOCKS * RG_TRACTION_BLOCK * sizeof(double));
+    bind_elements(c);
+    bind_interfaces(c);
+    list_arrays(c);
+    run_all(c);
+    input_flags(c->in);
+    return c;
+}
+
+static void free_call(call *c) {
+    input_free(c->in);
+    for (int k = 0; k < 3; k++)
+        free(c->out[k]);
+    free(c);
+}
+
+/* Every kernel with every flag. */
+static const struct {
+    const char *name;
+    rg_cost_kernel kernel;
+    rg_cost_variant variant;
+} cases[] = {
+    {"bulk", RG_COST_BULK, {.lift = false}},
+    {"bulk lifted", RG_COST_BULK, {.lift = true}},
+    {"bulk lifted, broken", RG_COST_BULK, {.lift = true, .unlinked = 4}},
+    {"bulk state, energy", RG_COST_BULK_STATE, {.lift = true}},
+    {"bulk state, stress", RG_COST_BULK_STATE, {.cauchy = true}},
+    {"interface", RG_COST_INTERFACE, {.damaged = 0}},
+    {"interface, broken", RG_COST_INTERFACE, {.damaged = 1, .points = 6}},
+    {"interface state", RG_COST_INTERFACE_STATE, {.damaged = 0}},
+    {"interface state, broken", RG_COST_INTERFACE_STATE, {.damaged = 1}},
+    {"update consistent", RG_COST_UPDATE, {.displacement = true}},
+    {"update lumped", RG_COST_UPDATE, {.displacement = true, .lumped = true}},
+    {"update of velocity alone", RG_COST_UPDATE, {.displacement = false}},
+    {"kinetic", RG_COST_KINETIC, {.lumped = false}},
+    {"kinetic lumped", RG_COST_KINETIC, {.lumped = true}},
+};
+enum { CASES = sizeof cases / sizeof *cases };
+
+static call *call_of_case(size_t k, const rg_kernels *set, double probability) {
+    return make_call(cases[k].name, cases[k].kernel, cases[k].variant, set, probability);
+}
+
+/* Faces of element block `b` with unlinked points (faces on the surface have none). */
+static double unlinked_faces(const call *c, size_t b) {
+    int faces = 0;
+    for (int f = 0; f < RG_FACES; f++) {
+        int any = 0;
+        for (size_t l = 0; l < RG_LANES; l++)
+            any |= c->in->unlinked[c->in->interface[rg_link_index(b * RG_LANES + l, f)] >> 1];
+        faces += any != 0;
+    }
+    return faces;
+}
+
+static void check(const call *c, const char *what, double counted, double model, double tolerance) {
+    if (!(fabs(model - counted) <= tolerance * counted))
+        fail_msg("%s, %s: the model says %.1f %s per block, counted are %.1f", c->set->name, c->name, model,
+                 what, counted);
+}
+
+/* ---- Operations ---- */
+
+static void test_flops(void **state) {
+    const rg_kernels *sets[MAX_SETS];
+    int count = rg_kernels_available(sets, MAX_SETS);
+    (void)state;
+    const char *reason = instruction_count_unavailable();
+    if (reason != NULL) {
+        print_message("# not counted: %s\n", reason);
+        skip();
+    }
+    for (int s = 0; s < count; s++)
+        for (size_t k = 0; k < CASES; k++) {
+            call *c = call_of_case(k, sets[s], 1);
+            if (c->variant.unlinked > 0)
+                c->variant.unlinked = unlinked_faces(c, 0);
+            instruction_count counted = instruction_count_of(run_one_block, c);
+            check(c, "operations", counted.flops, rg_cost_block(c->kernel, &c->variant).flops,
+                  FLOP_TOLERANCE);
+            if (!(counted.widest >= 0.95 * counted.flops))
+                fail_msg("%s, %s: only %.0f of %.0f operations use the full vector width", sets[s]->name,
+                         c->name, counted.widest, counted.flops);
+            free_call(c);
+        }
+}
+
+/* ---- Bytes ---- */
+
+/* All the arrays, one after the other. */
+static char *save(const call *c) {
+    size_t total = 0;
+    for (size_t k = 0; k < c->arrays; k++)
+        total += c->list[k].bytes;
+    char *copy = input_alloc(total), *to = copy;
+    for (size_t k = 0; k < c->arrays; to += c->list[k++].bytes)
+        memcpy(to, c->list[k].data, c->list[k].bytes);
+    return copy;
+}
+
+static void restore(const call *c, const char *copy) {
+    for (size_t k = 0; k < c->arrays; copy += c->list[k++].bytes)
+        memcpy(c->list[k].data, copy, c->list[k].bytes);
+}
+
+/* Changes what lies in [at, at + bytes) of an array, keeping it valid. Reals become signalling NaNs: whatever
+ * is computed from one has other bits, be it a NaN too. */
+static void disturb(const array *a, size_t at, size_t bytes) {
+    const uint64_t signaling = UINT64_C(0x7ff4000000000001);
+    char *p = (char *)a->data + at;
+    if (a->kind == REAL)
+        for (size_t k = 0; k < bytes / sizeof signaling; k++)
+            memcpy(p + k * sizeof signaling, &signaling, sizeof signaling);
+    else if (a->kind == FLAGS)
+        memset(p, 0, bytes);
+    else
+        for (size_t k = 0; k < bytes / sizeof(int32_t); k++)
+            ((int32_t *)(void *)p)[k] ^= 2; /* another face, or another interface */
+}
+
+/* Whether a run from the disturbed state ends otherwise than `after` anywhere but in the disturbed place, or
+ * there with other values than it was given. */
+static bool matters(const call *c, size_t which, size_t at, size_t bytes, const char *after) {
+    const array *d = &c->list[which];
+    char given[LINE];
+    disturb(d, at, bytes);
+    memcpy(given, (char *)d->data + at, bytes);
+    run_all(c);
+    for (size_t k = 0; k < c->arrays; after += c->list[k++].bytes) {
+        const char *now = c->list[k].data;
+        size_t head = k == which ? at : c->list[k].bytes, tail = head + (k == which ? bytes : 0);
+        if (memcmp(now, after, head) != 0 || memcmp(now + tail, after + tail, c->list[k].bytes - tail) != 0)
+            return true;
+        if (k == which && memcmp(now + at, given, bytes) != 0 && memcmp(now + at, after + at, bytes) != 0)
+            return true; /* read and written, as a velocity */
+    }
+    return false;
+}
+
+/* Whether a run writes the place: it does not stay as it was given. */
+static bool is_written(const call *c, size_t which, size_t at, size_t bytes) {
+    char given[LINE];
+    disturb(&c->list[which], at, bytes);
+    memcpy(given, (char *)c->list[which].data + at, bytes);
+    run_all(c);
+    return memcmp((char *)c->list[which].data + at, given, bytes) != 0;
+}
+
+typedef struct {
+    double values, traffic; /* bytes of reals in and out; of everything, with write-allocate */
+} bytes_seen;
+
+static bytes_seen count_bytes(const call *c) {
+    bytes_seen sum = {0, 0};
+    char *before = save(c);
+    run_all(c);
+    char *after = save(c);
+    for (size_t k = 0; k < c->arrays; k++)
+        for (size_t at = 0; at < c->list[k].bytes; at += LINE) {
+            size_t left = c->list[k].bytes - at, bytes = left < LINE ? left : LINE;
+            restore(c, before);
+            bool read = matters(c, k, at, bytes, after);
+            restore(c, before);
+            bool written = is_written(c, k, at, bytes);
+            sum.traffic += (double)bytes * ((read || written) + written);
+            sum.values += c->list[k].kind == REAL ? (double)bytes * (read + written) : 0;
+        }
+    restore(c, before);
+    free(before);
+    free(after);
+    return sum;
+}
+
+static void test_bytes(void **state) {
+    const rg_kernels *sets[MAX_SETS];
+    (void)state;
+    rg_kernels_available(sets, MAX_SETS);
+    for (size_t k = 0; k < CASES; k++) {
+        call *c = call_of_case(k, sets[0], 0.5); /* with all points broken no traction would matter */
+        bool by_interface = c->kernel == RG_COST_INTERFACE || c->kernel == RG_COST_INTERFACE_STATE;
+        double blocks = by_interface ? INPUT_IBLOCKS : INPUT_EBLOCKS;
+        bytes_seen seen = count_bytes(c);
+        rg_cost model = rg_cost_block(c->kernel, &c->variant);
+        check(c, "bytes in and out", seen.values / blocks, model.minimal, BYTE_TOLERANCE);
+        check(c, "bytes of traffic", seen.traffic / blocks, model.actual, BYTE_TOLERANCE);
+        free_call(c);
+    }
+}
+
+/* ---- The step ---- */
+
+/* A step is its three kernels; what the tiles keep in the cache is the only difference. */
+static void test_step(void **state) {
+    (void)state;
+    const rg_cost_variant v = {.lift = true, .displacement = true, .interfaces = 2, .fill = 1};
+    rg_cost bulk = rg_cost_block(RG_COST_BULK, &v), update = rg_cost_block(RG_COST_UPDATE, &v),
+            interface = rg_cost_block(RG_COST_INTERFACE, &v);
+    rg_cost apart = rg_cost_step(&v, 0), tiled = rg_cost_step(&v, 1);
+    assert_true(apart.flops == bulk.flops + update.flops + 2 * interface.flops);
+    assert_true(apart.actual == bulk.actual + update.actual + 2 * interface.actual);
+    assert_true(tiled.flops == apart.flops && tiled.minimal == apart.minimal);
+    /* 30 displacements and 36 tractions of 8 elements, 8 bytes each */
+    assert_true(apart.actual - tiled.actual == 66 * 8 * 8);
+    assert_true(tiled.minimal < tiled.actual);
+    /* "about 1.1 kB per tet" */
+    assert_true(fabs(tiled.minimal / RG_LANES - 1136) < 1);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_flops),
+        cmocka_unit_test(test_bytes),
+        cmocka_unit_test(test_step),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,53 @@
+"""What the ledger of any run has to fulfil."""
+
+import numpy as np
+import pytest
+from conftest import BENCH, CASES
+
+TOUGHNESS = 34.0  # J/m^2, of every case here
+RUNS = {
+    "spall": (BENCH / "spall.yaml", {}),
+    "jittered": (BENCH / "spall-jittered.yaml", {"output.fields": ["crack"]}),
+    "fragments": (CASES / "fragments.yaml", {}),
+    "collision": (CASES / "collision.yaml", {}),
+}
+
+
+@pytest.fixture(params=RUNS)
+def energy(request, run):
+    case, sets = RUNS[request.param]
+    energy = run(case, threads=2, sets=sets).energy
+    assert len(energy) > 40 and energy["broken_area"][-1] > 0
+    return energy
+
+
+def test_cracks_never_heal(energy):
+    for name in ("broken_area", "failed_area", "dissipated"):
+        assert (np.diff(energy[name]) >= 0).all(), name
+
+
+def test_dissipation_lies_between_failed_and_broken_area(energy):
+    assert (energy["dissipated"] <= TOUGHNESS * energy["broken_area"] * (1 + 1e-12)).all()
+    assert (energy["dissipated"] >= TOUGHNESS * energy["failed_area"] * (1 - 1e-12)).all()
+
+
+def test_stored_energies_are_not_negative(energy):
+    for name in ("kinetic", "bulk", "penalty", "cohesive", "contact", "dissipated"):
+        assert (energy[name] >= -1e-9 * energy[name].max()).all(), name
+
+
+def test_total_is_the_sum_of_its_parts(energy):
+    parts = sum(energy[name] for name in ("kinetic", "bulk", "penalty", "cohesive", "contact", "dissipated"))
+    scale = np.abs(energy["external_work"]).max() + parts.max()
+    assert np.abs(parts - energy["external_work"] - energy["total"]).max() < 1e-14 * scale
+    worst = np.abs(energy["total"] - energy["total"][0]) / np.maximum.accumulate(parts)
+    assert np.abs(energy["error_rel"]) == pytest.approx(worst, rel=1e-6, abs=1e-12)
+
+
+@pytest.mark.parametrize("name", ["spall", "jittered"])
+def test_work_of_the_ends_is_accounted_for(run, name):
+    case, sets = RUNS[name]
+    spall = run(case, threads=2, sets=sets)
+    whole = spall.energy[spall.energy["time"] < spall.summary["first_fracture_time_s"]]
+    assert len(whole) > 20 and whole["external_work"][-1] > 1e-5
+    assert np.abs(whole["error_rel"]).max() < 1e-3
