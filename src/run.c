@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "affinity.h"
 #include "error.h"
 #include "estimate.h"
 #include "files.h"
@@ -169,6 +170,9 @@ int rg_run(const rg_case *c, MPI_Comm comm, bool quiet) {
     if (speaks) {
         rg_estimate_print(r->solver, &estimate, stdout);
     }
+    if (!quiet) {
+        rg_affinity_print(comm, stdout);
+    }
     open_outputs(r);
     rg_solver_start(r->solver);
     rg_progress_begin(&r->progress, speaks, c->time.end, estimate.steps);
@@ -197,6 +201,7 @@ int rg_check(const rg_case *c, MPI_Comm comm) {
     if (s->rank == 0) {
         rg_estimate_print(s, &estimate, stdout);
     }
+    rg_affinity_print(comm, stdout);
     rg_solver_free(s);
     return RG_OK;
 }

@@ -24,7 +24,8 @@ typedef struct {
     double *force, *traction, *iforce, *crack;
     double *stiffening; /* [own blocks][lane] */
     double *tile_stiffening;
-    double stiffening_here, stiffening_anywhere; /* largest on this rank, on all ranks; infinite if not finite */
+    double stiffening_here,
+        stiffening_anywhere; /* largest on this rank, on all ranks; infinite if not finite */
     MPI_Request stiffening_request;
     uint8_t *cracked, *broken, *unlinked, *active;
     rg_constraints *constraints;

@@ -10,7 +10,8 @@
  * tiny displacement; so it holds for every form, mass and penalty. Its largest eigenvalue is found by the
  * Lanczos iteration in the inner product of M (the incomplete form, not symmetric, by power iteration). The
  * states tried are those a face can take: all faces intact; all broken and closed (contact on both sides of
- * zero, hence linear). Sums are exact, so the result has the same bits on any ranks and threads. Collective. */
+ * zero, hence linear). Sums are exact, so the result has the same bits on any ranks and threads. Collective.
+ */
 void rg_spectrum(rg_solver *s);
 
 #endif
