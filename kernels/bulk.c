@@ -169,14 +169,16 @@ RG_INLINE void store_force(vec3 q[4][RG_GAUSS], vec3 Q[4], double *force) {
 
 /* Area-weighted corner tractions sum_g e_ig P_g (area_f N_f), e_ig = (delta_ig - a)/(b - a). */
 RG_INLINE void store_traction(vec3 q[4][RG_GAUSS], vec3 Q[4], double *traction) {
+    rg_vec row[RG_TRACTION_ROW];
     for (int f = 0; f < RG_FACES; f++) {
         for (int i = 0; i < RG_FCORNERS; i++) {
             for (int c = 0; c < 3; c++) {
-                rg_store(traction + ((f * RG_FCORNERS + i) * 3 + c) * RG_LANES,
-                         (12 / RG_GAUSS_BA) * (RG_GAUSS_A * Q[f][c] - q[f][rg_face_node[f][i]][c]));
+                row[(f * RG_FCORNERS + i) * 3 + c] =
+                    (12 / RG_GAUSS_BA) * (RG_GAUSS_A * Q[f][c] - q[f][rg_face_node[f][i]][c]);
             }
         }
     }
+    rg_store_rows(traction, RG_TRACTION_ROW, RG_TRACTION_ROW, row);
 }
 
 RG_INLINE void bulk_vector(const rg_bulk_args *args, size_t block, int lane, bool lift) {
@@ -202,7 +204,7 @@ RG_INLINE void bulk_vector(const rg_bulk_args *args, size_t block, int lane, boo
         }
     }
     store_force(q, Q, args->force + block * RG_NODE_BLOCK + lane);
-    store_traction(q, Q, args->traction + block * RG_TRACTION_BLOCK + lane);
+    store_traction(q, Q, args->traction + (block * RG_LANES + (size_t)lane) * RG_TRACTION_ROW);
     rg_store(args->stiffening + block * RG_LANES + lane, stiffening + bad);
 }
 

@@ -123,6 +123,7 @@ enum {
     NODAL = RG_NODES * 3,
     TRACTION = RG_FACES * RG_FCORNERS * 3,
     FACE = RG_FNODES * 3,
+    SIDES_TRACTION = 2 * RG_FCORNERS * 3,
     FLAT = RG_IGEOM_EDGE,             /* interface geometry without the edges */
     EDGES = RG_IGEOM - RG_IGEOM_EDGE, /* of damaged faces only */
     HISTORY = RG_CRACK_TIME,          /* of a broken point: opening and origin; the time is not read */
@@ -149,10 +150,10 @@ static traffic bulk_traffic(const rg_cost_variant *v, double out) {
     return t;
 }
 
-/* Displacements (and tractions) of the elements belong to `interfaces` blocks of interfaces; an element's
- * second and later faces find them in the cache. */
-static traffic interface_traffic(const rg_cost_variant *v, double gathered, double flat, double out) {
-    return (traffic){.in = gathered / v->interfaces + flat + v->damaged * (EDGES + HISTORY * RG_POINTS),
+/* Displacements of the elements belong to `interfaces` blocks of interfaces; an element's second and later
+ * faces find them in the cache. */
+static traffic interface_traffic(const rg_cost_variant *v, double in, double out) {
+    return (traffic){.in = NODAL / v->interfaces + in + v->damaged * (EDGES + HISTORY * RG_POINTS),
                      .out = out,
                      .index = SIDES + 1 + v->damaged * 2 * 2 * RG_LANES};
 }
@@ -164,9 +165,9 @@ static traffic traffic_of(rg_cost_kernel kernel, const rg_cost_variant *v) {
     case RG_COST_BULK_STATE:
         return bulk_traffic(v, 1 + (v->cauchy ? STRESSES : 0));
     case RG_COST_INTERFACE:
-        return interface_traffic(v, NODAL + TRACTION, FLAT, FACE);
+        return interface_traffic(v, SIDES_TRACTION + FLAT, FACE);
     case RG_COST_INTERFACE_STATE: /* an intact face's penalty has its area in it */
-        return interface_traffic(v, NODAL, FLAT - 1 + v->damaged, RG_E_INTERFACE);
+        return interface_traffic(v, FLAT - 1 + v->damaged, RG_E_INTERFACE);
     case RG_COST_UPDATE: /* in: bulk force, the forces of all interfaces, volume */
         return (traffic){.in = NODAL + FACE * v->interfaces + 1,
                          .updated = NODAL * (v->displacement ? 2 : 1),
@@ -204,7 +205,7 @@ rg_cost rg_cost_step(const rg_cost_variant *v, double inside) {
     rg_cost bulk = rg_cost_block(RG_COST_BULK, v), interface = rg_cost_block(RG_COST_INTERFACE, v),
             update = rg_cost_block(RG_COST_UPDATE, v);
     double streamed = 2 * 2 * NODAL + RG_GEOM + v->interfaces * FLAT;
-    double cached = inside * (NODAL + TRACTION);
+    double cached = inside * (NODAL + v->interfaces * SIDES_TRACTION);
     return (rg_cost){.flops = bulk.flops + v->interfaces * interface.flops + update.flops,
                      .minimal = ROW * v->fill * streamed,
                      .actual = bulk.actual + v->interfaces * interface.actual + update.actual - ROW * cached};

@@ -58,23 +58,23 @@ RG_INLINE void jump_at_points(interface *s) {
 
 /* <P> N at the points, from the corner tractions of both sides (each with its own outward normal). */
 RG_INLINE void mean_traction(interface *s) {
-    rg_lanes at[2];
+    enum { ROW = RG_FCORNERS * 3 };
+    rg_vec t[2][ROW];
     for (int k = 0; k < 2; k++) {
-        for (int l = 0; l < RG_VLEN; l++) {
-            uint32_t link = (uint32_t)side(s, k)[l];
-            at[k].lane[l] = rg_first_value(s->args->traction, link / RG_FACES, RG_TRACTION_BLOCK) +
-                            link % RG_FACES * (RG_FCORNERS * 3 * RG_LANES);
+        rg_lanes at;
+        for (int l = 0; l < RG_VLEN; l++) { /* a link is the number of a face: 4 * element + face */
+            at.lane[l] = s->args->traction + (size_t)side(s, k)[l] * ROW;
         }
+        rg_load_rows(&at, ROW, t[k]);
+    }
+    for (int i = 0; i < ROW; i++) {
+        t[0][i] = 0.5 * (t[0][i] - t[1][i]);
     }
     for (int c = 0; c < 3; c++) {
-        rg_vec t[RG_FCORNERS];
-        for (int i = 0; i < RG_FCORNERS; i++) {
-            int row = (i * 3 + c) * RG_LANES;
-            t[i] = 0.5 * (rg_gather(&at[0], row) - rg_gather(&at[1], row));
-        }
         for (int q = 0; q < RG_POINTS; q++) {
             const rg_tri_rule *n = &rg_tri[q / 3];
-            s->mean[q][c] = n->p * (t[0] + t[1] + t[2]) + (n->r - n->p) * t[q % 3];
+            s->mean[q][c] =
+                n->p * (t[0][c] + t[0][3 + c] + t[0][6 + c]) + (n->r - n->p) * t[0][3 * (q % 3) + c];
         }
     }
 }
@@ -107,7 +107,7 @@ RG_INLINE bool any_to_test(const interface *s) {
 
 /* Nodal forces sum_q w_q N_a(q) T_q. */
 RG_INLINE void store_nodal_force(const interface *s) {
-    double *force = s->args->force + s->block * RG_IFORCE_BLOCK + s->lane;
+    rg_vec force[RG_IFORCE_ROW];
     for (int c = 0; c < 3; c++) {
         rg_vec corner[2], edge[2], sum[2];
         for (int k = 0; k < 2; k++) {
@@ -119,12 +119,12 @@ RG_INLINE void store_nodal_force(const interface *s) {
         rg_vec corners = rg_tri[0].other * sum[0] + rg_tri[1].other * sum[1];
         rg_vec edges = rg_tri[0].adjacent * sum[0] + rg_tri[1].adjacent * sum[1];
         for (int i = 0; i < 3; i++) {
-            rg_store(force + (i * 3 + c) * RG_LANES,
-                     corners + corner[0] * s->total[i][c] + corner[1] * s->total[3 + i][c]);
-            rg_store(force + (rg_facing[i] * 3 + c) * RG_LANES,
-                     edges + edge[0] * s->total[i][c] + edge[1] * s->total[3 + i][c]);
+            force[i * 3 + c] = corners + corner[0] * s->total[i][c] + corner[1] * s->total[3 + i][c];
+            force[rg_facing[i] * 3 + c] = edges + edge[0] * s->total[i][c] + edge[1] * s->total[3 + i][c];
         }
     }
+    size_t first = s->block * RG_LANES + (size_t)s->lane;
+    rg_store_rows(s->args->force + first * RG_IFORCE_ROW, RG_IFORCE_ROW, RG_IFORCE_ROW, force);
 }
 
 /* ---- Damaged faces ---- */

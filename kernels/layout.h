@@ -6,11 +6,15 @@
  *
  *   displacement, velocity, force   [element block][10 nodes][3][lane]
  *   element geometry                [element block][RG_GEOM][lane]
- *   face traction (area-weighted)   [element block][4 faces][3 corners][3][lane]
+ *   face traction (area-weighted)   [element][4 faces][3 corners][3]
  *   links                           [element block][4 faces][lane]
  *   interface geometry              [interface block][RG_IGEOM][lane]
- *   interface nodal force           [interface block][6 nodes][3][lane]
+ *   interface nodal force           [interface][6 nodes][3]
  *   crack state                     [interface block][6 points][RG_CRACK][lane]
+ *
+ * The last two kinds, by which elements and interfaces speak to each other, are rows instead: their reader is
+ * another element's lane, and finds its values in two or three cache lines, where the lanes of a block would
+ * spread them over as many lines as there are values. The readers transpose rows into vectors in registers.
  *
  * Element convention: the four vertices of a tetrahedron are sorted by ascending global vertex number. Its
  * nodes are in the order of VTK_QUADRATIC_TETRA (corners 0-3, mid-edges 01 12 02 03 13 23); local face f is
@@ -57,13 +61,15 @@ enum { /* crack state of one interface point; meaningful only where the point's 
        RG_CRACK = 5,
 };
 
-enum { /* doubles per block */
+enum { /* doubles per row, and per block */
+       RG_TRACTION_ROW = RG_FACES * RG_FCORNERS * 3,
+       RG_IFORCE_ROW = RG_FNODES * 3,
        RG_NODE_BLOCK = RG_NODES * 3 * RG_LANES,
-       RG_TRACTION_BLOCK = RG_FACES * RG_FCORNERS * 3 * RG_LANES,
+       RG_TRACTION_BLOCK = RG_TRACTION_ROW * RG_LANES,
        RG_GEOM_BLOCK = RG_GEOM * RG_LANES,
        RG_LINK_BLOCK = RG_FACES * RG_LANES,
        RG_IGEOM_BLOCK = RG_IGEOM * RG_LANES,
-       RG_IFORCE_BLOCK = RG_FNODES * 3 * RG_LANES,
+       RG_IFORCE_BLOCK = RG_IFORCE_ROW * RG_LANES,
        RG_CRACK_BLOCK = RG_POINTS * RG_CRACK * RG_LANES,
 };
 
@@ -81,8 +87,7 @@ static inline size_t rg_node_index(size_t e, int n, int c) {
 
 /* Index of component c at corner i (0-2) of face f of element e. */
 static inline size_t rg_traction_index(size_t e, int f, int i, int c) {
-    return (e / RG_LANES) * RG_TRACTION_BLOCK + (size_t)((f * RG_FCORNERS + i) * 3 + c) * RG_LANES +
-           e % RG_LANES;
+    return e * RG_TRACTION_ROW + (size_t)((f * RG_FCORNERS + i) * 3 + c);
 }
 
 static inline size_t rg_geom_index(size_t e, int k) {
@@ -98,7 +103,7 @@ static inline size_t rg_igeom_index(size_t i, int k) {
 }
 
 static inline size_t rg_iforce_index(size_t i, int n, int c) {
-    return (i / RG_LANES) * RG_IFORCE_BLOCK + (size_t)(n * 3 + c) * RG_LANES + i % RG_LANES;
+    return i * RG_IFORCE_ROW + (size_t)(n * 3 + c);
 }
 
 static inline size_t rg_crack_index(size_t i, int q, int k) {

@@ -61,6 +61,76 @@ RG_INLINE rg_vec rg_gather(const rg_lanes *p, int k) {
 #endif
 }
 
+/* ---- Rows: values of one lane side by side in memory ---- */
+
+/* Square transpose: r[i][l] <-> r[l][i], by pairs, quads and halves. */
+RG_INLINE void rg_transpose(rg_vec r[RG_VLEN]) {
+    rg_vec t[RG_VLEN];
+#if RG_VLEN == 8
+    rg_vec s[RG_VLEN];
+    for (int i = 0; i < 8; i += 2) {
+        t[i] = __builtin_shufflevector(r[i], r[i + 1], 0, 8, 2, 10, 4, 12, 6, 14);
+        t[i + 1] = __builtin_shufflevector(r[i], r[i + 1], 1, 9, 3, 11, 5, 13, 7, 15);
+    }
+    for (int h = 0; h < 8; h += 4) {
+        for (int i = h; i < h + 2; i++) {
+            s[i] = __builtin_shufflevector(t[i], t[i + 2], 0, 1, 8, 9, 4, 5, 12, 13);
+            s[i + 2] = __builtin_shufflevector(t[i], t[i + 2], 2, 3, 10, 11, 6, 7, 14, 15);
+        }
+    }
+    for (int i = 0; i < 4; i++) {
+        r[i] = __builtin_shufflevector(s[i], s[i + 4], 0, 1, 2, 3, 8, 9, 10, 11);
+        r[i + 4] = __builtin_shufflevector(s[i], s[i + 4], 4, 5, 6, 7, 12, 13, 14, 15);
+    }
+#elif RG_VLEN == 4
+    for (int i = 0; i < 4; i += 2) {
+        t[i] = __builtin_shufflevector(r[i], r[i + 1], 0, 4, 2, 6);
+        t[i + 1] = __builtin_shufflevector(r[i], r[i + 1], 1, 5, 3, 7);
+    }
+    for (int i = 0; i < 2; i++) {
+        r[i] = __builtin_shufflevector(t[i], t[i + 2], 0, 1, 4, 5);
+        r[i + 2] = __builtin_shufflevector(t[i], t[i + 2], 2, 3, 6, 7);
+    }
+#else
+    t[0] = (rg_vec){r[0][0], r[1][0]};
+    t[1] = (rg_vec){r[0][1], r[1][1]};
+    r[0] = t[0];
+    r[1] = t[1];
+#endif
+}
+
+/* out[k] = value k of each lane's row, k < count, count >= RG_VLEN. Whole vectors of a row are loaded and
+ * transposed: a row is two or three cache lines, where one value per line would be as many lines as values.
+ */
+RG_INLINE void rg_load_rows(const rg_lanes *row, int count, rg_vec out[]) {
+    for (int k = 0; k < count; k += RG_VLEN) {
+        int at = k + RG_VLEN <= count ? k : count - RG_VLEN; /* the last ones overlap */
+        rg_vec r[RG_VLEN];
+        for (int l = 0; l < RG_VLEN; l++) {
+            memcpy(&r[l], row->lane[l] + at, sizeof r[l]);
+        }
+        rg_transpose(r);
+        for (int i = 0; i < RG_VLEN; i++) {
+            out[at + i] = r[i];
+        }
+    }
+}
+
+/* The converse: rows of `count` values, `stride` apart, one per lane. */
+RG_INLINE void rg_store_rows(double *row, int stride, int count, const rg_vec in[]) {
+    for (int k = 0; k < count; k += RG_VLEN) {
+        int at = k + RG_VLEN <= count ? k : count - RG_VLEN;
+        rg_vec r[RG_VLEN];
+        for (int i = 0; i < RG_VLEN; i++) {
+            r[i] = in[at + i];
+        }
+        rg_transpose(r);
+        for (int l = 0; l < RG_VLEN; l++) {
+            memcpy(row + l * stride + at, &r[l], sizeof r[l]);
+        }
+    }
+}
+
 RG_INLINE rg_vec rg_select(rg_mask m, rg_vec yes, rg_vec no) {
     return (rg_vec)((m & (rg_mask)yes) | (~m & (rg_mask)no));
 }

@@ -1,5 +1,6 @@
 #include "constraint.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -20,6 +21,7 @@ typedef struct {
 typedef struct {
     rg_lid slot;
     int8_t component;
+    bool varies;
     int16_t boundary[RG_NODES];
     const pattern *pattern;
     double mass, work;
@@ -27,6 +29,9 @@ typedef struct {
     double target[RG_NODES]; /* velocity after it */
     double place[RG_NODES];  /* displacement after it, where that is prescribed */
 } entry;
+
+#define JUMP                                                                                                 \
+    1e-9 /* of the element size: a prescribed displacement off the initial one by more is worth a warning */
 
 struct rg_constraints {
     const rg_case *input;
@@ -126,6 +131,10 @@ static unsigned constrained_nodes(const rg_constraints *k, const int *set, size_
     return mask;
 }
 
+static bool boundary_varies(const rg_boundary *b) {
+    return b->is_displacement || rg_expr_uses_time(b->value);
+}
+
 static void add_entry(rg_constraints *k, size_t slot, int c, unsigned mask, const int16_t which[RG_NODES]) {
     if ((k->entries & (k->entries - 1)) == 0) { /* grow at powers of two */
         k->entry = rg_realloc(k->entry, k->entries == 0 ? 1 : 2 * k->entries, sizeof *k->entry);
@@ -135,11 +144,8 @@ static void add_entry(rg_constraints *k, size_t slot, int c, unsigned mask, cons
     e->mass = k->input->material.density * k->domain->geom[rg_geom_index(slot, RG_GEOM_VOLUME)];
     for (int i = 0; i < e->pattern->constrained; i++) {
         e->boundary[i] = which[e->pattern->node[i]];
+        e->varies = e->varies || boundary_varies(&k->input->boundary[e->boundary[i]]);
     }
-}
-
-static bool boundary_varies(const rg_boundary *b) {
-    return b->is_displacement || rg_expr_uses_time(b->value);
 }
 
 rg_constraints *rg_constraints_make(const rg_case *c, const rg_domain *d, const rg_part *part) {
@@ -186,6 +192,7 @@ static double velocity_at(const rg_constraints *k, const entry *e, int i, double
 }
 
 void rg_constraints_start(rg_constraints *k, const double *u, const double *velocity) {
+    size_t jumps = 0;
     for (size_t n = 0; n < k->entries; n++) {
         entry *e = &k->entry[n];
         for (int i = 0; i < e->pattern->constrained; i++) {
@@ -193,7 +200,15 @@ void rg_constraints_start(rg_constraints *k, const double *u, const double *velo
             e->before[i] = velocity[at];
             e->place[i] = u[at];
             e->target[i] = velocity_at(k, e, i, 0);
+            bool placed = k->input->boundary[e->boundary[i]].is_displacement;
+            jumps += placed &&
+                     fabs(value_at(k, e, i, 0) - u[at]) > JUMP * cbrt(e->mass / k->input->material.density);
         }
+    }
+    if (jumps > 0) {
+        rg_warn("boundary: %zu prescribed displacements differ from the initial ones at t = 0; the first "
+                "step imposes them",
+                jumps);
     }
 }
 
@@ -202,7 +217,7 @@ void rg_constraints_set(rg_constraints *k, double time_velocity, double time_dis
     k->dt = dt_displacement;
     for (size_t n = 0; k->varies && n < k->entries; n++) {
         entry *e = &k->entry[n];
-        for (int i = 0; i < e->pattern->constrained; i++) {
+        for (int i = 0; e->varies && i < e->pattern->constrained; i++) {
             if (k->input->boundary[e->boundary[i]].is_displacement) {
                 double next = value_at(k, e, i, time_displacement);
                 e->target[i] = (next - e->place[i]) / dt_displacement;
@@ -280,7 +295,7 @@ void rg_constraints_peek(rg_constraints *k, size_t begin, size_t end, double tim
         const entry *e = &k->entry[n];
         double target[RG_NODES], change[RG_NODES];
         for (int i = 0; i < e->pattern->constrained; i++) {
-            target[i] = k->varies ? velocity_at(k, e, i, time) : e->target[i];
+            target[i] = e->varies ? velocity_at(k, e, i, time) : e->target[i];
         }
         double done = correct(e, target, velocity, change);
         if (work != NULL) {

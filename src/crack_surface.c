@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "mem.h"
+#include "quadrature.h"
 
 double rg_damage(const rg_solver *s, size_t i, int q) {
     if (!(s->broken[i] >> q & 1)) {
@@ -57,7 +58,7 @@ static void unit_normal(double x[3][3], const double along[3], double n[3]) {
 }
 
 static rg_crack_face crack_face(const rg_solver *s, size_t i) {
-    static const double weight[2] = {0.223381589678011, 0.109951743655322};
+    static const double weight[2] = {RG_TRI_W0, RG_TRI_W1};
     rg_crack_face f = {.time = INFINITY};
     double jump[3], n[3], reference[3], square = 0;
     corners(s, i, f.x);

@@ -20,6 +20,12 @@ static size_t slot_of(const rg_part *part, size_t i) {
     return i < boundary ? i : round_up(boundary) + (i - boundary);
 }
 
+/* The converse, for a slot that is not padding. */
+static size_t part_index(const rg_part *part, size_t slot) {
+    size_t boundary = (size_t)part->boundary;
+    return slot < boundary ? slot : slot - round_up(boundary) + boundary;
+}
+
 /* grad l_k from the corners: rows of the inverse of the matrix with columns x_k - x_3. */
 static void gradients(const double x[4][3], double grad[3][3]) {
     double e[3][3];
@@ -121,16 +127,15 @@ static void fill_elements(rg_domain *d, const rg_part *part, const rg_gid_map *m
         }
     }
 #pragma omp parallel for schedule(static)
-    for (size_t t = 0; t < d->tiles; t++) { /* first touch by the thread that will sweep the tile */
-        for (size_t s = d->tile[t].begin * RG_LANES; s < d->tile[t].end * RG_LANES; s++) {
-            clear_links(d, s);
-            if (d->id[s] < 0) {
-                set_padding(d, s);
+    for (size_t t = 0; t < d->tiles; t++) {
+        for (size_t slot = d->tile[t].begin * RG_LANES; slot < d->tile[t].end * RG_LANES; slot++) {
+            clear_links(d, slot);
+            if (d->id[slot] < 0) {
+                set_padding(d, slot);
+            } else {
+                set_element(d, slot, &part->element[part_index(part, slot)]);
             }
         }
-    }
-    for (size_t i = 0; i < (size_t)part->elements; i++) {
-        set_element(d, slot_of(part, i), &part->element[i]);
     }
 }
 

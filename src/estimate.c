@@ -3,7 +3,10 @@
 #include <inttypes.h>
 #include <math.h>
 
+#include "error.h"
 #include "mem.h"
+
+#define MOST_STEPS 1e15
 
 /* Length of the cohesive zone of mode I, plane strain: (9 pi/32) E/(1 - nu^2) G_c/sigma_c^2 (thesis 2; Rice
  * 1968). */
@@ -34,9 +37,12 @@ static double largest_edge(const rg_solver *s) {
     return sqrt(square);
 }
 
-static double bytes_per_element(const rg_solver *s, bool with_cracks) {
+/* Of the fields, or at most: with cracks everywhere and the three buffers of field output. */
+static double bytes_per_element(const rg_solver *s, bool at_most) {
     double crack = (double)(s->domain->iblocks + 1) * RG_CRACK_BLOCK * sizeof(double);
-    double sum[2] = {(double)rg_alloc_total() - (with_cracks ? 0 : crack), (double)s->domain->elements};
+    double now = (double)rg_alloc_total(), elements = (double)s->domain->elements;
+    double output = s->input->output.fields == 0 ? 0 : 3 * RG_NODES * 3 * sizeof(double) * elements;
+    double sum[2] = {now + (at_most ? output : -crack), elements};
     MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPI_DOUBLE, MPI_SUM, s->comm);
     return sum[0] / sum[1];
 }
@@ -51,8 +57,15 @@ rg_estimate rg_estimate_run(const rg_solver *s) {
                      .c_shear = sqrt(m->mu / m->density),
                      .dt_critical = 2 / sqrt(s->omega2)};
     e.dt = c->time.safety * e.dt_critical;
-    e.steps = (int64_t)ceil(c->time.end / e.dt * (1 - 1e-12));
-    e.steps = c->time.steps > 0 && c->time.steps < e.steps ? c->time.steps : e.steps;
+    double steps = ceil(c->time.end / e.dt * (1 - 1e-12));
+    if (c->time.steps > 0) {
+        steps = fmin(steps, (double)c->time.steps);
+    }
+    if (!(steps <= MOST_STEPS)) {
+        rg_fatal(RG_USAGE, "time.end: %g s are %g steps of %g s, more than a run can count", c->time.end,
+                 steps, e.dt);
+    }
+    e.steps = (int64_t)steps;
     e.bytes_per_element = bytes_per_element(s, false);
     e.peak_bytes_per_element = bytes_per_element(s, true);
     e.seconds = 1.3 * s->pass_seconds * (double)e.steps; /* a step is a pass, the update and some output */
@@ -72,9 +85,11 @@ void rg_estimate_print(const rg_solver *s, const rg_estimate *e, FILE *out) {
             e->dt, c->time.safety, e->dt_critical, s->limiting, s->limiting_state);
     fprintf(out, "steps          %" PRId64 " to %.4g s\n", e->steps,
             fmin(c->time.end, (double)e->steps * e->dt));
-    fprintf(out, "memory         %.0f bytes per element, %.0f with cracks everywhere; %.3g GB in all\n",
-            e->bytes_per_element, e->peak_bytes_per_element,
-            e->peak_bytes_per_element * (double)e->elements * 1e-9);
+    fprintf(
+        out,
+        "memory         %.0f bytes per element, at most %.0f (output, cracks everywhere); %.3g GB in all\n",
+        e->bytes_per_element, e->peak_bytes_per_element,
+        e->peak_bytes_per_element * (double)e->elements * 1e-9);
     fprintf(out, "time loop      about %.3g s on %d ranks x %d threads (%s)\n", e->seconds, s->ranks,
             s->threads, s->kernels->name);
     if (isfinite(e->cohesive_zone)) {

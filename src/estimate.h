@@ -12,7 +12,7 @@ typedef struct {
     double c_dilatational, c_shear; /* wave speeds (m/s) */
     double dt_critical, dt;         /* 2/omega, and times safety (s) */
     int64_t steps;
-    double bytes_per_element, peak_bytes_per_element; /* fields; and with set-up and cracks everywhere */
+    double bytes_per_element, peak_bytes_per_element; /* fields; and with output and cracks everywhere */
     double seconds;       /* estimate for the time loop on these ranks and threads */
     double cohesive_zone; /* length (m); infinite where nothing breaks */
     double largest_edge;  /* of the faces between elements (m) */

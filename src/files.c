@@ -14,9 +14,17 @@ struct rg_csv {
 };
 
 static void make_one(const char *path) {
-    if (mkdir(path, 0777) != 0 && errno != EEXIST) {
-        rg_fatal(RG_FAILURE, "output directory %s: cannot be created: %s", path, strerror(errno));
+    struct stat found;
+    if (mkdir(path, 0777) == 0) {
+        return;
     }
+    if (errno == EEXIST && stat(path, &found) == 0) {
+        if (S_ISDIR(found.st_mode)) {
+            return;
+        }
+        errno = ENOTDIR;
+    }
+    rg_fatal(RG_FAILURE, "output directory %s: cannot be created: %s", path, strerror(errno));
 }
 
 void rg_make_directory(const char *path, MPI_Comm comm) {
@@ -40,6 +48,18 @@ void rg_make_directory(const char *path, MPI_Comm comm) {
 static void join(char *out, size_t size, const char *dir, const char *name) {
     if ((size_t)snprintf(out, size, "%s/%s", dir, name) >= size) {
         rg_fatal(RG_USAGE, "%s/%s: the path is too long", dir, name);
+    }
+}
+
+void rg_remove_results(const char *dir, int rank) {
+    static const char *const names[] = {"summary.json", "energy.csv",  "history.csv",
+                                        "case.yaml",    "fields.xdmf", "fields.h5"};
+    for (size_t i = 0; rank == 0 && i < sizeof names / sizeof *names; i++) {
+        char path[1024];
+        join(path, sizeof path, dir, names[i]);
+        if (remove(path) != 0 && errno != ENOENT) {
+            rg_fatal(RG_FAILURE, "%s: an earlier result cannot be removed: %s", path, strerror(errno));
+        }
     }
 }
 

@@ -10,6 +10,9 @@
  */
 void rg_make_directory(const char *path, MPI_Comm comm);
 
+/* Removes what an earlier run left in `dir`, so that results of two runs never mix; rank 0. */
+void rg_remove_results(const char *dir, int rank);
+
 /* Opens dir/name for writing; ends the run with a message on failure. */
 FILE *rg_open_in(const char *dir, const char *name);
 

@@ -176,7 +176,11 @@ void rg_interfaces_build(rg_domain *d, const rg_part *part, int rank, const rg_i
     d->between_begin = start[d->tiles] / RG_LANES;
     d->shared_begin = start[d->tiles + 1] / RG_LANES;
     d->iblocks = start[groups] / RG_LANES;
-    allocate(d, start[groups], count);
+    size_t shared = 0;
+    for (size_t i = 0; i < count; i++) {
+        shared += list[i].group == d->tiles + 1;
+    }
+    allocate(d, start[groups], shared);
     for (size_t b = 0; b < d->blocks; b++) { /* surface faces read zeros behind the last interface */
         for (size_t k = 0; k < RG_LINK_BLOCK; k++) {
             d->interface[b * RG_LINK_BLOCK + k] = rg_link((int32_t)(d->iblocks * RG_LANES), 0, 2);

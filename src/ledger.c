@@ -1,8 +1,10 @@
 #include "ledger.h"
 
+#include <float.h>
 #include <math.h>
 
 #include "element.h"
+#include "quadrature.h"
 
 enum {
     KINETIC,
@@ -12,6 +14,7 @@ enum {
     EXTERNAL,
     BROKEN,
     FAILED,
+    VOLUME,
     MOMENTUM,
     ANGULAR = MOMENTUM + 3,
     SUMS = ANGULAR + 3
@@ -60,13 +63,14 @@ static void element_energies(rg_solver *s, size_t begin, size_t end, rg_exact_su
     add_all(&sum[KINETIC], energy, count);
     for (size_t slot = begin * RG_LANES; slot < end * RG_LANES; slot++) {
         if (s->domain->id[slot] >= 0) {
+            rg_exact_add(&sum[VOLUME], s->domain->geom[rg_geom_index(slot, RG_GEOM_VOLUME)]);
             add_momentum(sum, s, slot);
         }
     }
 }
 
 static void add_areas(rg_exact_sum sum[SUMS], const rg_solver *s, size_t i) {
-    static const double weight[2] = {0.223381589678011, 0.109951743655322};
+    static const double weight[2] = {RG_TRI_W0, RG_TRI_W1};
     double area = s->domain->igeom[rg_igeom_index(i, RG_IGEOM_AREA)];
     for (int q = 0; q < RG_POINTS; q++) {
         if (s->broken[i] >> q & 1) {
@@ -147,7 +151,7 @@ const rg_energy *rg_ledger_take(rg_ledger *l, rg_solver *s) {
     if (!l->begun) {
         *l = (rg_ledger){.begun = true, .start = e->total, .last = *e};
     }
-    l->largest = fmax(l->largest, fabs(stored));
+    l->largest = fmax(fmax(l->largest, fabs(stored)), 1e3 * DBL_EPSILON * s->bulk.material.mu * v[VOLUME]);
     e->error = e->total == l->start ? 0 : (e->total - l->start) / l->largest;
     l->worst = isnan(e->error) ? INFINITY : fmax(l->worst, fabs(e->error));
     return e;

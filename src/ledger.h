@@ -11,7 +11,8 @@ typedef struct {
     double kinetic, bulk, penalty, cohesive, contact, dissipated,
         external;       /* J; external: work done on the body */
     double total;       /* sum of the parts less the external work (J) */
-    double error;       /* change of the total since the start, over the largest energy seen */
+    double error;       /* change of the total since the start, over the largest energy seen (or what
+                         * rounding of F makes of the energy, if that is more: 1000 eps mu V) */
     double broken_area; /* of the points that switched (m^2) */
     double failed_area; /* of those that carry nothing any more (m^2) */
     double momentum[3], angular_momentum[3]; /* kg m/s, kg m^2/s about the origin */

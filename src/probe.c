@@ -10,6 +10,7 @@
 #include "error.h"
 #include "files.h"
 #include "mem.h"
+#include "quadrature.h"
 
 enum { VALUES = 12, CAPACITY = 256 }; /* per probe and sample; samples between two flushes */
 
@@ -81,7 +82,6 @@ rg_probes *rg_probes_open(const rg_solver *s, const char *dir) {
 
 /* Stress at barycentric point l: linear through the four Gauss points. */
 static void stress_at(const rg_solver *s, size_t slot, const double l[4], double out[6]) {
-    const double a = 0.13819660112501051518, b = 0.58541019662496845446;
     _Alignas(64) double cauchy[RG_GAUSS * 6 * RG_LANES];
     size_t block = slot / RG_LANES;
     rg_bulk_state_args args = {.bulk = &s->bulk, .cauchy = cauchy};
@@ -89,7 +89,7 @@ static void stress_at(const rg_solver *s, size_t slot, const double l[4], double
     for (size_t k = 0; k < 6; k++) {
         out[k] = 0;
         for (size_t g = 0; g < RG_GAUSS; g++) { /* sum_i l_i e_ig, e_ig = (delta_ig - a)/(b - a) */
-            out[k] += (l[g] - a) / (b - a) * cauchy[(g * 6 + k) * RG_LANES + slot % RG_LANES];
+            out[k] += (l[g] - RG_GAUSS_A) / RG_GAUSS_BA * cauchy[(g * 6 + k) * RG_LANES + slot % RG_LANES];
         }
     }
 }

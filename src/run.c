@@ -79,9 +79,7 @@ static bool output_due(run *r) {
     if (r->solver->time < r->next_output - 1e-6 * interval) {
         return false;
     }
-    while (r->next_output <= r->solver->time + 1e-6 * interval) {
-        r->next_output += interval;
-    }
+    r->next_output = (floor(r->solver->time / interval + 1e-6) + 1) * interval;
     return true;
 }
 
@@ -95,7 +93,9 @@ static bool done(const run *r) {
 static void output(run *r) {
     const rg_energy *e = rg_ledger_take(&r->ledger, r->solver);
     rg_csv_energy(r->energy, e);
-    if (!(r->ledger.worst <= r->input->output.energy_limit)) {
+    if (!isfinite(r->solver->stiffening_anywhere)) {
+        locate_failure(r);
+    } else if (!(r->ledger.worst <= r->input->output.energy_limit)) {
         snprintf(r->failure, sizeof r->failure,
                  "the energy error %.3g passed the limit %.3g (output.energy_limit) at step %" PRId64
                  ", time %.6g s; the time step is set by element %" PRId64
@@ -144,6 +144,7 @@ static void time_loop(run *r) {
 static void open_outputs(run *r) {
     const rg_case *c = r->input;
     rg_make_directory(c->output.dir, r->solver->comm);
+    rg_remove_results(c->output.dir, r->solver->rank);
     rg_echo_case(c, r->solver->rank);
     r->energy = rg_csv_open(c->output.dir, "energy.csv", r->solver->rank);
     rg_csv_energy_header(r->energy);

@@ -46,18 +46,29 @@ static void allocate_fields(rg_solver *s) {
     s->active = RG_NEW(uint8_t, faces);
 }
 
+static void place_tile(rg_solver *s, const rg_tile *tile) {
+    size_t b = tile->begin, n = tile->end - b, i = tile->ibegin, m = tile->iend - i;
+    memset(s->u + b * RG_NODE_BLOCK, 0, n * RG_NODE_BLOCK * sizeof(double));
+    memset(s->velocity + b * RG_NODE_BLOCK, 0, n * RG_NODE_BLOCK * sizeof(double));
+    memset(s->scratch + b * RG_NODE_BLOCK, 0, n * RG_NODE_BLOCK * sizeof(double));
+    memset(s->force + b * RG_NODE_BLOCK, 0, n * RG_NODE_BLOCK * sizeof(double));
+    memset(s->traction + b * RG_TRACTION_BLOCK, 0, n * RG_TRACTION_BLOCK * sizeof(double));
+    memset(s->iforce + i * RG_IFORCE_BLOCK, 0, m * RG_IFORCE_BLOCK * sizeof(double));
+}
+
+/* First touch: the pages go to the thread that will sweep the tile, in the loops of `pass`. */
 static void place_fields(rg_solver *s) {
     const rg_domain *d = s->domain;
-#pragma omp parallel for schedule(static)
-    for (size_t t = 0; t < d->tiles; t++) { /* first touch: the pages go to the thread that sweeps the tile */
-        size_t b = d->tile[t].begin, n = d->tile[t].end - b;
-        size_t i = d->tile[t].ibegin, m = d->tile[t].iend - i;
-        memset(s->u + b * RG_NODE_BLOCK, 0, n * RG_NODE_BLOCK * sizeof(double));
-        memset(s->velocity + b * RG_NODE_BLOCK, 0, n * RG_NODE_BLOCK * sizeof(double));
-        memset(s->scratch + b * RG_NODE_BLOCK, 0, n * RG_NODE_BLOCK * sizeof(double));
-        memset(s->force + b * RG_NODE_BLOCK, 0, n * RG_NODE_BLOCK * sizeof(double));
-        memset(s->traction + b * RG_TRACTION_BLOCK, 0, n * RG_TRACTION_BLOCK * sizeof(double));
-        memset(s->iforce + i * RG_IFORCE_BLOCK, 0, m * RG_IFORCE_BLOCK * sizeof(double));
+#pragma omp parallel
+    {
+#pragma omp for schedule(static)
+        for (size_t t = 0; t < d->boundary_tiles; t++) {
+            place_tile(s, &d->tile[t]);
+        }
+#pragma omp for schedule(static)
+        for (size_t t = d->boundary_tiles; t < d->tiles; t++) {
+            place_tile(s, &d->tile[t]);
+        }
     }
 }
 
@@ -120,8 +131,12 @@ rg_solver *rg_solver_make(const rg_case *input, MPI_Comm comm) {
     MPI_Comm_rank(comm, &s->rank);
     MPI_Comm_size(comm, &s->ranks);
     s->kernels = rg_kernels_select();
+    if (s->kernels == NULL && s->rank > 0) {
+        MPI_Barrier(comm); /* rank 0 speaks and ends the job */
+    }
     if (s->kernels == NULL) {
-        rg_fatal(RG_USAGE, "RHEGMA_ISA names an instruction set that this machine does not have");
+        rg_fatal(RG_USAGE, "RHEGMA_ISA names an instruction set that this machine does not have; there are "
+                           "x86-64-v2, -v3, -v4");
     }
     s->part = make_part(input, s->rank, comm);
     double lambda, mu;
@@ -264,6 +279,16 @@ void rg_solver_forces(rg_solver *s) {
 
 /* ---- Time ---- */
 
+/* Value of an initial expression, 0 where there is none. */
+static double initial_value(const rg_expr *e, const char *key, int component, const double x[3]) {
+    double value = e == NULL ? 0 : rg_expr_value(e, x, 0);
+    if (!isfinite(value)) {
+        rg_fatal(RG_USAGE, "initial.%s.%c: %s is not finite at (%g, %g, %g)", key, "xyz"[component],
+                 rg_expr_text(e), x[0], x[1], x[2]);
+    }
+    return value;
+}
+
 static void set_initial(rg_solver *s) {
     const rg_case *c = s->input;
     for (size_t slot = 0; slot < s->domain->blocks * RG_LANES; slot++) {
@@ -271,9 +296,10 @@ static void set_initial(rg_solver *s) {
             double x[3];
             rg_node_position(s->domain->corner + 12 * slot, n, x);
             for (int k = 0; k < 3; k++) {
-                const rg_expr *u = c->initial.displacement[k], *v = c->initial.velocity[k];
-                s->u[rg_node_index(slot, n, k)] = u == NULL ? 0 : rg_expr_value(u, x, 0);
-                s->velocity[rg_node_index(slot, n, k)] = v == NULL ? 0 : rg_expr_value(v, x, 0);
+                s->u[rg_node_index(slot, n, k)] =
+                    initial_value(c->initial.displacement[k], "displacement", k, x);
+                s->velocity[rg_node_index(slot, n, k)] =
+                    initial_value(c->initial.velocity[k], "velocity", k, x);
             }
         }
     }

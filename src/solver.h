@@ -34,7 +34,7 @@ typedef struct {
     rg_interface_args interface;
     rg_update_args update;
 
-    double omega2;   /* largest squared frequency of any state a face can take (1/s^2) */
+    double omega2;   /* largest squared frequency, faces intact or closed (1/s^2) */
     rg_gid limiting; /* element that sets it */
     const char *limiting_state;
     double pass_seconds; /* of one evaluation of all forces, as measured at set-up */

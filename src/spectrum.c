@@ -87,10 +87,10 @@ typedef struct {
     rg_solver *s;
     double height; /* smallest element height (m) */
     double scale;  /* frequencies are in units of c_d/height, so that numbers stay near 1 (1/s^2) */
-} operator_t;
+} linear_operator;
 
 /* w <- w + A q / scale, A = M^-1 K. Uses u. */
-static void apply(const operator_t *op, const double *q, double *w) {
+static void apply(const linear_operator *op, const double *q, double *w) {
     rg_solver *s = op->s;
     double amplitude = AMPLITUDE * op->height / largest_entry(s, q);
     combine(s, 0, s->u, amplitude, q);
@@ -144,7 +144,7 @@ static void swap(double **a, double **b) {
 
 /* One step: q_j in `q`, q_{j-1} in `before`; leaves q_{j+1} in `q` and q_j in `before`. False if the space is
  * full. */
-static bool lanczos_step(const operator_t *op, lanczos *z, int j, double **q, double **before) {
+static bool lanczos_step(const linear_operator *op, lanczos *z, int j, double **q, double **before) {
     rg_solver *s = op->s;
     combine(s, j > 0 ? -z->beta[j - 1] : 0, *before, 0, *q);
     apply(op, *q, *before);
@@ -159,13 +159,13 @@ static bool lanczos_step(const operator_t *op, lanczos *z, int j, double **q, do
     return true;
 }
 
-static void first_vector(const operator_t *op, double *q, double *before) {
+static void first_vector(const linear_operator *op, double *q, double *before) {
     randomize(op->s, q);
     combine(op->s, 1 / sqrt(mass_dot(op->s, q, q)), q, 0, q);
     memset(before, 0, values(op->s) * sizeof *before);
 }
 
-static double lanczos_eigenvalue(const operator_t *op, lanczos *z) {
+static double lanczos_eigenvalue(const linear_operator *op, lanczos *z) {
     double *q = op->s->velocity, *before = op->s->scratch, last = 0;
     first_vector(op, q, before);
     for (z->n = 0; z->n < MAX_ITERATIONS;) {
@@ -182,7 +182,7 @@ static double lanczos_eigenvalue(const operator_t *op, lanczos *z) {
 }
 
 /* Not symmetric: growth of the norm under repeated application. */
-static double power_eigenvalue(const operator_t *op) {
+static double power_eigenvalue(const linear_operator *op) {
     rg_solver *s = op->s;
     double *q = s->velocity, *w = s->scratch, norm = 0, largest = 0;
     first_vector(op, q, w);
@@ -211,10 +211,7 @@ static void tridiagonal_vector(const lanczos *z, double theta, double y[MAX_ITER
 
 /* Element with the most of the squared vector; the lowest number among equals. */
 static rg_gid dominant_element(rg_solver *s, const double *x) {
-    struct {
-        double value;
-        int rank;
-    } best = {-1, s->rank};
+    double most = -1;
     rg_gid id = -1;
     for (size_t slot = 0; slot < s->domain->blocks * RG_LANES; slot++) {
         double sum = 0;
@@ -223,20 +220,20 @@ static rg_gid dominant_element(rg_solver *s, const double *x) {
             sum += v * v;
         }
         rg_gid here = s->domain->id[slot];
-        if (here >= 0 && (sum > best.value || (sum >= best.value && here < id))) {
-            best.value = sum;
+        if (here >= 0 && (sum > most || (sum >= most && here < id))) {
+            most = sum;
             id = here;
         }
     }
-    double top = best.value;
+    double top = most;
     MPI_Allreduce(MPI_IN_PLACE, &top, 1, MPI_DOUBLE, MPI_MAX, s->comm);
-    int64_t mine = best.value >= top ? id : INT64_MAX;
+    int64_t mine = most >= top ? id : INT64_MAX;
     MPI_Allreduce(MPI_IN_PLACE, &mine, 1, MPI_INT64_T, MPI_MIN, s->comm);
     return mine;
 }
 
 /* Repeats the iteration, which needs no stored vectors, and sums the Ritz vector. */
-static rg_gid limiting_element(const operator_t *op, const lanczos *known, double theta) {
+static rg_gid limiting_element(const linear_operator *op, const lanczos *known, double theta) {
     rg_solver *s = op->s;
     if (known->n == 0) { /* power iteration: its last vector is the eigenvector */
         power_eigenvalue(op);
@@ -312,7 +309,7 @@ static void rest(rg_solver *s) {
 void rg_spectrum(rg_solver *s) {
     rg_interface_args saved = s->interface;
     const rg_material *m = &s->bulk.material;
-    operator_t op = {.s = s, .height = smallest_height(s)};
+    linear_operator op = {.s = s, .height = smallest_height(s)};
     op.scale = (m->lambda + 2 * m->mu) / m->density / (op.height * op.height);
     double *shared = RG_NEW(double, RG_CRACK_BLOCK), worst = 0;
     bool closes = s->input->interface.law != RG_LAW_NONE && s->input->interface.contact != RG_CONTACT_FLUX;

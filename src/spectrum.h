@@ -10,7 +10,10 @@
  * tiny displacement; so it holds for every form, mass and penalty. Its largest eigenvalue is found by the
  * Lanczos iteration in the inner product of M (the incomplete form, not symmetric, by power iteration). The
  * states tried are those a face can take: all faces intact; all broken and closed (contact on both sides of
- * zero, hence linear). Sums are exact, so the result has the same bits on any ranks and threads. Collective.
+ * zero, hence linear). A point that
+ * just broke unloads along a much steeper line (its opening is still tiny), which no step of use could
+ * follow: that is what time.safety is for. Sums are exact, so the result has the same bits on any ranks and
+ * threads. Collective.
  */
 void rg_spectrum(rg_solver *s);
 

@@ -34,6 +34,19 @@ static void number(FILE *f, const char *key, double value) {
     }
 }
 
+static void vector(FILE *f, const char *key, const double value[3]) {
+    fprintf(f, "  \"%s\": [", key);
+    for (int c = 0; c < 3; c++) {
+        const char *comma = c < 2 ? ", " : "";
+        if (isfinite(value[c])) {
+            fprintf(f, "%.17g%s", value[c], comma);
+        } else {
+            fprintf(f, "null%s", comma);
+        }
+    }
+    fputs("],\n", f);
+}
+
 static void write_run(FILE *f, const rg_summary *m, const rg_solver *s, const rg_estimate *e) {
     text(f, "case", s->input->name);
     integer(f, "elements", e->elements);
@@ -52,6 +65,7 @@ static void write_run(FILE *f, const rg_summary *m, const rg_solver *s, const rg
     number(f, "setup_s", m->setup_seconds);
     number(f, "wall_s", m->loop_seconds + m->output_seconds);
     number(f, "output_s", m->output_seconds);
+    number(f, "halo_wait_s", m->halo_wait_seconds);
     number(f, "us_per_tet_step", m->us_per_tet_step);
 }
 
@@ -63,16 +77,16 @@ static void write_physics(FILE *f, const rg_summary *m, const rg_ledger *l) {
     number(f, "broken_area_m2", l->last.broken_area);
     number(f, "failed_area_m2", l->last.failed_area);
     integer(f, "halo_doubles_per_face", 3 * RG_FNODES + 3 * RG_FCORNERS);
-    fprintf(f, "  \"momentum\": [%.17g, %.17g, %.17g],\n", l->last.momentum[0], l->last.momentum[1],
-            l->last.momentum[2]);
-    fprintf(f, "  \"angular_momentum\": [%.17g, %.17g, %.17g],\n", l->last.angular_momentum[0],
-            l->last.angular_momentum[1], l->last.angular_momentum[2]);
+    vector(f, "momentum", l->last.momentum);
+    vector(f, "angular_momentum", l->last.angular_momentum);
     text(f, "status", m->failure[0] == '\0' ? "completed" : m->failure);
 }
 
 void rg_summary_write(rg_summary *m, rg_solver *s, const rg_ledger *l, const rg_estimate *e) {
     uint64_t hash = rg_state_hash(s);
     m->first_fracture = rg_first_fracture(s);
+    m->halo_wait_seconds = rg_halo_waited(s->halo_u) + rg_halo_waited(s->halo_t);
+    MPI_Allreduce(MPI_IN_PLACE, &m->halo_wait_seconds, 1, MPI_DOUBLE, MPI_MAX, s->comm);
     double work = (double)e->elements * (double)s->step;
     m->us_per_tet_step = work > 0 ? 1e6 * m->loop_seconds * s->ranks * s->threads / work : 0;
     if (s->rank != 0) {

@@ -6,11 +6,12 @@
 #include "ledger.h"
 
 typedef struct {
-    double dt_first;       /* s */
-    double setup_seconds;  /* wall time before the time loop */
-    double loop_seconds;   /* wall time of the time loop without output */
-    double output_seconds; /* wall time of output within the time loop */
-    const char *failure;   /* "" where the run reached its end */
+    double dt_first;          /* s */
+    double setup_seconds;     /* wall time before the time loop */
+    double loop_seconds;      /* wall time of the time loop without output */
+    double output_seconds;    /* wall time of output within the time loop */
+    double halo_wait_seconds; /* longest wait for messages on any rank; filled by rg_summary_write */
+    const char *failure;      /* "" where the run reached its end */
     double us_per_tet_step,
         first_fracture; /* filled by rg_summary_write; us of core time; s, infinite for none */
 } rg_summary;

@@ -162,7 +162,6 @@ const char *instruction_count_unavailable(void) {
 
 static void add(instruction_count *sum, uint64_t address, double by_width[65]) {
     const instruction *i = bsearch(&address, code, code_count, sizeof *code, by_address);
-    sum->instructions++;
     if (i != NULL) {
         sum->flops += i->flops;
         sum->fused += i->fused ? i->flops : 0;
@@ -186,6 +185,7 @@ instruction_count instruction_count_of(void (*run)(void *), void *context) {
     }
     for (int width = 64; sum.widest == 0 && width > 0; width /= 2) {
         sum.widest = by_width[width];
+        sum.width = width;
     }
     return sum;
 }

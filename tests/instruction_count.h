@@ -7,11 +7,11 @@
 #include <stdbool.h>
 
 typedef struct {
-    double flops;        /* additions, subtractions, multiplications, divisions, roots of all lanes; a fused
-                            multiply-add is two */
-    double widest;       /* of these, in vectors of the widest kind met */
-    double fused;        /* of these, in fused multiply-adds */
-    double instructions; /* of any kind */
+    double flops;  /* additions, subtractions, multiplications, divisions, roots of all lanes; a fused
+                      multiply-add is two */
+    double widest; /* of these, in vectors of the widest kind met */
+    double fused;  /* of these, in fused multiply-adds */
+    int width;     /* of the widest vectors, in bytes */
 } instruction_count;
 
 /* Why nothing can be counted here (not x86-64 Linux, no objdump, tracing forbidden), or NULL. */

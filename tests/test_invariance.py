@@ -48,13 +48,17 @@ def test_affine_stress_is_that_of_the_law_everywhere(affine):
 
 
 def test_rotation_leaves_the_body_at_rest(run):
-    turned = run(CASES / "rotation.yaml")
+    turned = run(CASES / "rotation.yaml", sets={"output.energy_limit": 1e9})
     frames = turned.frames()
     assert len(frames) == 3
     for frame in frames:
         assert np.abs(frame["stress"]).max() < 1e-13 * YOUNG
         assert np.abs(frame["velocity"]).max() < 1e-12 * WAVE_SPEED
     assert np.abs(turned.energy["bulk"]).max() < 1e-15 * YOUNG * 1e-9  # J, for the volume
+
+
+def test_rounding_alone_does_not_stop_a_run(run):
+    assert run(CASES / "rotation.yaml").summary["status"] == "completed"
 
 
 # ---- fragments.yaml ----
@@ -80,21 +84,21 @@ def spin(energy):
     return np.linalg.norm(vector(energy, "angular")[0])
 
 
-def fragments(run, **sets):
-    return run(CASES / "fragments.yaml", threads=2, sets=sets)
+def fragments(run, penalty="elastic", mass="consistent", **sets):
+    return run(CASES / "fragments.yaml", threads=2, sets={"interface.penalty": penalty, "mass": mass, **sets}).energy
 
 
 @pytest.mark.parametrize("mass", ["consistent", "lumped"])
 @pytest.mark.parametrize("penalty", ["elastic", "isotropic"])
 def test_linear_momentum_is_constant_through_fragmentation(run, penalty, mass):
-    energy = fragments(run, **{"interface.penalty": penalty, "mass": mass}).energy
+    energy = fragments(run, penalty, mass)
     assert energy["broken_area"][-1] > 1e-6
     assert np.abs(vector(energy, "momentum")[0]).min() > 0.01 * momentum_scale(energy)
     assert drift(energy, "momentum", momentum_scale(energy)) < 1e-12
 
 
 def test_isotropic_penalty_conserves_spin_while_nothing_breaks(run):
-    energy = fragments(run, **{"interface.penalty": "isotropic"}, **UNBREAKABLE).energy
+    energy = fragments(run, "isotropic", **UNBREAKABLE)
     assert energy["broken_area"][-1] == 0
     assert drift(energy, "angular", spin(energy)) < 1e-10
 
@@ -105,11 +109,11 @@ def test_isotropic_penalty_conserves_spin_while_nothing_breaks(run):
 
 
 def test_elastic_penalty_hardly_changes_spin_while_nothing_breaks(run):
-    energy = fragments(run, **UNBREAKABLE).energy
+    energy = fragments(run, **UNBREAKABLE)
     assert drift(energy, "angular", spin(energy)) < 4e-8
 
 
 @pytest.mark.parametrize("penalty, bound", [("elastic", 1e-4), ("isotropic", 1e-5)])
 def test_fragmentation_hardly_changes_spin(run, penalty, bound):
-    energy = fragments(run, **{"interface.penalty": penalty}).energy
+    energy = fragments(run, penalty)
     assert drift(energy, "angular", spin(energy)) < bound

@@ -22,8 +22,9 @@ def energy(request, run):
 
 
 def test_cracks_never_heal(energy):
-    for name in ("broken_area", "failed_area", "dissipated"):
+    for name in ("broken_area", "failed_area"):
         assert (np.diff(energy[name]) >= 0).all(), name
+    assert (np.diff(energy["dissipated"]) >= -1e-14 * energy["dissipated"][-1]).all()  # a difference, so rounded
 
 
 def test_dissipation_lies_between_failed_and_broken_area(energy):
@@ -40,8 +41,8 @@ def test_total_is_the_sum_of_its_parts(energy):
     parts = sum(energy[name] for name in ("kinetic", "bulk", "penalty", "cohesive", "contact", "dissipated"))
     scale = np.abs(energy["external_work"]).max() + parts.max()
     assert np.abs(parts - energy["external_work"] - energy["total"]).max() < 1e-14 * scale
-    worst = np.abs(energy["total"] - energy["total"][0]) / np.maximum.accumulate(parts)
-    assert np.abs(energy["error_rel"]) == pytest.approx(worst, rel=1e-6, abs=1e-12)
+    error = (energy["total"] - energy["total"][0])[1:] / np.maximum.accumulate(parts)[1:]
+    assert energy["error_rel"][1:] == pytest.approx(error, rel=1e-6, abs=1e-12)
 
 
 @pytest.mark.parametrize("name", ["spall", "jittered"])

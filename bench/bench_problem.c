@@ -1,0 +1,214 @@
+#include "bench_problem.h"
+
+#include <math.h>
+#include <mpi.h>
+#include <omp.h>
+#include <string.h>
+
+#include "hash.h"
+#include "mem.h"
+
+#define CELL     1e-4 /* edge of a cube of six tetrahedra (m) */
+#define ROUGH    1e-7 /* displacement (m): strains of about 1e-2 */
+#define SPEED    1.0  /* velocity (m/s) */
+#define PULL     0.1  /* nodal and corner forces (N): tractions well below the strength */
+#define STRENGTH 400e6
+#define OPENING  1.7e-7 /* m */
+
+enum { TILE_ELEMENTS = 256 };
+enum { KEY_U = 1, KEY_VELOCITY, KEY_PULL, KEY_TRACTION, KEY_IPULL, KEY_BREAK, KEY_CRACK };
+
+const char *const bench_size_name[BENCH_SIZES] = {"cache", "memory"};
+
+double bench_noise(uint64_t field, rg_gid element, int place) {
+    return 2 * rg_hash_uniform(rg_hash(rg_hash(field, (uint64_t)element), (uint64_t)place)) - 1;
+}
+
+bool bench_is_broken(rg_gid minus, int face, int percent) {
+    return 50 * (bench_noise(KEY_BREAK, minus, face) + 1) < percent;
+}
+
+/* In the cache: 252 tetrahedra a thread. Beyond: more than 200,000 (some 8,000 if `quick`). */
+static rg_domain *make_domain(bench_size size, bool quick, const rg_interface_material *m) {
+    const int64_t side = quick ? 11 : 33;
+    const int64_t small[3] = {7, 3, 2 * omp_get_max_threads()}, large[3] = {side, side, side};
+    const int64_t *cells = size == BENCH_MEMORY ? large : small;
+    double origin[3] = {0, 0, 0}, extent[3];
+    for (int c = 0; c < 3; c++) {
+        extent[c] = CELL * (double)cells[c];
+    }
+    rg_mesh *mesh = rg_mesh_box(cells, origin, extent, 0.1, 1);
+    rg_part *part = rg_part_distribute(mesh, MPI_COMM_SELF);
+    rg_mesh_free(mesh);
+    rg_domain *d = rg_domain_build(part, 0, m, TILE_ELEMENTS);
+    rg_part_free(part);
+    return d;
+}
+
+static void allocate(bench_problem *p) {
+    size_t blocks = p->domain->blocks, faces = p->domain->iblocks + 1;
+    p->pull = RG_NEW(double, blocks *RG_NODE_BLOCK);
+    p->u = RG_NEW(double, blocks *RG_NODE_BLOCK);
+    p->velocity = RG_NEW(double, blocks *RG_NODE_BLOCK);
+    p->force = RG_NEW(double, blocks *RG_NODE_BLOCK);
+    p->itraction = RG_NEW(double, blocks *RG_TRACTION_BLOCK);
+    p->traction = RG_NEW(double, blocks *RG_TRACTION_BLOCK);
+    p->stiffening = RG_NEW(double, blocks *RG_LANES);
+    p->energy = RG_NEW(double, blocks *RG_LANES);
+    p->kinetic = RG_NEW(double, blocks *RG_LANES);
+    p->cauchy = RG_NEW(double, blocks *RG_GAUSS * 6 * RG_LANES);
+    p->cracked = RG_NEW(uint8_t, blocks);
+    p->ipull = RG_NEW(double, faces *RG_IFORCE_BLOCK);
+    p->iforce = RG_NEW(double, faces *RG_IFORCE_BLOCK);
+    p->crack = RG_NEW(double, faces *RG_CRACK_BLOCK);
+    p->ienergy = RG_NEW(double, faces *RG_E_INTERFACE *RG_LANES);
+    p->broken = RG_NEW(uint8_t, faces * RG_LANES);
+    p->unlinked = RG_NEW(uint8_t, faces * RG_LANES);
+    p->active = RG_NEW(uint8_t, faces);
+}
+
+/* Fills blocks [begin, end) of `rows` values a lane. */
+static void fill(double *x, size_t begin, size_t end, int rows, uint64_t field, double size) {
+    for (size_t b = begin; b < end; b++) {
+        for (int r = 0; r < rows; r++) {
+            for (size_t l = 0; l < RG_LANES; l++) {
+                x[(b * (size_t)rows + (size_t)r) * RG_LANES + l] =
+                    size * bench_noise(field, (rg_gid)(b * RG_LANES + l), r);
+            }
+        }
+    }
+}
+
+/* Padding is at rest. */
+static void rest(double *x, const rg_domain *d, size_t begin, size_t end) {
+    for (size_t e = begin * RG_LANES; e < end * RG_LANES; e++) {
+        for (int k = 0; d->id[e] < 0 && k < RG_NODES * 3; k++) {
+            x[rg_node_index(e, k / 3, k % 3)] = 0;
+        }
+    }
+}
+
+static void fill_inputs(bench_problem *p) {
+#pragma omp parallel
+    {
+        size_t begin, end;
+        bench_share(p->domain->blocks, &begin, &end);
+        fill(p->pull, begin, end, RG_NODES * 3, KEY_PULL, PULL);
+        fill(p->itraction, begin, end, RG_FACES * RG_FCORNERS * 3, KEY_TRACTION, PULL);
+        bench_share(p->domain->iblocks, &begin, &end);
+        fill(p->ipull, begin, end, RG_FNODES * 3, KEY_IPULL, PULL);
+    }
+}
+
+bench_problem *bench_problem_make(bench_size size, bool quick) {
+    const double lambda = 77.8e9, mu = 107.4e9; /* alumina */
+    const rg_interface_material m = {lambda, mu, 4, RG_PENALTY_ELASTIC};
+    bench_problem *p = RG_NEW(bench_problem, 1);
+    p->material = (rg_material){lambda, mu, 3690};
+    p->law = (rg_cohesive){.strength = STRENGTH, .opening = OPENING, .beta = 1};
+    p->domain = make_domain(size, quick, &m);
+    allocate(p);
+    fill_inputs(p);
+    return p;
+}
+
+/* A broken point has an opening in any direction, so that about half are closed, a little below its largest
+ * one. */
+static void break_face(bench_problem *p, size_t i) {
+    p->broken[i] = p->unlinked[i] = (1 << RG_POINTS) - 1;
+    p->active[i / RG_LANES] = 1;
+    for (int q = 0; q < RG_POINTS; q++) {
+        double square = 0;
+        for (int c = 0; c < 3; c++) {
+            double w = OPENING * bench_noise(KEY_CRACK, (rg_gid)i, 3 * q + c);
+            p->crack[rg_crack_index(i, q, RG_CRACK_ORIGIN + c)] = -w;
+            square += w * w;
+        }
+        p->crack[rg_crack_index(i, q, RG_CRACK_OPENING)] = 1.1 * sqrt(square);
+    }
+}
+
+static void reset_interfaces(bench_problem *p, size_t begin, size_t end, int percent) {
+    const rg_domain *d = p->domain;
+    memset(p->crack + begin * RG_CRACK_BLOCK, 0, (end - begin) * RG_CRACK_BLOCK * sizeof(double));
+    for (size_t i = begin * RG_LANES; i < end * RG_LANES; i++) {
+        int32_t minus = d->side[0][i];
+        p->active[i / RG_LANES] = i % RG_LANES == 0 ? 0 : p->active[i / RG_LANES];
+        p->broken[i] = p->unlinked[i] = 0;
+        if (d->counted[i] && bench_is_broken(d->id[minus / RG_FACES], minus % RG_FACES, percent)) {
+            break_face(p, i);
+        }
+    }
+}
+
+/* Faces of element block `b` that have unlinked points in some lane. */
+static int unlinked_faces(const rg_domain *d, const uint8_t *unlinked, size_t b) {
+    int faces = 0;
+    for (int f = 0; f < RG_FACES; f++) {
+        uint8_t any = 0;
+        for (int l = 0; l < RG_LANES; l++) {
+            any |= unlinked[d->interface[b * RG_LINK_BLOCK + (size_t)(f * RG_LANES + l)] >> 1];
+        }
+        faces += any != 0;
+    }
+    return faces;
+}
+
+static void spoil(double *x, size_t begin, size_t end, size_t per_block) {
+    memset(x + begin * per_block, 0xff, (end - begin) * per_block * sizeof *x);
+}
+
+void bench_problem_reset(bench_problem *p, int percent) {
+#pragma omp parallel
+    {
+        size_t begin, end;
+        bench_share(p->domain->iblocks, &begin, &end);
+        reset_interfaces(p, begin, end, percent);
+        spoil(p->iforce, begin, end, RG_IFORCE_BLOCK);
+        spoil(p->ienergy, begin, end, RG_E_INTERFACE * RG_LANES);
+#pragma omp barrier
+        bench_share(p->domain->blocks, &begin, &end);
+        fill(p->u, begin, end, RG_NODES * 3, KEY_U, ROUGH);
+        fill(p->velocity, begin, end, RG_NODES * 3, KEY_VELOCITY, SPEED);
+        rest(p->u, p->domain, begin, end);
+        spoil(p->force, begin, end, RG_NODE_BLOCK);
+        spoil(p->traction, begin, end, RG_TRACTION_BLOCK);
+        spoil(p->stiffening, begin, end, RG_LANES);
+        spoil(p->energy, begin, end, RG_LANES);
+        spoil(p->kinetic, begin, end, RG_LANES);
+        spoil(p->cauchy, begin, end, RG_GAUSS * 6 * RG_LANES);
+        for (size_t b = begin; b < end; b++) {
+            p->cracked[b] = unlinked_faces(p->domain, p->unlinked, b) > 0;
+        }
+    }
+}
+
+rg_cost_variant bench_mesh_state(const rg_domain *d, const uint8_t *active, const uint8_t *unlinked,
+                                 rg_cost_variant flags, bool by_interface) {
+    rg_cost_variant v = flags;
+    size_t faces = 0, broken = 0;
+    for (size_t b = 0; b < d->blocks; b++) {
+        faces += (size_t)unlinked_faces(d, unlinked, b);
+    }
+    for (size_t b = 0; b < d->iblocks; b++) {
+        broken += active[b];
+    }
+    v.unlinked = (double)faces / (double)d->blocks;
+    v.damaged = (double)broken / (double)d->iblocks;
+    v.points = RG_POINTS;
+    v.interfaces = (double)d->iblocks / (double)d->blocks;
+    v.fill = by_interface ? (double)d->interfaces / (double)(d->iblocks * RG_LANES)
+                          : (double)d->elements / (double)(d->blocks * RG_LANES);
+    return v;
+}
+
+void bench_problem_free(bench_problem *p) {
+    void *blocks[] = {p->pull,       p->itraction, p->ipull,  p->u,        p->velocity, p->crack,
+                      p->cracked,    p->broken,    p->active, p->unlinked, p->force,    p->traction,
+                      p->stiffening, p->iforce,    p->energy, p->cauchy,   p->kinetic,  p->ienergy};
+    for (size_t k = 0; k < sizeof blocks / sizeof *blocks; k++) {
+        rg_free(blocks[k]);
+    }
+    rg_domain_free(p->domain);
+    rg_free(p);
+}

@@ -1,0 +1,43 @@
+/* Random but valid input for the kernels: a jittered box of tetrahedra with real links and geometry, random
+ * fields of small strain, and broken faces picked by hash. Every rank has its own. */
+#ifndef RG_BENCH_PROBLEM_H
+#define RG_BENCH_PROBLEM_H
+
+#include "bench.h"
+#include "domain.h"
+
+typedef struct {
+    rg_material material;
+    rg_cohesive law;
+    rg_domain *domain;
+    double *pull, *itraction,
+        *ipull;                   /* in: bulk force, corner tractions, interface force with a zero block */
+    double *u, *velocity, *crack; /* in and out */
+    uint8_t *cracked, *broken, *unlinked, *active;
+    double *force, *traction, *stiffening, *iforce; /* out */
+    double *energy, *cauchy, *kinetic, *ienergy;    /* out */
+} bench_problem;
+
+/* For the number of threads that OpenMP is set to; memory lies with the thread that uses it. Free with
+ * bench_problem_free. */
+bench_problem *bench_problem_make(bench_size size, bool quick);
+
+/* Back to the start: fields random, `percent` of the faces broken at all their points, outputs not numbers
+ * (so that a value left out shows). */
+void bench_problem_reset(bench_problem *p, int percent);
+
+void bench_problem_free(bench_problem *p);
+
+/* What the cost model has to know of a mesh: `flags` with padding, broken blocks and unlinked faces filled
+ * in. */
+rg_cost_variant bench_mesh_state(const rg_domain *d, const uint8_t *active, const uint8_t *unlinked,
+                                 rg_cost_variant flags, bool by_interface);
+
+/* Whether a face, known by the minus element's number and its local face there, is among the `percent` that
+ * are broken. */
+bool bench_is_broken(rg_gid minus, int face, int percent);
+
+/* Uniform in [-1, 1), by field, element and place in it. */
+double bench_noise(uint64_t field, rg_gid element, int place);
+
+#endif

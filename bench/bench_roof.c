@@ -1,0 +1,138 @@
+/* The roofs of the roofline, measured in the same run as the kernels: triad bandwidth and multiply-add rate.
+ */
+#include <math.h>
+#include <omp.h>
+#include <string.h>
+
+#include "bench.h"
+#include "bench_isa.h"
+#include "mem.h"
+
+typedef struct {
+    const char *name;
+    double (*peak)(long rounds, double factor);
+    void (*triad)(double *a, const double *b, const double *c, double s, size_t words);
+} loops;
+
+static const loops all_loops[] = {
+#ifdef __x86_64__
+    {"x86-64-v4", bench_peak_v4, bench_triad_v4},
+    {"x86-64-v3", bench_peak_v3, bench_triad_v3},
+    {"x86-64-v2", bench_peak_v2, bench_triad_v2},
+#else
+    {"generic", bench_peak_generic, bench_triad_generic},
+#endif
+};
+
+static const loops *find_loops(const char *name) {
+    size_t k = 0, last = sizeof all_loops / sizeof *all_loops - 1;
+    while (k < last && strcmp(all_loops[k].name, name) != 0) {
+        k++;
+    }
+    return &all_loops[k];
+}
+
+typedef struct {
+    const loops *use;
+    double *a, *b, *c;
+    size_t words;
+    long rounds;
+    double flops; /* of all threads, in one call */
+} roof_job;
+
+static void triad(void *context, int calls) {
+    const roof_job *j = context;
+#pragma omp parallel
+    {
+        size_t begin, end;
+        bench_share(j->words / RG_LANES, &begin, &end);
+        begin *= RG_LANES;
+        for (int i = 0; i < calls; i++) {
+            j->use->triad(j->a + begin, j->b + begin, j->c + begin, 0.5, end * RG_LANES - begin);
+#pragma omp barrier
+        }
+    }
+}
+
+static void first_touch(const roof_job *j) {
+#pragma omp parallel
+    {
+        size_t begin, end;
+        bench_share(j->words / RG_LANES, &begin, &end);
+        for (size_t i = begin * RG_LANES; i < end * RG_LANES; i++) {
+            j->a[i] = 0;
+            j->b[i] = 1;
+            j->c[i] = 2;
+        }
+    }
+}
+
+static void measure_triad(const bench *b, const loops *use, bench_roofs *r, bench_size size) {
+    size_t words = r->words[size];
+    roof_job j = {.use = use, .words = words};
+    j.a = RG_NEW(double, words);
+    j.b = RG_NEW(double, words);
+    j.c = RG_NEW(double, words);
+    first_touch(&j);
+    bench_measure(b, b->options.repeats, triad, &j, &r->triad[size]);
+    rg_free(j.a);
+    rg_free(j.b);
+    rg_free(j.c);
+}
+
+static void peak(void *context, int calls) {
+    roof_job *j = context;
+    double flops = 0;
+#pragma omp parallel reduction(+ : flops)
+    for (int i = 0; i < calls; i++) {
+        flops += j->use->peak(j->rounds, 0.999);
+    }
+    j->flops = flops / calls;
+}
+
+/* Words of a triad array: in the cache, as much memory as the kernels' small problem takes; else four times
+ * the last cache over three arrays, and not less than a good number of pages. */
+static size_t triad_words(const bench *b, bench_size size, int threads) {
+    size_t small = (size_t)threads * 16384, least = b->options.quick ? (size_t)1 << 21 : (size_t)12 << 20;
+    size_t large = (4 * bench_cache_size() / 3 + 63) / 64 * 64 / sizeof(double);
+    return size == BENCH_CACHE ? small : large > least ? large : least;
+}
+
+void bench_measure_roofs(const bench *b, bench_roofs *r) {
+    const rg_kernels *sets[BENCH_SETS];
+    *r = (bench_roofs){.threads = omp_get_max_threads(), .sets = rg_kernels_available(sets, BENCH_SETS)};
+    for (int s = 0; s < BENCH_SIZES; s++) {
+        r->words[s] = triad_words(b, (bench_size)s, r->threads);
+        measure_triad(b, find_loops(sets[0]->name), r, (bench_size)s);
+    }
+    for (int k = 0; k < r->sets; k++) {
+        roof_job j = {.use = find_loops(sets[k]->name), .rounds = b->options.quick ? 20000 : 200000};
+        r->set[k] = sets[k]->name;
+        bench_measure(b, b->options.repeats, peak, &j, &r->peak[k]);
+        r->flops[k] = j.flops;
+    }
+}
+
+double bench_triad_rate(const bench *b, const bench_roofs *r, bench_size size, int words) {
+    double bytes = (double)words * sizeof(double) * (double)r->words[size] * b->ranks;
+    return 1e-9 * bytes / bench_median(&r->triad[size]);
+}
+
+double bench_peak_rate(const bench *b, const bench_roofs *r, int set) {
+    double best = 0;
+    for (int k = 0; k < r->sets; k++) {
+        double rate = 1e-9 * r->flops[k] * b->ranks / bench_median(&r->peak[k]);
+        best = set == k || (set < 0 && rate > best) ? rate : best;
+    }
+    return best;
+}
+
+double bench_roofline(const bench *b, const bench_row *row) {
+    for (int k = 0; k < b->roofs; k++) {
+        if (b->roof[k].threads == row->threads && row->cost.flops > 0) {
+            double stream = bench_triad_rate(b, &b->roof[k], row->size, 4);
+            return fmin(bench_peak_rate(b, &b->roof[k], -1), row->cost.flops / row->cost.actual * stream);
+        }
+    }
+    return 0;
+}

@@ -1,0 +1,285 @@
+"""The command line: what a user can get wrong, what the program then says, and what it leaves behind."""
+
+import json
+import re
+
+import pytest
+import yaml
+from conftest import BENCH, CASES, launch, overrides
+
+SPALL = BENCH / "spall.yaml"
+FRAGMENTS = CASES / "fragments.yaml"
+SHORT = {"time.steps": 40}
+KEYS = """case elements interfaces dofs ranks threads steps time_end dt_first dt_last limiting_element wall_s
+    us_per_tet_step energy_error_rel dissipated_J first_fracture_time_s broken_area_m2 halo_doubles_per_face
+    bytes_per_tet state_hash revision""".split()
+
+
+@pytest.fixture
+def attempt(tmp_path):
+    """A run of a case into tmp_path/out that is expected to fail; also what it said."""
+
+    def go(case, sets=None, expect=2, **layout):
+        out = tmp_path / "out"
+        process = launch("run", case, "-q", "-o", out, *overrides(sets or {}), cwd=tmp_path, **layout)
+        assert process.returncode == expect, process.stderr
+        return out, process.stderr
+
+    return go
+
+
+# ---- Arguments ----
+
+
+@pytest.mark.parametrize("arguments, message", [
+    ([], "nothing to do"),
+    (["frob", "a.yaml"], "unknown command: frob"),
+    (["run"], "no case file given"),
+    (["run", "a.yaml", "--frob"], "unknown option: --frob"),
+    (["run", "a.yaml", "b.yaml"], "b.yaml"),
+    (["run", "a.yaml", "--set"], "missing value after: --set"),
+    (["run", "a.yaml", "-o"], "missing value after: -o"),
+])
+def test_wrong_arguments(tmp_path, arguments, message):
+    process = launch(*arguments, cwd=tmp_path)
+    assert process.returncode == 2
+    assert message in process.stderr.splitlines()[0]
+    assert "usage: rhegma" in process.stderr
+    assert process.stdout == "" and list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("command", ["run", "check"])
+def test_missing_case_file(tmp_path, command):
+    process = launch(command, "nowhere.yaml", cwd=tmp_path)
+    assert process.returncode == 2
+    assert process.stderr == "nowhere.yaml: cannot be read: No such file or directory\n"
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_version_is_that_of_the_summary(run):
+    process = launch("--version")
+    assert process.returncode == 0 and process.stderr == ""
+    assert process.stdout == f"rhegma {run(FRAGMENTS, sets=SHORT).summary['revision']}\n"
+
+
+@pytest.mark.parametrize("option", ["--help", "-h"])
+def test_help_names_every_option(option):
+    process = launch(option)
+    assert process.returncode == 0 and process.stderr == ""
+    for word in ("run", "check", "--set", "-o", "-q", "--version", "mpirun", "OMP_NUM_THREADS", "RHEGMA_ISA"):
+        assert word in process.stdout
+
+
+# ---- Bad cases ----
+
+BAD = """\
+mesh:
+  cells: [2, 2]
+  size: [1e-3, 1e-3, -1e-3]
+material:
+  model: neo-hookean
+  yung: 260e9
+  poisson: 0.5
+  density: 3690
+interface:
+  law: none
+  strength: 400e6
+initial:
+  velocity: {z: 1 +}
+time:
+  end: 1e-6
+"""
+PROBLEMS = [(2, "mesh.cells"), (3, "mesh.size[2]"), (5, "material.young"), (6, "material.yung"),
+            (7, "material.poisson"), (11, "interface.strength"), (13, "initial.velocity.z")]
+
+
+@pytest.mark.parametrize("command, ranks", [("run", 1), ("check", 1), ("run", 2)])
+def test_every_problem_of_a_case_has_one_line(tmp_path, command, ranks):
+    case = tmp_path / "bad.yaml"
+    case.write_text(BAD)
+    process = launch(command, case, "-o", tmp_path / "out", cwd=tmp_path, ranks=ranks)
+    assert process.returncode == 2
+    lines = [line for line in process.stderr.splitlines() if "bad.yaml" in line]
+    places = [re.match(re.escape(str(case)) + r":(\d+):(\d+): ([\w.\[\]]+): ", line) for line in lines]
+    assert all(places), lines
+    assert [(int(place[1]), place[3]) for place in places] == PROBLEMS
+    assert "did you mean 'material.young'?" in process.stderr
+    assert sorted(tmp_path.iterdir()) == [case]
+
+
+def test_problem_of_an_override_names_it(attempt):
+    out, said = attempt(SPALL, {"time.safety": 2, "mesh.sells": 3})
+    assert len(said.splitlines()) == 2
+    assert said.count("--set") == 2 and "time.safety" in said and "mesh.sells" in said
+    assert not out.exists()
+
+
+def test_more_ranks_than_elements(attempt):
+    out, said = attempt(FRAGMENTS, {"mesh.cells": [1, 1, 1], "mesh.jitter": 0}, ranks=7)
+    assert "7 ranks are too many for a mesh of 6 elements" in said
+    assert not out.exists()
+
+
+# ---- check ----
+
+
+def test_check_says_what_a_run_would_do(tmp_path):
+    process = launch("check", SPALL, cwd=tmp_path, threads=2)
+    assert process.returncode == 0 and process.stderr == ""
+    said = {line[:14].strip(): line[14:].strip() for line in process.stdout.splitlines()}
+    assert said["elements"] == "12960 (388800 degrees of freedom), 24408 interfaces"
+    assert said["wave speeds"] == "dilatational 8906.0 m/s, shear 5395.9 m/s"
+    assert re.match(r"[\d.e-]+ s = [\d.]+ of the critical [\d.e-]+ s, set by element \d+", said["time step"])
+    assert re.match(r"\d+ to 4.4e-07 s", said["steps"])
+    assert re.match(r"\d+ bytes per element, .* GB in all", said["memory"])
+    assert "1 ranks x 2 threads" in said["time loop"]
+    assert re.match(r"5.11e-05 m, 0.44 times the longest edge", said["cohesive zone"])
+    assert "the cohesive zone is not resolved" in process.stdout
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_check_does_not_warn_of_a_resolved_cohesive_zone(tmp_path):
+    process = launch("check", SPALL, *overrides({"interface.energy": 340}), cwd=tmp_path)
+    assert process.returncode == 0
+    assert "4.4 times the longest edge" in process.stdout and "warning" not in process.stdout
+
+
+def test_run_takes_the_steps_that_check_announced(run):
+    announced = launch("check", FRAGMENTS, *overrides({"time.end": 1e-7})).stdout
+    summary = run(FRAGMENTS, sets={"time.end": 1e-7}).summary
+    assert int(re.search(r"steps +(\d+)", announced)[1]) == summary["steps"]
+    assert f"set by element {summary['limiting_element']} " in announced
+
+
+# ---- Runs ----
+
+
+def test_summary_has_every_key(run):
+    summary = run(FRAGMENTS, ranks=2, sets=SHORT).summary
+    assert set(KEYS) <= set(summary)
+    assert summary["case"] == "fragments" and summary["status"] == "completed"
+    assert (summary["ranks"], summary["threads"], summary["steps"]) == (2, 1, 40)
+    assert summary["elements"] == 6 * 2 * 2 * 16 and summary["dofs"] == 30 * summary["elements"]
+    assert summary["halo_doubles_per_face"] <= 33
+    assert 0 < summary["dt_last"] <= summary["dt_first"] < 1e-8
+    assert summary["time_end"] == pytest.approx(40 * summary["dt_first"], rel=1e-9)
+    assert re.fullmatch("[0-9a-f]{16}", summary["state_hash"])
+
+
+def test_unbroken_run_has_no_first_fracture_time(run):
+    summary = run(FRAGMENTS, sets={"time.steps": 2}).summary
+    assert summary["first_fracture_time_s"] is None and summary["broken_area_m2"] == 0
+
+
+def test_quiet_run_says_nothing(run):
+    short = run(FRAGMENTS, sets=SHORT)
+    assert short.stdout == "" and short.stderr == ""
+
+
+def test_run_shows_its_progress_and_result(tmp_path):
+    process = launch("run", FRAGMENTS, "-o", tmp_path / "out", *overrides({**SHORT, "output.interval": 10}))
+    assert process.returncode == 0
+    assert len(re.findall(r"^step +\d+ +time", process.stdout, re.MULTILINE)) == 5
+    assert str(tmp_path / "out") in process.stdout.splitlines()[-1]
+
+
+def test_output_goes_to_the_named_place(tmp_path):
+    for words in (["-o", "a/b"], overrides({"output.dir": "c"})):
+        assert launch("run", FRAGMENTS, "-q", *overrides(SHORT), *words, cwd=tmp_path).returncode == 0
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["a", "c"]
+    left = {"case.yaml", "energy.csv", "fields.h5", "fields.xdmf", "summary.json"}
+    assert {path.name for path in (tmp_path / "a/b").iterdir()} == left == {p.name for p in (tmp_path / "c").iterdir()}
+
+
+def test_default_output_is_named_after_the_case(tmp_path):
+    assert launch("run", FRAGMENTS, "-q", *overrides(SHORT), cwd=tmp_path).returncode == 0
+    assert (tmp_path / "results" / "fragments" / "summary.json").exists()
+
+
+def test_echo_of_a_case_gives_the_same_run(run, tmp_path):
+    sets = {"time.end": 1e-7, "mesh.seed": 5, "interface.form": "incomplete", "output.interval": 7,
+            "output.energy_limit": 0.5,
+            "boundary": [{"set": "z+", "component": "x", "velocity": "t < 5e-8 ? 1e3*y : 0"}]}
+    first = run(FRAGMENTS, sets=sets)
+    again = run(first.dir / "case.yaml")
+    assert first.summary["broken_area_m2"] > 0
+    assert again.summary["state_hash"] == first.summary["state_hash"]
+    assert (again.dir / "energy.csv").read_bytes() == (first.dir / "energy.csv").read_bytes()
+    one, two = (yaml.safe_load((r.dir / "case.yaml").read_text()) for r in (first, again))
+    del one["output"]["dir"], two["output"]["dir"]
+    assert one == two
+
+
+# ---- Runs that fail ----
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+@pytest.mark.parametrize("place", ["file", "file/below"])
+def test_unwritable_output(tmp_path, place, ranks):
+    (tmp_path / "file").write_text("keep me")  # not even root can write below a file
+    process = launch("run", FRAGMENTS, "-q", *overrides(SHORT), "-o", place, cwd=tmp_path, ranks=ranks)
+    assert process.returncode == 1
+    assert re.search(rf"^rhegma: .*{place}.*: cannot be (created|written): Not a directory$", process.stderr, re.M)
+    assert (tmp_path / "file").read_text() == "keep me"
+
+
+def summary_of(out):
+    return json.loads((out / "summary.json").read_text())
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_energy_limit_stops_the_run(attempt, ranks):
+    out, said = attempt(FRAGMENTS, {"output.energy_limit": 1e-9, "output.interval": 10}, expect=1, ranks=ranks)
+    stop = r"^rhegma: stopped: (.*passed the limit 1e-09.* at step (\d+), time ([\d.e-]+) s; .*element \d+.*)$"
+    message = re.search(stop, said, re.M)
+    assert message
+    summary = summary_of(out)
+    assert summary["status"] == message[1]
+    assert summary["steps"] == int(message[2]) and summary["time_end"] == pytest.approx(float(message[3]), rel=1e-5)
+    assert summary["energy_error_rel"] > 1e-9
+
+
+NOT_FINITE = r"^rhegma: stopped: (.*not finite.* at step (\d+), time .*: element (\d+) at \(.*\) m; .*)$"
+
+
+def stops_as_not_finite(attempt, sets, ranks):
+    """Step and element that the run names."""
+    out, said = attempt(FRAGMENTS, {"output.interval": 10, **sets}, expect=1, ranks=ranks)
+    message = re.search(NOT_FINITE, said, re.M)
+    assert message, said
+    assert summary_of(out)["status"] == message[1]
+    return int(message[2]), int(message[3])
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_inverted_elements_stop_the_run(attempt, ranks):
+    sets = {"initial": {"displacement": {"z": "z > 1.45e-3 ? -2*z : 0"}}}
+    step, element = stops_as_not_finite(attempt, sets, ranks)
+    assert step == 0 and element >= 6 * 2 * 2 * 14  # the last layers of cubes
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+@pytest.mark.parametrize("interval", [1, 1000])
+def test_blow_up_between_two_outputs_is_found(attempt, interval, ranks):
+    """An end pulled faster than its elements can follow: inside out after a few steps."""
+    sets = {"boundary": [{"set": "z+", "component": "z", "velocity": "t < 1e-8 ? 0 : -1e6"}],
+            "output.interval": interval, "output.energy_limit": 1e300}
+    step, element = stops_as_not_finite(attempt, sets, ranks)
+    assert step > 1 and element >= 6 * 2 * 2 * 15
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+@pytest.mark.parametrize("kind, value", [("velocity", "sqrt(1e-8 - t)"), ("displacement", "1e-9*log(1e-8 - t)")])
+def test_expression_that_ceases_to_be_finite_stops_the_run(attempt, kind, value, ranks):
+    sets = {"boundary": [{"set": "z+", "component": "z", kind: value}], "output.energy_limit": 1e300}
+    step, _ = stops_as_not_finite(attempt, sets, ranks)
+    assert step > 1
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+@pytest.mark.parametrize("kind", ["displacement", "velocity"])
+def test_initial_expression_that_is_not_finite_is_reported(tmp_path, kind, ranks):
+    sets = {**SHORT, "initial": {kind: {"x": "sqrt(z)*1e-9"}}}
+    process = launch("run", FRAGMENTS, "-q", "-o", tmp_path / "out", *overrides(sets), ranks=ranks)
+    assert process.returncode in (1, 2)
+    assert re.search("^rhegma: .*not finite", process.stderr, re.M), process.stderr

@@ -1,0 +1,108 @@
+"""The same bits on any number of ranks and threads: state, ledger and history."""
+
+import pathlib
+
+import pytest
+from conftest import BENCH, CASES, launch
+
+LAYOUTS = [(1, 2), (2, 1), (2, 2), (3, 1)]  # ranks, threads; all compared with (1, 1)
+PROBES = [{"name": "a", "at": [0.01e-3, 0.03e-3, 0.5e-3]}, {"name": "b", "at": [-0.05e-3, 0.02e-3, -1.1e-3]}]
+FRAGMENTS = {"time.end": 0.3e-6, "output.interval": 1e-8, "output.probes": PROBES, "output.energy_limit": 1e9}
+VARIANTS = {
+    "default": {},
+    "incomplete": {"interface.form": "incomplete"},
+    "lumped": {"mass": "lumped"},
+    "thesis": {"interface.activation": "total", "interface.contact": "flux"},
+    "isotropic": {"interface.penalty": "isotropic"},
+    "prescribed": {"boundary": [{"set": "z+", "component": "z", "velocity": "1e8*t*(1 + 1e3*x)"},
+                                {"set": "x-", "component": "x", "displacement": "1e6*t*y"}]},
+}
+SETS = ["x86-64-v2", "x86-64-v3", "x86-64-v4"]
+KNOWN = " ".join((line for line in pathlib.Path("/proc/cpuinfo").read_text().splitlines() if line.startswith("flags")))
+
+
+def can_run(name):
+    """As the program decides it."""
+    needed = {"x86-64-v2": "sse4_2", "x86-64-v3": "avx2", "x86-64-v4": "avx512vl"}[name]
+    return needed in KNOWN.split()
+
+
+ISAS = [pytest.param(name, marks=pytest.mark.skipif(not can_run(name), reason="this machine does not have it"))
+        for name in SETS]
+
+
+def assert_same_bits(one, other):
+    assert one.summary["state_hash"] == other.summary["state_hash"]
+    for name in ("energy.csv", "history.csv"):
+        assert (one.dir / name).read_bytes() == (other.dir / name).read_bytes(), name
+
+
+@pytest.mark.parametrize("ranks, threads", LAYOUTS)
+def test_spall_is_the_same_on_any_layout(run, ranks, threads):
+    def spall(ranks, threads):
+        sets = {"time.end": 0.25e-6, "output.fields": ["crack"]}
+        return run(BENCH / "spall-jittered.yaml", ranks=ranks, threads=threads, sets=sets)
+
+    one, other = spall(1, 1), spall(ranks, threads)
+    assert (other.summary["ranks"], other.summary["threads"]) == (ranks, threads)
+    assert one.summary["broken_area_m2"] > 0.1e-6
+    assert_same_bits(one, other)
+
+
+@pytest.mark.parametrize("ranks, threads", LAYOUTS)
+@pytest.mark.parametrize("variant", VARIANTS)
+def test_fragments_are_the_same_on_any_layout(run, variant, ranks, threads):
+    sets = {**FRAGMENTS, **VARIANTS[variant]}
+    one = run(CASES / "fragments.yaml", sets=sets)
+    other = run(CASES / "fragments.yaml", ranks=ranks, threads=threads, sets=sets)
+    assert (other.summary["ranks"], other.summary["threads"]) == (ranks, threads)
+    assert one.summary["failed_area_m2"] > 0
+    assert_same_bits(one, other)
+
+
+@pytest.mark.parametrize("variant", [name for name in VARIANTS if name != "default"])
+def test_hash_tells_variants_apart(run, variant):
+    one = run(CASES / "fragments.yaml", sets=FRAGMENTS)
+    other = run(CASES / "fragments.yaml", sets={**FRAGMENTS, **VARIANTS[variant]})
+    assert one.summary["state_hash"] != other.summary["state_hash"]
+
+
+@pytest.mark.parametrize("key, value", [("mesh.seed", 2), ("material.density", 3690.000001)])
+def test_hash_tells_small_changes_apart(run, key, value):
+    one = run(CASES / "fragments.yaml", sets=FRAGMENTS)
+    other = run(CASES / "fragments.yaml", sets={**FRAGMENTS, key: value})
+    assert one.summary["state_hash"] != other.summary["state_hash"]
+
+
+# ---- Instruction sets ----
+
+
+@pytest.mark.parametrize("isa", ISAS)
+def test_each_instruction_set_gives_the_same_bits_on_any_layout(run, isa):
+    one = run(CASES / "fragments.yaml", sets=FRAGMENTS, RHEGMA_ISA=isa)
+    other = run(CASES / "fragments.yaml", ranks=3, sets=FRAGMENTS, RHEGMA_ISA=isa)
+    assert one.summary["instruction_set"] == other.summary["instruction_set"] == isa
+    assert_same_bits(one, other)
+
+
+@pytest.mark.parametrize("isa", ISAS)
+def test_instruction_sets_agree_while_nothing_breaks(run, isa):
+    sets = {**FRAGMENTS, "interface.strength": 400e9, "interface.energy": 34e6, "time.safety": 0.4}
+    one = run(CASES / "fragments.yaml", sets=sets)
+    other = run(CASES / "fragments.yaml", sets=sets, RHEGMA_ISA=isa)
+    assert one.summary["broken_area_m2"] == other.summary["broken_area_m2"] == 0
+    for name in ("kinetic", "bulk", "penalty", "total", "momentum_x", "momentum_z", "angular_y"):
+        values = one.energy[name]
+        assert other.energy[name] == pytest.approx(values, rel=1e-6, abs=1e-6 * abs(values).max()), name
+    for name in ("a_ux", "b_uz", "a_vy", "b_vz", "a_szz", "b_sxy"):
+        values = one.history[name]
+        assert other.history[name] == pytest.approx(values, rel=1e-6, abs=1e-6 * abs(values).max()), name
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_unknown_instruction_set_is_refused(scratch, ranks):
+    out = scratch / f"unknown-isa-{ranks}"
+    process = launch("run", CASES / "fragments.yaml", "-q", "-o", out, ranks=ranks, RHEGMA_ISA="x86-64-v9")
+    assert process.returncode == 2
+    assert "RHEGMA_ISA" in process.stderr
+    assert not out.exists()
