@@ -107,7 +107,7 @@ RG_INLINE bool any_to_test(const interface *s) {
 
 /* Nodal forces sum_q w_q N_a(q) T_q. */
 RG_INLINE void store_nodal_force(const interface *s) {
-    rg_vec force[RG_IFORCE_ROW];
+    double *force = s->args->force + s->block * RG_IFORCE_BLOCK + s->lane;
     for (int c = 0; c < 3; c++) {
         rg_vec corner[2], edge[2], sum[2];
         for (int k = 0; k < 2; k++) {
@@ -119,12 +119,12 @@ RG_INLINE void store_nodal_force(const interface *s) {
         rg_vec corners = rg_tri[0].other * sum[0] + rg_tri[1].other * sum[1];
         rg_vec edges = rg_tri[0].adjacent * sum[0] + rg_tri[1].adjacent * sum[1];
         for (int i = 0; i < 3; i++) {
-            force[i * 3 + c] = corners + corner[0] * s->total[i][c] + corner[1] * s->total[3 + i][c];
-            force[rg_facing[i] * 3 + c] = edges + edge[0] * s->total[i][c] + edge[1] * s->total[3 + i][c];
+            rg_store(force + (i * 3 + c) * RG_LANES,
+                     corners + corner[0] * s->total[i][c] + corner[1] * s->total[3 + i][c]);
+            rg_store(force + (rg_facing[i] * 3 + c) * RG_LANES,
+                     edges + edge[0] * s->total[i][c] + edge[1] * s->total[3 + i][c]);
         }
     }
-    size_t first = s->block * RG_LANES + (size_t)s->lane;
-    rg_store_rows(s->args->force + first * RG_IFORCE_ROW, RG_IFORCE_ROW, RG_IFORCE_ROW, force);
 }
 
 /* ---- Damaged faces ---- */

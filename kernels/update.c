@@ -15,14 +15,12 @@ RG_INLINE void add_face(const rg_update_args *args, const int32_t link[RG_VLEN],
     rg_lanes at;
     rg_vec sign;
     for (int l = 0; l < RG_VLEN; l++) {
-        at.lane[l] = args->iforce + (size_t)(link[l] >> 1) * RG_IFORCE_ROW;
+        at.lane[l] = rg_first_value(args->iforce, (uint32_t)link[l] / 2, RG_IFORCE_BLOCK);
         sign[l] = 1 - 2 * (link[l] & 1);
     }
-    rg_vec g[RG_IFORCE_ROW];
-    rg_load_rows(&at, RG_IFORCE_ROW, g);
     for (int a = 0; a < RG_FNODES; a++) {
         for (int c = 0; c < 3; c++) {
-            f[c][rg_face_node[k][a]] += sign * g[a * 3 + c];
+            f[c][rg_face_node[k][a]] += sign * rg_gather(&at, (a * 3 + c) * RG_LANES);
         }
     }
 }

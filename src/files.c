@@ -13,7 +13,8 @@ struct rg_csv {
     char path[1024];
 };
 
-static void make_one(const char *path) {
+/* Creates `path`, on the way to `whole`. */
+static void make_one(const char *path, const char *whole) {
     struct stat found;
     if (mkdir(path, 0777) == 0) {
         return;
@@ -24,7 +25,7 @@ static void make_one(const char *path) {
         }
         errno = ENOTDIR;
     }
-    rg_fatal(RG_FAILURE, "output directory %s: cannot be created: %s", path, strerror(errno));
+    rg_fatal(RG_FAILURE, "output directory %s: cannot be created: %s", whole, strerror(errno));
 }
 
 void rg_make_directory(const char *path, MPI_Comm comm) {
@@ -37,7 +38,7 @@ void rg_make_directory(const char *path, MPI_Comm comm) {
             if (path[i] == '/' || path[i] == '\0') {
                 memcpy(part, path, i);
                 part[i] = '\0';
-                make_one(part);
+                make_one(part, path);
             }
         }
         rg_free(part);

@@ -1,9 +1,7 @@
-#define _DEFAULT_SOURCE 1 /* madvise */
 #include "mem.h"
 
 #include <stdint.h>
 #include <stdlib.h>
-#include <sys/mman.h>
 
 #include "error.h"
 
@@ -25,21 +23,6 @@ static _Noreturn void exhausted(size_t count, size_t size) {
     rg_fatal(RG_FAILURE, "out of memory: %zu items of %zu bytes", count, size);
 }
 
-/* Large blocks on huge pages where the system leaves it to the program: the sweeps touch many pages at once,
- * and misses of the TLB cost more than misses of the cache. Only advice, so its failure does not matter. */
-static void advise(char *raw, size_t bytes) {
-#ifdef MADV_HUGEPAGE
-    const size_t huge = (size_t)2 << 20;
-    char *begin = raw + (huge - ((uintptr_t)raw & (huge - 1))) % huge;
-    if (bytes >= 4 * huge) {
-        madvise(begin, (bytes - (size_t)(begin - raw)) / huge * huge, MADV_HUGEPAGE);
-    }
-#else
-    (void)raw;
-    (void)bytes;
-#endif
-}
-
 void *rg_alloc(size_t count, size_t size) {
     if (size != 0 && count > (SIZE_MAX - 2 * ALIGN) / size) {
         exhausted(count, size);
@@ -51,7 +34,6 @@ void *rg_alloc(size_t count, size_t size) {
     }
     char *block = raw + ALIGN + (ALIGN - ((uintptr_t)raw & (ALIGN - 1))) % ALIGN;
     *head(block) = (header){raw, bytes};
-    advise(raw, bytes);
 #pragma omp atomic
     total += bytes;
     return block;

@@ -33,7 +33,7 @@ typedef struct {
 #define FIELD(name, rows, kinds, element)                                                                    \
     { #name, offsetof(output, name), rows, kinds, element }
 
-enum { FIELDS = 14, TRACTION_FIELD = 1, IFORCE_FIELD = 7, CRACK_FIELD = 12, MAX_SETS = 8 };
+enum { FIELDS = 14, TRACTION_FIELD = 1, CRACK_FIELD = 12, MAX_SETS = 8 };
 
 static const field fields[FIELDS] = {
     FIELD(force, 30, 1, true),           FIELD(traction, 36, 1, true),
@@ -56,7 +56,7 @@ static size_t field_blocks(int f) {
 }
 
 static size_t row_index(int f, size_t slot, size_t row) {
-    if (f == TRACTION_FIELD || f == IFORCE_FIELD) /* what neighbours read lies in rows (layout.h) */
+    if (f == TRACTION_FIELD) /* rows, not lanes (layout.h) */
         return slot * fields[f].rows + row;
     return (slot / RG_LANES * fields[f].rows + row) * RG_LANES + slot % RG_LANES;
 }
