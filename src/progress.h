@@ -1,4 +1,5 @@
-/* The live progress line: step, time, dt, energy error, broken area, time left. */
+/* What a person sees while a run goes on: the ledger every interval, and the live line with step, time, dt,
+ * energy error, broken area, time left. */
 #ifndef RG_PROGRESS_H
 #define RG_PROGRESS_H
 
