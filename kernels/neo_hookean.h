@@ -26,8 +26,8 @@ RG_INLINE void rg_neo_hookean_stress(const rg_material *m, rg_vec F[3][3], rg_ve
     }
 }
 
-/* Energy density W (J/m^3). With F = I + H, tr F^T F - 3 is summed as 2 tr H + H:H, and log J is small too,
- * so that the energy of a small strain is not lost in the rounding of a large one. */
+/* Energy density W (J/m^3). With F = I + H, tr F^T F - 3 is summed as 2 tr H + H:H. What remains is the
+ * rounding of F itself, about eps mu: it shows where strains are below some 1e-6. */
 RG_INLINE rg_vec rg_neo_hookean_energy(const rg_material *m, rg_vec F[3][3], rg_vec log_J) {
     rg_vec trace = {0}, square = {0};
     for (int i = 0; i < 3; i++) {
