@@ -47,7 +47,7 @@ typedef struct {
         double size[3], origin[3];
         double jitter; /* fraction of the smallest cell edge */
         int64_t seed;
-        char *file; /* NULL: built-in box */
+        char *file; /* a mesh file (mesh_file.h), as an absolute path; NULL: built-in box */
     } mesh;
     struct {
         rg_material_model model;

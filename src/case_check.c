@@ -193,8 +193,7 @@ static void learn(rg_check *ck, const rg_key *key, const rg_node *node, bool goo
         ck->usage[RG_GROUP_BOX] = RG_UNUSED;
         ck->box = false;
         if (good) {
-            rg_subject subject = {.key = key->name, .value = node->text};
-            rg_problem_add(ck->problems, node->at, &subject, "reading mesh files is not supported yet");
+            rg_mesh_file_rule(ck, node);
         }
     } else if (key->offset == offsetof(rg_case, mesh.size) || key->offset == offsetof(rg_case, mesh.origin)) {
         ck->box = ck->box && good;

@@ -25,6 +25,10 @@ bool rg_value_read(rg_check *ck, const rg_key *key, const rg_node *node, const c
 void rg_value_wrong(rg_check *ck, const rg_key *key, const rg_node *node, const char *path,
                     const char *nearest, const char *what);
 
+/* Makes mesh.file, given relative to the case file, a path that holds anywhere; reports a file that cannot be
+ * read. */
+void rg_mesh_file_rule(rg_check *ck, const rg_node *node);
+
 /* Rules that tie several keys together, applied to entry i of a list once its keys are read. `good`: all of
  * them were. An entry that is not is left so that later entries are not compared with it. */
 void rg_boundary_rule(rg_check *ck, const rg_node *list, int i, const char *path, bool good);

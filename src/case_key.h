@@ -53,7 +53,7 @@ typedef struct {
     double low, high;          /* numbers: range */
     bool low_open, high_open;  /* range without its ends */
     bool no_time;              /* expression without t */
-    const char *const *choice; /* NULL-terminated */
+    const char *const *choice; /* NULL-terminated; of a text: with the built-in mesh only */
     double fallback;
     size_t offset;                    /* of the value in the structure */
     const struct rg_key_table *entry; /* of a list */

@@ -1,9 +1,31 @@
 /* Rules that tie several keys of the case file together. */
 #include "case_check.h"
 
+#include <errno.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "mem.h"
+
+/* ---- mesh.file: relative to the case file, which case.yaml in the output directory is not ---- */
+
+void rg_mesh_file_rule(rg_check *ck, const rg_node *node) {
+    char *file = ck->c->mesh.file, here[4096];
+    const char *slash = strrchr(ck->problems->file, '/');
+    int folder = file[0] == '/' || slash == NULL ? 0 : (int)(slash - ck->problems->file) + 1;
+    char *path = rg_text_format("%.*s%s", folder, ck->problems->file, file);
+    if (access(path, R_OK) != 0) {
+        rg_subject subject = {.key = "mesh.file", .value = path};
+        rg_problem_add(ck->problems, node->at, &subject, "cannot be read: %s", strerror(errno));
+    } else if (path[0] == '/' || getcwd(here, sizeof here) == NULL) {
+        ck->c->mesh.file = rg_text_copy(path, strlen(path));
+        rg_free(file);
+    } else {
+        ck->c->mesh.file = rg_text_format("%s/%s", here, path);
+        rg_free(file);
+    }
+    rg_free(path);
+}
 
 /* ---- boundary: one prescribed motion per entry, one entry per set and component ---- */
 

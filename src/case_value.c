@@ -172,7 +172,7 @@ static bool read_flags(rg_check *ck, const rg_key *key, const rg_node *node, con
 }
 
 static bool read_text(rg_check *ck, const rg_key *key, const rg_node *node, const char *path, void *value) {
-    if (key->choice != NULL) {
+    if (key->choice != NULL && ck->usage[RG_GROUP_BOX] != RG_UNUSED) { /* the file's sets are its own */
         if (read_choice(ck, key, node, path) < 0) {
             return false;
         }

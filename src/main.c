@@ -7,12 +7,14 @@
 #include "denormals.h"
 #include "error.h"
 #include "mem.h"
+#include "mesh_command.h"
 #include "revision.h"
 #include "run.h"
 
 static const char usage[] =
     "usage: rhegma run CASE.yaml [options]     run a case\n"
     "       rhegma check CASE.yaml [options]   say what a run would do, without running\n"
+    "       rhegma mesh IN -o OUT.h5 [options]  make a mesh file; rhegma mesh alone says more\n"
     "       rhegma --version | --help\n"
     "options:\n"
     "  --set a.b=value   override a value of the case file (repeatable)\n"
@@ -117,6 +119,9 @@ static int execute(int argc, char **argv, int rank) {
 }
 
 int main(int argc, char **argv) {
+    if (argc > 1 && strcmp(argv[1], "mesh") == 0) {
+        return rg_mesh_command(argc, argv);
+    }
     /* Open MPI's own I/O layer has been reported to hang or corrupt HDF5's collective writes
      * (HDFGroup/hdf5#1227, open-mpi/ompi#12718): use ROMIO unless the user chose otherwise. */
     setenv("OMPI_MCA_io", "romio321", 0);

@@ -1,6 +1,7 @@
 /* The whole mesh: which elements are neighbours. */
 #include "mesh.h"
 
+#include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
 
@@ -71,10 +72,14 @@ static void join(rg_mesh *mesh, rg_gid slot, rg_gid other) {
     mesh->face[slot] = (int8_t)(other % 4);
 }
 
-static _Noreturn void refuse_third(rg_gid low, const struct face *face) {
+static long long name(const rg_mesh *mesh, rg_gid slot) {
+    return (long long)rg_mesh_original(mesh, slot / 4);
+}
+
+static _Noreturn void refuse_third(const rg_mesh *mesh, rg_gid low, const struct face *face) {
     rg_fatal(RG_USAGE, "mesh: elements %lld, %lld and %lld share the face with vertices %lld, %lld and %lld",
-             (long long)(face[0].slot / 4), (long long)(face[1].slot / 4), (long long)(face[2].slot / 4),
-             (long long)low, (long long)face[0].middle, (long long)face[0].high);
+             name(mesh, face[0].slot), name(mesh, face[1].slot), name(mesh, face[2].slot), (long long)low,
+             (long long)face[0].middle, (long long)face[0].high);
 }
 
 /* Joins the faces of lowest vertex `low` that are equal; the others are on the surface. */
@@ -85,7 +90,7 @@ static void match(rg_mesh *mesh, rg_gid low, struct bundle *b) {
         size_t left = b->count - i;
         if (left > 1 && same_vertices(f, f + 1)) {
             if (left > 2 && same_vertices(f, f + 2)) {
-                refuse_third(low, f);
+                refuse_third(mesh, low, f);
             }
             join(mesh, f[0].slot, f[1].slot);
             join(mesh, f[1].slot, f[0].slot);
@@ -110,6 +115,17 @@ void rg_mesh_connect(rg_mesh *mesh) {
     rg_free(head);
 }
 
+void rg_mesh_bounds(const rg_mesh *mesh, double box[2][3]) {
+    for (int i = 0; i < 3; i++) {
+        box[0][i] = INFINITY;
+        box[1][i] = -INFINITY;
+        for (rg_gid v = 0; v < mesh->vertices; v++) {
+            box[0][i] = fmin(box[0][i], mesh->x[3 * v + i]);
+            box[1][i] = fmax(box[1][i], mesh->x[3 * v + i]);
+        }
+    }
+}
+
 void rg_mesh_free(rg_mesh *mesh) {
     if (mesh == NULL) {
         return;
@@ -117,6 +133,11 @@ void rg_mesh_free(rg_mesh *mesh) {
     for (int s = 0; s < mesh->sets; s++) {
         rg_free(mesh->set_name[s]);
     }
+    for (int r = 0; r < mesh->regions; r++) {
+        rg_free(mesh->region_name[r]);
+    }
+    rg_free(mesh->original);
+    rg_free(mesh->region);
     rg_free(mesh->x);
     rg_free(mesh->corner);
     rg_free(mesh->neighbour);

@@ -20,6 +20,10 @@ typedef struct {
     int8_t *set;       /* [elements][4]: named set of a surface face; -1 for none */
     int sets;
     char *set_name[RG_MAX_SETS];
+    rg_gid *original; /* [elements]: numbers that the elements had in the input; NULL: as here */
+    int8_t *region;   /* [elements]: named set of volumes; -1 for none; NULL: none at all */
+    int regions;
+    char *region_name[RG_MAX_SETS];
 } rg_mesh;
 
 /* Box of nx ny nz cubes of 6 tetrahedra (Kuhn: all around one main diagonal, so that neighbours match), from
@@ -29,8 +33,21 @@ typedef struct {
 rg_mesh *rg_mesh_box(const int64_t cells[3], const double origin[3], const double size[3], double jitter,
                      int64_t seed);
 
+/* The number by which a message calls element e: that of the input. */
+static inline rg_gid rg_mesh_original(const rg_mesh *mesh, rg_gid e) {
+    return mesh->original != NULL ? mesh->original[e] : e;
+}
+
+/* Renumbers the elements along a Hilbert curve through their centroids, those at the same point in the order
+ * of their numbers, so that runs of consecutive numbers are compact. Fills `original`; leaves `neighbour` and
+ * `face` to rg_mesh_connect. */
+void rg_mesh_sort(rg_mesh *mesh);
+
 /* Fills `neighbour` and `face` from `corner`. Ends the run with a message if three elements share a face. */
 void rg_mesh_connect(rg_mesh *mesh);
+
+/* Lower and upper corner of all vertices (m). */
+void rg_mesh_bounds(const rg_mesh *mesh, double box[2][3]);
 
 void rg_mesh_free(rg_mesh *mesh);
 

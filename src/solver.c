@@ -7,6 +7,7 @@
 #include "element.h"
 #include "error.h"
 #include "mem.h"
+#include "mesh_case.h"
 
 /* Elements of a tile: about 0.5 MB of fields, so that the interfaces inside find their tractions in the
  * cache. */
@@ -118,7 +119,7 @@ static void bind_kernels(rg_solver *s) {
 static rg_part *make_part(const rg_case *c, int rank, MPI_Comm comm) {
     rg_mesh *mesh = NULL;
     if (rank == 0) {
-        mesh = rg_mesh_box(c->mesh.cells, c->mesh.origin, c->mesh.size, c->mesh.jitter, c->mesh.seed);
+        mesh = rg_mesh_of_case(c);
     }
     rg_part *part = rg_part_distribute(mesh, comm);
     rg_mesh_free(mesh);

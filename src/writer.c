@@ -24,6 +24,7 @@
 #include <string.h>
 
 #include "error.h"
+#include "h5_reason.h"
 #include "mem.h"
 #include "xdmf.h"
 
@@ -31,7 +32,6 @@ enum {
     FORMAT_VERSION = 1,
     VERIFY_BYTES = 1 << 20, /* read back at a time */
     GROUP = 48,             /* length of the longest group name: "/frames/", a 64-bit number, "/crack" */
-    REASON = 200,
 };
 
 struct rg_writer {
@@ -43,7 +43,7 @@ struct rg_writer {
     int64_t frames;                                    /* finished so far */
     hid_t file, collective, frame, crack;              /* crack: negative until the frame has one */
     char group[GROUP];                                 /* in which datasets are made now, for messages */
-    char reason[REASON];                               /* why the first HDF5 call that failed did so */
+    char reason[RG_H5_REASON];                         /* why the first HDF5 call that failed did so */
     rg_xdmf *xdmf;                                     /* rank 0 only */
 };
 
@@ -60,21 +60,6 @@ static char *join(const char *dir, const char *name) {
     char *path = rg_realloc(NULL, size, 1);
     snprintf(path, size, "%s/%s", dir, name);
     return path;
-}
-
-static herr_t copy_description(unsigned n, const H5E_error2_t *error, void *reason) {
-    (void)n;
-    snprintf(reason, REASON, "%s", error->desc);
-    return 1; /* enough: the innermost entry of the error stack is the cause */
-}
-
-/* Called by HDF5 when a call of the library fails, instead of printing its error stack. The calls that clean
- * up afterwards fail or clear the stack, so the first reason counts. */
-static herr_t record_reason(hid_t stack, void *reason) {
-    if (*(char *)reason == '\0') {
-        H5Ewalk2(stack, H5E_WALK_UPWARD, copy_description, reason);
-    }
-    return 0;
 }
 
 /* Collective: goes on if all ranks are `ok`; else the lowest one that is not ends the run, so that a failure
@@ -264,7 +249,7 @@ static void write_mesh(rg_writer *w, const double *x) {
 
 static void create_h5(rg_writer *w) {
     H5dont_atexit(); /* a rank that ends the run must not wait for others to close the file */
-    H5Eset_auto2(H5E_DEFAULT, record_reason, w->reason);
+    rg_h5_listen(w->reason);
     w->collective = H5Pcreate(H5P_DATASET_XFER);
     H5Pset_dxpl_mpio(w->collective, H5FD_MPIO_COLLECTIVE);
     w->file = create_file(w->h5_path, w->comm);
@@ -368,7 +353,7 @@ void rg_writer_frame_end(rg_writer *w) {
 void rg_writer_close(rg_writer *w) {
     agree(w, H5Fclose(w->file) >= 0, w->h5_path, "close", "the file", w->reason);
     H5Pclose(w->collective);
-    H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
+    rg_h5_deafen();
     rg_xdmf_free(w->xdmf);
     rg_free(w->h5_path);
     rg_free(w->xdmf_path);

@@ -1,0 +1,28 @@
+// Plate of the impact test, 50.8 x 50.8 x 12 mm, unstructured: 198,431 tetrahedra in section 5.2 of the thesis. The
+// plate is hit at z = 6 mm.
+//     rhegma mesh bench/cases/plate-unstructured.geo -o plate-unstructured.h5 --scale 1e-3
+// Surfaces and volume by Gmsh's Delaunay algorithms, one thread: the same mesh every time.
+Mesh.Algorithm = 5;
+Mesh.Algorithm3D = 1;
+General.NumThreads = 1;
+
+DefineConstant[ edge = 0.8985 ]; // mm
+Point(1) = {-25.4, -25.4, -6, edge};
+Point(2) = {25.4, -25.4, -6, edge};
+Point(3) = {25.4, 25.4, -6, edge};
+Point(4) = {-25.4, 25.4, -6, edge};
+Line(1) = {1, 2};
+Line(2) = {2, 3};
+Line(3) = {3, 4};
+Line(4) = {4, 1};
+Curve Loop(1) = {1, 2, 3, 4};
+Plane Surface(1) = {1};
+plate[] = Extrude {0, 0, 12} { Surface{1}; };
+
+Physical Surface("z-") = {1};
+Physical Surface("z+") = {plate[0]};
+Physical Surface("y-") = {plate[2]};
+Physical Surface("x+") = {plate[3]};
+Physical Surface("y+") = {plate[4]};
+Physical Surface("x-") = {plate[5]};
+Physical Volume("plate") = {plate[1]};

@@ -1,0 +1,24 @@
+#include "h5_reason.h"
+
+#include <stdio.h>
+
+static herr_t copy_description(unsigned n, const H5E_error2_t *error, void *reason) {
+    (void)n;
+    snprintf(reason, RG_H5_REASON, "%s", error->desc);
+    return 1; /* enough: the innermost entry of the error stack is the cause */
+}
+
+static herr_t record(hid_t stack, void *reason) {
+    if (*(char *)reason == '\0') {
+        H5Ewalk2(stack, H5E_WALK_UPWARD, copy_description, reason);
+    }
+    return 0;
+}
+
+void rg_h5_listen(char *reason) {
+    H5Eset_auto2(H5E_DEFAULT, record, reason);
+}
+
+void rg_h5_deafen(void) {
+    H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
+}

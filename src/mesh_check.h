@@ -1,0 +1,29 @@
+/* Whether a mesh can be computed on. */
+#ifndef RG_MESH_CHECK_H
+#define RG_MESH_CHECK_H
+
+#include <stdbool.h>
+
+#include "mesh.h"
+
+/* Ends the run (RG_USAGE) with a message that begins with `name` and names elements by their numbers in the
+ * input, if the mesh, sorted or not but connected, has
+ *   - a position that is not finite, or a vertex that no element uses,
+ *   - an element whose corners are not ascending, or without volume (below 1e-12 of its longest edge cubed),
+ *   - neighbours that do not agree on their common face,
+ *   - two vertices at the same place (within 1e-9 of the mesh's size): such a mesh is open where it looks
+ *     closed,
+ *   - a hanging node: a vertex on a surface face (within 1e-6 of its longest edge) that is none of its
+ *     corners.
+ * Orientation is free: corners are sorted, and volumes are taken without sign. */
+void rg_mesh_check(const rg_mesh *mesh, const char *name);
+
+/* Parts that share no face: part[elements] numbers them by their first element. Returns how many there are.
+ */
+int32_t rg_mesh_parts(const rg_mesh *mesh, int32_t *part);
+
+/* A vertex on a surface face that is none of its corners; false if there is none. *slot is 4 * element +
+ * face. */
+bool rg_mesh_hanging(const rg_mesh *mesh, rg_gid *vertex, rg_gid *slot);
+
+#endif

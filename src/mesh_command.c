@@ -1,0 +1,189 @@
+#include "mesh_command.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "case.h"
+#include "error.h"
+#include "mem.h"
+#include "mesh_case.h"
+#include "mesh_check.h"
+#include "mesh_file.h"
+#include "mesh_info.h"
+
+static const char usage[] =
+    "usage: rhegma mesh IN -o OUT.h5 [--scale S]      a mesh file from what Gmsh reads or meshes (.msh, "
+    ".geo, ...);\n"
+    "                                                 S: m per unit of IN (1e-3 for mm; default 1)\n"
+    "       rhegma mesh CASE.yaml -o OUT.h5 [--set K] a mesh file from the built-in mesh of a case\n"
+    "       rhegma mesh --info MESH.h5 [--case CASE.yaml]   what a mesh file holds; time steps for the\n"
+    "                                                 material of the case, else for a speed of 1 m/s\n";
+
+/* ---- arguments ---- */
+
+static _Noreturn void complain(const char *what, const char *argument) {
+    rg_fatal(RG_USAGE, "mesh: %s%s%s\n%s", what, argument[0] != '\0' ? ": " : "", argument, usage);
+}
+
+static double read_scale(const char *text) {
+    char *end;
+    double scale = strtod(text, &end);
+    if (end == text || *end != '\0' || !(scale > 0) || !isfinite(scale)) {
+        complain("--scale must be a number > 0, not", text);
+    }
+    return scale;
+}
+
+static void read_option(rg_mesh_arguments *a, const char *option, const char *value) {
+    if (value == NULL) {
+        complain("missing value after", option);
+    }
+    if (strcmp(option, "-o") == 0) {
+        a->output = value;
+    } else if (strcmp(option, "--scale") == 0) {
+        a->scale = read_scale(value);
+    } else if (strcmp(option, "--case") == 0) {
+        a->material = value;
+    } else if (strcmp(option, "--set") == 0) {
+        a->override[a->overrides++] = value;
+    } else {
+        complain("unknown option", option);
+    }
+}
+
+static void check_together(const rg_mesh_arguments *a) {
+    if (a->input == NULL) {
+        complain("nothing to read", "");
+    }
+    if (!a->info && a->output == NULL) {
+        complain("where to? -o OUT.h5 is missing", "");
+    }
+    if (a->info && a->output != NULL) {
+        complain("--info writes nothing; not understood: -o", a->output);
+    }
+    if (!a->info && a->material != NULL) {
+        complain("--case is for --info", "");
+    }
+}
+
+rg_mesh_arguments rg_mesh_arguments_read(int argc, char **argv, int first) {
+    rg_mesh_arguments a = {.scale = 1, .override = RG_NEW(const char *, (size_t)argc)};
+    for (int i = first; i < argc; i++) {
+        if (strcmp(argv[i], "--info") == 0) {
+            a.info = true;
+        } else if (argv[i][0] == '-') {
+            read_option(&a, argv[i], i + 1 < argc ? argv[i + 1] : NULL);
+            i++;
+        } else if (a.input == NULL) {
+            a.input = argv[i];
+        } else {
+            complain("one mesh at a time; not understood", argv[i]);
+        }
+    }
+    check_together(&a);
+    return a;
+}
+
+/* ---- making ---- */
+
+static void tell_parts(const rg_mesh *mesh, const char *input) {
+    int32_t *part = RG_NEW(int32_t, (size_t)mesh->elements), parts = rg_mesh_parts(mesh, part);
+    rg_gid *first = RG_NEW(rg_gid, (size_t)parts), *size = RG_NEW(rg_gid, (size_t)parts);
+    for (rg_gid e = mesh->elements - 1; e >= 0; e--) {
+        first[part[e]] = e;
+        size[part[e]]++;
+    }
+    if (parts > 1) {
+        rg_warn("%s: the mesh has %d parts that share no face", input, parts);
+    }
+    for (int32_t p = 0; parts > 1 && p < parts && p < 8; p++) {
+        rg_warn("%s: part %d: %" PRId64 " elements, one of them %" PRId64, input, p + 1, size[p],
+                rg_mesh_original(mesh, first[p]));
+    }
+    rg_free(first);
+    rg_free(size);
+    rg_free(part);
+}
+
+void rg_mesh_finish(rg_mesh *mesh, const char *input, const char *output) {
+    rg_mesh_sort(mesh);
+    rg_mesh_connect(mesh);
+    rg_mesh_check(mesh, input);
+    tell_parts(mesh, input);
+    rg_mesh_file_write(output, mesh, 0, NULL);
+    printf("%s: %" PRId64 " elements, %" PRId64 " vertices, %d surface sets, %d volume sets\n", output,
+           mesh->elements, mesh->vertices, mesh->sets, mesh->regions);
+}
+
+static bool ends_with(const char *text, const char *end) {
+    size_t n = strlen(text), m = strlen(end);
+    return n >= m && strcmp(text + n - m, end) == 0;
+}
+
+static int from_case(const rg_mesh_arguments *a) {
+    rg_case *c = rg_case_read(a->input, a->overrides, a->override, stderr);
+    if (c == NULL) {
+        return RG_USAGE;
+    }
+    rg_mesh *mesh = rg_mesh_of_case(c);
+    rg_mesh_file_write(a->output, mesh, 0, NULL);
+    printf("%s: %" PRId64 " elements, %" PRId64 " vertices\n", a->output, mesh->elements, mesh->vertices);
+    rg_mesh_free(mesh);
+    rg_case_free(c);
+    return RG_OK;
+}
+
+/* Hands over to the program that has Gmsh, in the folder of this one. */
+static int from_gmsh(int argc, char **argv) {
+    static const char name[] = "rhegma-mesh";
+    char path[4096 + sizeof name];
+    ssize_t length = readlink("/proc/self/exe", path, 4096);
+    path[length > 0 ? length : 0] = '\0';
+    char *slash = strrchr(path, '/');
+    strcpy(slash != NULL ? slash + 1 : path, name);
+    char **copy = RG_NEW(char *, (size_t)argc);
+    copy[0] = path;
+    for (int i = 2; i < argc; i++) {
+        copy[i - 1] = argv[i];
+    }
+    execv(path, copy);
+    rg_fatal(RG_USAGE,
+             "mesh: %s: %s; it reads all but .yaml and .h5, and is built where Gmsh is there (Debian: "
+             "libgmsh-dev; then meson configure build -Dgmsh=enabled)",
+             path, strerror(errno));
+}
+
+/* ---- showing ---- */
+
+static int show(const rg_mesh_arguments *a) {
+    double speed = 1;
+    if (a->material != NULL) {
+        rg_case *c = rg_case_read(a->material, a->overrides, a->override, stderr);
+        if (c == NULL) {
+            return RG_USAGE;
+        }
+        double nu = c->material.poisson; /* speed of dilatational waves */
+        speed = sqrt(c->material.young * (1 - nu) / ((1 + nu) * (1 - 2 * nu) * c->material.density));
+        rg_case_free(c);
+    }
+    rg_mesh *mesh = rg_mesh_file_read(a->input);
+    rg_mesh_info(mesh, speed, stdout);
+    rg_mesh_free(mesh);
+    return RG_OK;
+}
+
+int rg_mesh_command(int argc, char **argv) {
+    rg_mesh_arguments a = rg_mesh_arguments_read(argc, argv, 2);
+    bool yaml = ends_with(a.input, ".yaml") || ends_with(a.input, ".yml");
+    if (!a.info && !yaml) {
+        return from_gmsh(argc, argv);
+    }
+    int status = a.info ? show(&a) : from_case(&a);
+    rg_free(a.override);
+    return status;
+}

@@ -1,0 +1,30 @@
+/* The command "rhegma mesh", which makes and shows mesh files; no MPI. */
+#ifndef RG_MESH_COMMAND_H
+#define RG_MESH_COMMAND_H
+
+#include <stdbool.h>
+
+#include "mesh.h"
+
+typedef struct {
+    const char *input, *output;
+    const char *material; /* --case: a case file with the material for --info */
+    double scale;         /* m per unit of the input */
+    bool info;
+    int overrides;
+    const char **override; /* --set */
+} rg_mesh_arguments;
+
+/* Reads "IN -o OUT.h5 [--scale S]" and so on from argv[first] on. Ends the run with a message and RG_USAGE if
+ * something is wrong. */
+rg_mesh_arguments rg_mesh_arguments_read(int argc, char **argv, int first);
+
+/* Runs "rhegma mesh ..." with argv[1] = "mesh"; returns the exit status. Inputs that are neither case nor
+ * mesh file go to the program rhegma-mesh beside this one, which is built where Gmsh is there. */
+int rg_mesh_command(int argc, char **argv);
+
+/* Sorts, connects and checks an imported mesh, tells of what is odd about it, and writes it. `input` begins
+ * the messages. */
+void rg_mesh_finish(rg_mesh *mesh, const char *input, const char *output);
+
+#endif

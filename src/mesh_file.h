@@ -1,0 +1,115 @@
+/* Mesh files: a mesh as the solver wants it, so that a run builds nothing and each rank reads its own part.
+ *
+ * HDF5, one dataset per array, all at the top. Elements are numbered along a Hilbert curve through their
+ * centroids; a tile is the run of `tile_elements` consecutive numbers (the last one may be shorter).
+ * Integers are signed and as wide as their values need, numbers are 64-bit floats, lengths are in m.
+ *
+ *   attributes      format = "rhegma mesh", version = 1, program
+ *                   vertices, elements, interfaces (interior faces), tile_elements, tiles, surface_sets,
+ *                   volume_sets (how many there are); box [2][3]: lower and upper corner
+ *   surface_sets    [surface_sets] names, at most 63 bytes each; not there if there are none
+ *   volume_sets     [volume_sets] likewise
+ *
+ *   corner          [elements][4] vertices, ascending; face f of an element is the one opposite corner f
+ *   neighbour       [elements][4] element across face f; -1 on the surface
+ *   face            [elements][4] which face of the neighbour that is; -1 on the surface
+ *   set             [elements][4] surface set of face f; -1 for none
+ *   region          [elements] volume set; -1 for none
+ *   original        [elements] number of the element in the input
+ *
+ *   vertex_start    [tiles + 1] tile t needs the vertices in rows vertex_start[t] .. vertex_start[t + 1] - 1
+ * of vertex          [rows] their numbers, ascending within a tile, and x               [rows][3] their
+ * positions; a vertex that several tiles need is there several times
+ *
+ *   tile_start      [tiles + 1] tile t shares faces with the tiles in rows tile_start[t] .. of
+ *   tile_neighbour  [rows] their numbers, ascending for each tile, and
+ *   tile_faces      [rows] how many faces
+ *   partition_N     [tiles] rank 0 .. N - 1 that owns the tile; optional, any number of them
+ *
+ *   checksum/NAME   of dataset NAME: one for each tile's rows where the rows belong to tiles (corner to x),
+ *                   one for the whole in the others; rg_rows_checksum (mesh_rows.h) says how
+ *
+ * So everything a run of tiles needs is one contiguous stretch of each dataset: positions stand with the
+ * tiles although that repeats those on a tile's surface (about 2.5 times in all, a fifth of the file),
+ * because the vertices of a tile are scattered over any list without repetition. The checksums are ours and
+ * not HDF5's fletcher32: that one needs chunks, whose index and whole-chunk reads cost more than they give in
+ * a file that is written once and read in long stretches, and a reader of some tiles can verify what it
+ * reads. The file's own structure is in HDF5's newer format, in which every piece of it carries a checksum
+ * that HDF5 verifies.
+ *
+ * Vertices keep the numbers of the input, since these orient all faces.
+ *
+ * Errors end the run with status RG_USAGE and a message that names file and dataset. */
+#ifndef RG_MESH_FILE_H
+#define RG_MESH_FILE_H
+
+#include <stdbool.h>
+
+#include "mesh.h"
+
+enum { RG_TILE_ELEMENTS = 256, RG_MESH_VERSION = 1 };
+
+typedef struct {
+    rg_gid vertices, elements, interfaces;
+    int64_t tile_elements, tiles;
+    double box[2][3]; /* m */
+    int sets, regions;
+    char *set_name[RG_MAX_SETS], *region_name[RG_MAX_SETS];
+} rg_mesh_header;
+
+/* Which tiles share faces. */
+typedef struct {
+    int64_t tiles;
+    int64_t *start;     /* [tiles + 1] */
+    int64_t *neighbour; /* [start[tiles]] */
+    int32_t *faces;     /* [start[tiles]] */
+} rg_tile_graph;
+
+typedef struct {
+    int parts;
+    const int32_t *owner; /* [tiles] */
+} rg_tile_partition;
+
+/* A run of tiles and the vertices they need. */
+typedef struct {
+    rg_gid first, elements; /* number of the first element, and how many there are */
+    rg_gid vertices;
+    rg_gid *vertex;    /* [vertices] their numbers, ascending */
+    double *x;         /* [vertices][3] m */
+    rg_gid *corner;    /* [elements][4] numbers of vertices */
+    rg_lid *at;        /* [elements][4] where they stand in `vertex` */
+    rg_gid *neighbour; /* [elements][4], and so on as in rg_mesh */
+    int8_t *face, *set, *region;
+    rg_gid *original;
+} rg_mesh_slab;
+
+typedef struct rg_mesh_file rg_mesh_file;
+
+/* Opens a mesh file and reads its header. Not collective, no MPI: every rank may open the file for itself. */
+rg_mesh_file *rg_mesh_file_open(const char *path);
+const rg_mesh_header *rg_mesh_file_header(const rg_mesh_file *f);
+
+/* Tiles begin .. end - 1, checked against their checksums and for indices out of range. Caller frees. */
+rg_mesh_slab *rg_mesh_file_slab(rg_mesh_file *f, int64_t begin, int64_t end);
+void rg_mesh_slab_free(rg_mesh_slab *slab);
+
+rg_tile_graph *rg_mesh_file_graph(rg_mesh_file *f);
+
+/* Fills owner[tiles]; false if the file has no partition for so many ranks. */
+bool rg_mesh_file_partition(rg_mesh_file *f, int parts, int32_t *owner);
+
+void rg_mesh_file_close(rg_mesh_file *f);
+
+/* Opens, reads and checks (rg_mesh_check) the whole mesh. Caller frees with rg_mesh_free. */
+rg_mesh *rg_mesh_file_read(const char *path);
+
+/* Writes a mesh that is sorted and connected, with `partitions` partitions of its tiles: to a new name, then
+ * renamed, so that `path` is never half a file. */
+void rg_mesh_file_write(const char *path, const rg_mesh *mesh, int partitions,
+                        const rg_tile_partition *partition);
+
+/* The graph of the tiles of a mesh. Free with rg_tile_graph_free. */
+rg_tile_graph *rg_tile_graph_make(const rg_mesh *mesh);
+void rg_tile_graph_free(rg_tile_graph *g);
+
+#endif

@@ -1,0 +1,69 @@
+/* The graph of tiles: what a partition cuts. */
+#include <stdlib.h>
+
+#include "mem.h"
+#include "mesh_file.h"
+
+struct list {
+    int64_t *tile; /* a tile across each face that leaves the current one */
+    size_t count;
+};
+
+static int ascending(const void *a, const void *b) {
+    int64_t p = *(const int64_t *)a, q = *(const int64_t *)b;
+    return (p > q) - (p < q);
+}
+
+static void collect(const rg_mesh *mesh, int64_t t, struct list *l) {
+    rg_gid begin = t * RG_TILE_ELEMENTS, end = begin + RG_TILE_ELEMENTS;
+    end = end < mesh->elements ? end : mesh->elements;
+    l->count = 0;
+    for (rg_gid slot = 4 * begin; slot < 4 * end; slot++) {
+        if (mesh->neighbour[slot] >= 0 && mesh->neighbour[slot] / RG_TILE_ELEMENTS != t) {
+            l->tile[l->count++] = mesh->neighbour[slot] / RG_TILE_ELEMENTS;
+        }
+    }
+    qsort(l->tile, l->count, sizeof *l->tile, ascending);
+}
+
+/* Appends the different entries of the list, with their numbers, to the graph. */
+static void append(rg_tile_graph *g, int64_t t, const struct list *l, size_t *room) {
+    int64_t n = g->start[t];
+    for (size_t i = 0; i < l->count; i++) {
+        if (i > 0 && l->tile[i] == l->tile[i - 1]) {
+            g->faces[n - 1]++;
+            continue;
+        }
+        if ((size_t)n == *room) {
+            *room = 2 * *room + 64;
+            g->neighbour = rg_realloc(g->neighbour, *room, sizeof *g->neighbour);
+            g->faces = rg_realloc(g->faces, *room, sizeof *g->faces);
+        }
+        g->neighbour[n] = l->tile[i];
+        g->faces[n++] = 1;
+    }
+    g->start[t + 1] = n;
+}
+
+rg_tile_graph *rg_tile_graph_make(const rg_mesh *mesh) {
+    rg_tile_graph *g = RG_NEW(rg_tile_graph, 1);
+    size_t room = 0;
+    struct list list = {.tile = RG_NEW(int64_t, 4 * RG_TILE_ELEMENTS)};
+    g->tiles = (mesh->elements + RG_TILE_ELEMENTS - 1) / RG_TILE_ELEMENTS;
+    g->start = RG_NEW(int64_t, (size_t)g->tiles + 1);
+    for (int64_t t = 0; t < g->tiles; t++) {
+        collect(mesh, t, &list);
+        append(g, t, &list, &room);
+    }
+    rg_free(list.tile);
+    return g;
+}
+
+void rg_tile_graph_free(rg_tile_graph *g) {
+    if (g != NULL) {
+        rg_free(g->start);
+        rg_free(g->neighbour);
+        rg_free(g->faces);
+        rg_free(g);
+    }
+}
