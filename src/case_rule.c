@@ -15,7 +15,8 @@ void rg_mesh_file_rule(rg_check *ck, const rg_node *node) {
     int folder = file[0] == '/' || slash == NULL ? 0 : (int)(slash - ck->problems->file) + 1;
     char *path = rg_text_format("%.*s%s", folder, ck->problems->file, file);
     if (access(path, R_OK) != 0) {
-        rg_subject subject = {.key = "mesh.file", .value = path};
+        rg_subject subject = {
+            .key = "mesh.file", .value = file, .allowed = "path of a mesh file, relative to the case file"};
         rg_problem_add(ck->problems, node->at, &subject, "cannot be read: %s", strerror(errno));
     } else if (path[0] == '/' || getcwd(here, sizeof here) == NULL) {
         ck->c->mesh.file = rg_text_copy(path, strlen(path));

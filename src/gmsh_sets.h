@@ -16,19 +16,17 @@ typedef struct {
     } * entity;
 } rg_gmsh_sets;
 
-/* Ends the run if an entity is in two groups: a face can be in one set only. */
+/* All entities, in no set. */
+rg_gmsh_sets rg_gmsh_entities(const char *path, int dimension);
+
+/* The physical groups by their names (or numbers); where there are none, all entities by their numbers. Ends
+ * the run if an entity is in two groups: a face can be in one set only. */
 rg_gmsh_sets rg_gmsh_sets_read(const char *path, int dimension);
 void rg_gmsh_sets_free(rg_gmsh_sets *s);
 
 /* Calls take(context, type, tag[count], count, node[], set) for the elements of each entity and type. */
 void rg_gmsh_each(const char *path, const rg_gmsh_sets *s,
                   void (*take)(void *, int, const size_t *, size_t, const size_t *, int), void *context);
-
-/* Fills mesh->set: the surface sets by which Gmsh's triangles are named. vertex[tag] is a node's number in
- * the mesh, -1 for none, for tags up to `most`. Warns of triangles that are no faces or not on the surface.
- */
-void rg_gmsh_mark_surfaces(const char *path, const rg_gmsh_sets *s, const rg_gid *vertex, size_t most,
-                           rg_mesh *mesh);
 
 /* Ends the run with Gmsh's message unless error is 0. */
 void rg_gmsh_require(const char *path, int error);

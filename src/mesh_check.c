@@ -150,11 +150,15 @@ static void check_hanging(const rg_mesh *mesh, const char *name) {
     }
 }
 
-void rg_mesh_check(const rg_mesh *mesh, const char *name) {
+void rg_mesh_check_elements(const rg_mesh *mesh, const char *name) {
     for (rg_gid e = 0; e < mesh->elements; e++) {
         check_corners(mesh, name, e);
         check_volume(mesh, name, e);
     }
+}
+
+void rg_mesh_check(const rg_mesh *mesh, const char *name) {
+    rg_mesh_check_elements(mesh, name);
     for (rg_gid e = 0; e < mesh->elements; e++) {
         for (int f = 0; f < 4; f++) {
             check_neighbour(mesh, name, e, f);

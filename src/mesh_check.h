@@ -18,6 +18,9 @@
  * Orientation is free: corners are sorted, and volumes are taken without sign. */
 void rg_mesh_check(const rg_mesh *mesh, const char *name);
 
+/* The part of this that concerns elements by themselves: corners and volume. Needs no connection. */
+void rg_mesh_check_elements(const rg_mesh *mesh, const char *name);
+
 /* Parts that share no face: part[elements] numbers them by their first element. Returns how many there are.
  */
 int32_t rg_mesh_parts(const rg_mesh *mesh, int32_t *part);

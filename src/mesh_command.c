@@ -10,6 +10,7 @@
 
 #include "case.h"
 #include "error.h"
+#include "inp_read.h"
 #include "mem.h"
 #include "mesh_case.h"
 #include "mesh_check.h"
@@ -17,12 +18,13 @@
 #include "mesh_info.h"
 
 static const char usage[] =
-    "usage: rhegma mesh IN -o OUT.h5 [--scale S]      a mesh file from what Gmsh reads or meshes (.msh, "
-    ".geo, ...);\n"
-    "                                                 S: m per unit of IN (1e-3 for mm; default 1)\n"
-    "       rhegma mesh CASE.yaml -o OUT.h5 [--set K] a mesh file from the built-in mesh of a case\n"
-    "       rhegma mesh --info MESH.h5 [--case CASE.yaml]   what a mesh file holds; time steps for the\n"
-    "                                                 material of the case, else for a speed of 1 m/s\n";
+    "usage: rhegma mesh IN -o OUT.h5 [--scale S]    a mesh file from Abaqus (.inp), or from what Gmsh reads "
+    "or\n"
+    "                                               meshes (.msh .bdf .unv .geo .step ...); S: m per unit of "
+    "IN\n"
+    "       rhegma mesh CASE.yaml -o OUT.h5 [--set a.b=value]   a mesh file from the mesh of a case\n"
+    "       rhegma mesh --info MESH.h5 [--case CASE.yaml]   what a mesh file holds; its time steps with the\n"
+    "                                               material of a case, else for waves of 1 m/s\n";
 
 /* ---- arguments ---- */
 
@@ -111,6 +113,7 @@ static void tell_parts(const rg_mesh *mesh, const char *input) {
 }
 
 void rg_mesh_finish(rg_mesh *mesh, const char *input, const char *output) {
+    rg_mesh_check_elements(mesh, input);
     rg_mesh_sort(mesh);
     rg_mesh_connect(mesh);
     rg_mesh_check(mesh, input);
@@ -138,6 +141,13 @@ static int from_case(const rg_mesh_arguments *a) {
     return RG_OK;
 }
 
+static int from_inp(const rg_mesh_arguments *a) {
+    rg_mesh *mesh = rg_inp_read(a->input, a->scale);
+    rg_mesh_finish(mesh, a->input, a->output);
+    rg_mesh_free(mesh);
+    return RG_OK;
+}
+
 /* Hands over to the program that has Gmsh, in the folder of this one. */
 static int from_gmsh(int argc, char **argv) {
     static const char name[] = "rhegma-mesh";
@@ -153,7 +163,7 @@ static int from_gmsh(int argc, char **argv) {
     }
     execv(path, copy);
     rg_fatal(RG_USAGE,
-             "mesh: %s: %s; it reads all but .yaml and .h5, and is built where Gmsh is there (Debian: "
+             "mesh: %s: %s; it reads all but .yaml and .inp, and is built where Gmsh is there (Debian: "
              "libgmsh-dev; then meson configure build -Dgmsh=enabled)",
              path, strerror(errno));
 }
@@ -179,11 +189,16 @@ static int show(const rg_mesh_arguments *a) {
 
 int rg_mesh_command(int argc, char **argv) {
     rg_mesh_arguments a = rg_mesh_arguments_read(argc, argv, 2);
-    bool yaml = ends_with(a.input, ".yaml") || ends_with(a.input, ".yml");
-    if (!a.info && !yaml) {
-        return from_gmsh(argc, argv);
+    int status;
+    if (a.info) {
+        status = show(&a);
+    } else if (ends_with(a.input, ".yaml") || ends_with(a.input, ".yml")) {
+        status = from_case(&a);
+    } else if (ends_with(a.input, ".inp")) { /* Gmsh writes but does not read them */
+        status = from_inp(&a);
+    } else {
+        status = from_gmsh(argc, argv);
     }
-    int status = a.info ? show(&a) : from_case(&a);
     rg_free(a.override);
     return status;
 }

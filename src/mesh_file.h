@@ -17,12 +17,12 @@
  *   region          [elements] volume set; -1 for none
  *   original        [elements] number of the element in the input
  *
- *   vertex_start    [tiles + 1] tile t needs the vertices in rows vertex_start[t] .. vertex_start[t + 1] - 1
- * of vertex          [rows] their numbers, ascending within a tile, and x               [rows][3] their
- * positions; a vertex that several tiles need is there several times
+ *   vertex_start    [tiles + 1] row at which the vertices of each tile begin in the next two
+ *   vertex          [rows] numbers of the vertices that a tile needs, ascending for each tile
+ *   x               [rows][3] their positions; those of a vertex that several tiles need are repeated
  *
- *   tile_start      [tiles + 1] tile t shares faces with the tiles in rows tile_start[t] .. of
- *   tile_neighbour  [rows] their numbers, ascending for each tile, and
+ *   tile_start      [tiles + 1] row at which the neighbours of each tile begin in the next two
+ *   tile_neighbour  [rows] numbers of the tiles it shares faces with, ascending for each tile
  *   tile_faces      [rows] how many faces
  *   partition_N     [tiles] rank 0 .. N - 1 that owns the tile; optional, any number of them
  *
@@ -30,7 +30,7 @@
  *                   one for the whole in the others; rg_rows_checksum (mesh_rows.h) says how
  *
  * So everything a run of tiles needs is one contiguous stretch of each dataset: positions stand with the
- * tiles although that repeats those on a tile's surface (about 2.5 times in all, a fifth of the file),
+ * tiles although that repeats those on a tile's surface (about twice in all, a fifth of the file),
  * because the vertices of a tile are scattered over any list without repetition. The checksums are ours and
  * not HDF5's fletcher32: that one needs chunks, whose index and whole-chunk reads cost more than they give in
  * a file that is written once and read in long stretches, and a reader of some tiles can verify what it

@@ -49,9 +49,12 @@ static hid_t stored_type(const rg_rows *r, hid_t type, const void *data, int64_t
 static bool write_dataset(hid_t place, const char *name, hid_t stored, hid_t type, int columns, int64_t rows,
                           const void *data) {
     hid_t space = H5Screate_simple(columns > 1 ? 2 : 1, (hsize_t[]){(hsize_t)rows, (hsize_t)columns}, NULL);
-    hid_t dataset = H5Dcreate2(place, name, stored, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+    hid_t plan = H5Pcreate(H5P_DATASET_CREATE);
+    H5Pset_obj_track_times(plan, false);
+    hid_t dataset = H5Dcreate2(place, name, stored, space, H5P_DEFAULT, plan, H5P_DEFAULT);
     bool ok = dataset >= 0 && H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) >= 0;
     ok = H5Dclose(dataset) >= 0 && ok;
+    H5Pclose(plan);
     H5Sclose(space);
     return ok;
 }
@@ -226,12 +229,17 @@ static void create(target *w) {
     }
     fclose(f);
     rg_h5_listen(w->reason);
-    hid_t access = H5Pcreate(H5P_FILE_ACCESS);
+    hid_t access = H5Pcreate(H5P_FILE_ACCESS), plan = H5Pcreate(H5P_FILE_CREATE);
     H5Pset_libver_bounds(access, H5F_LIBVER_V18, H5F_LIBVER_V18); /* the format that has checksums */
-    w->file = H5Fcreate(w->temporary, H5F_ACC_TRUNC, H5P_DEFAULT, access);
+    H5Pset_obj_track_times(plan, false);                          /* the same mesh is the same file */
+    w->file = H5Fcreate(w->temporary, H5F_ACC_TRUNC, plan, access);
+    H5Pclose(plan);
     H5Pclose(access);
     require(w, w->file >= 0, "the file");
-    w->sums = H5Gcreate2(w->file, "checksum", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+    plan = H5Pcreate(H5P_GROUP_CREATE);
+    H5Pset_obj_track_times(plan, false);
+    w->sums = H5Gcreate2(w->file, "checksum", H5P_DEFAULT, plan, H5P_DEFAULT);
+    H5Pclose(plan);
     require(w, w->sums >= 0, "checksum");
 }
 

@@ -455,7 +455,8 @@ static const struct mistake {
      ":18:26: output.fields[2]: crack: given twice; " FIELDS "\n"},
     {"output:\n", "output:\n  fields: crack\n", ":18:11: output.fields: crack: not a list; " FIELDS "\n"},
     {"mesh:\n", "mesh:\n  file: a.msh\n",
-     ":2:9: mesh.file: a.msh: reading mesh files is not supported yet\n"
+     ":2:9: mesh.file: a.msh: cannot be read: No such file or directory; "
+     "allowed: path of a mesh file, relative to the case file\n"
      ":3:3: mesh.cells: [2, 2, 4]: cannot be given together with mesh.file\n"
      ":4:3: mesh.size: [1e-3, 1e-3, 2e-3]: cannot be given together with mesh.file\n"},
     /* boundary */

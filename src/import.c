@@ -1,0 +1,265 @@
+#include "import.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../kernels/layout.h"
+#include "error.h"
+#include "mem.h"
+
+static const double straight = 1e-6; /* of an edge: how far its middle node may be off */
+
+static const int edge_end[6][2] = {{0, 1}, {1, 2}, {2, 0}, {3, 0}, {2, 3}, {1, 3}};
+
+/* ---- adding ---- */
+
+static size_t more(size_t room, size_t need) {
+    return need <= room ? room : need + need / 2 + 64;
+}
+
+void rg_import_node(rg_import *m, size_t number, const double x[3]) {
+    size_t room = more(m->node_room, number + 1);
+    if (room > m->node_room) {
+        m->x = rg_realloc(m->x, 3 * room, sizeof *m->x);
+        m->there = rg_realloc(m->there, room, sizeof *m->there);
+        memset(m->there + m->node_room, 0, room - m->node_room);
+        m->node_room = room;
+    }
+    m->nodes = number + 1 > m->nodes ? number + 1 : m->nodes;
+    m->there[number] = 1;
+    for (size_t i = 0; i < 3; i++) {
+        m->x[3 * number + i] = m->scale * x[i];
+    }
+}
+
+static void look_at_middles(rg_import *m, const size_t *node) {
+    for (int k = 0; k < 6; k++) {
+        const double *a = m->x + 3 * node[edge_end[k][0]], *b = m->x + 3 * node[edge_end[k][1]];
+        const double *middle = m->x + 3 * node[4 + k];
+        double off = 0, edge = 0;
+        for (int i = 0; i < 3; i++) {
+            off += (middle[i] - 0.5 * (a[i] + b[i])) * (middle[i] - 0.5 * (a[i] + b[i]));
+            edge += (b[i] - a[i]) * (b[i] - a[i]);
+        }
+        m->middles++;
+        m->bent += off > straight * straight * edge;
+        m->worst = off > 0 ? fmax(m->worst, sqrt(off / edge)) : m->worst;
+    }
+}
+
+void rg_import_element(rg_import *m, rg_gid name, int nodes, const size_t *node, int region) {
+    size_t room = more(m->element_room, (size_t)m->elements + 1);
+    if (room > m->element_room) {
+        m->corner = rg_realloc(m->corner, 4 * room, sizeof *m->corner);
+        m->name = rg_realloc(m->name, room, sizeof *m->name);
+        m->region = rg_realloc(m->region, room, sizeof *m->region);
+        m->element_room = room;
+    }
+    for (int i = 0; i < nodes; i++) {
+        if (node[i] >= m->nodes || !m->there[node[i]]) {
+            rg_fatal(RG_USAGE, "%s: element %" PRId64 " has node %zu, which is not there", m->path, name,
+                     node[i]);
+        }
+    }
+    memcpy(m->corner + 4 * m->elements, node, 4 * sizeof *node);
+    m->name[m->elements] = name;
+    m->region[m->elements++] = (int8_t)region;
+    if (nodes == 10) {
+        look_at_middles(m, node);
+    }
+}
+
+void rg_import_add_face(rg_import *m, rg_gid name, const size_t node[3], int set) {
+    size_t room = more(m->face_room, m->faces + 1);
+    if (room > m->face_room) {
+        m->face = rg_realloc(m->face, room, sizeof *m->face);
+        m->face_room = room;
+    }
+    m->face[m->faces++] = (rg_import_face){{node[0], node[1], node[2]}, name, set};
+}
+
+/* ---- vertices and elements ---- */
+
+/* Numbers the corners in the order of the input's numbers; vertex[node] is -1 for what is no corner. */
+static rg_gid *number_vertices(const rg_import *m, rg_mesh *mesh) {
+    rg_gid *vertex = RG_NEW(rg_gid, m->nodes);
+    for (size_t n = 0; n < m->nodes; n++) {
+        vertex[n] = -1;
+    }
+    for (rg_gid i = 0; i < 4 * m->elements; i++) {
+        vertex[m->corner[i]] = 0;
+    }
+    for (size_t n = 0; n < m->nodes; n++) {
+        vertex[n] = vertex[n] < 0 ? -1 : mesh->vertices++;
+    }
+    mesh->x = RG_NEW(double, 3 * (size_t)mesh->vertices);
+    for (size_t n = 0; n < m->nodes; n++) {
+        if (vertex[n] >= 0) {
+            memcpy(mesh->x + 3 * vertex[n], m->x + 3 * n, 3 * sizeof *mesh->x);
+        }
+    }
+    return vertex;
+}
+
+static int ascending(const void *a, const void *b) {
+    rg_gid p = *(const rg_gid *)a, q = *(const rg_gid *)b;
+    return (p > q) - (p < q);
+}
+
+static void fill_elements(const rg_import *m, const rg_gid *vertex, rg_mesh *mesh) {
+    size_t count = (size_t)m->elements;
+    mesh->elements = m->elements;
+    mesh->corner = RG_NEW(rg_gid, 4 * count);
+    mesh->neighbour = RG_NEW(rg_gid, 4 * count);
+    mesh->face = RG_NEW(int8_t, 4 * count);
+    mesh->set = RG_NEW(int8_t, 4 * count);
+    mesh->region = RG_NEW(int8_t, count);
+    mesh->original = RG_NEW(rg_gid, count);
+    memset(mesh->set, -1, 4 * count);
+    memcpy(mesh->region, m->region, count * sizeof *m->region);
+    memcpy(mesh->original, m->name, count * sizeof *m->name);
+    for (size_t e = 0; e < count; e++) {
+        for (size_t i = 0; i < 4; i++) {
+            mesh->corner[4 * e + i] = vertex[m->corner[4 * e + i]];
+        }
+        qsort(mesh->corner + 4 * e, 4, sizeof *mesh->corner, ascending);
+    }
+}
+
+static void tell_nodes(const rg_import *m, const rg_gid *vertex) {
+    int64_t unused = 0;
+    size_t first = 0;
+    for (size_t n = 0; n < m->nodes; n++) {
+        if (m->there[n] && vertex[n] < 0) {
+            first = unused++ == 0 ? n : first;
+        }
+    }
+    if (m->bent > 0) {
+        rg_warn("%s: second-order elements are taken by their corners: %" PRId64 " of %" PRId64
+                " mid-nodes are off straight by more than %g of their edge, by %.2g at most",
+                m->path, m->bent, m->middles, straight, m->worst);
+    }
+    if (unused > 0 && m->middles == 0) {
+        const double *x = m->x + 3 * first;
+        rg_warn("%s: %" PRId64
+                " nodes belong to no tetrahedron and are left out; the first is node %zu at (%g, "
+                "%g, %g) m",
+                m->path, unused, first, x[0], x[1], x[2]);
+    }
+}
+
+/* ---- names of faces ---- */
+
+struct triangle {
+    rg_gid vertex[3]; /* ascending */
+    rg_gid name;      /* named by the input: its number; a face: 4 * element + face */
+    int set;          /* named by the input; -1 of a face */
+};
+
+/* Named ones before the faces that they name; faces in the order of the elements. */
+static int by_vertices(const void *a, const void *b) {
+    const struct triangle *p = a, *q = b;
+    for (int i = 0; i < 3; i++) {
+        if (p->vertex[i] != q->vertex[i]) {
+            return p->vertex[i] < q->vertex[i] ? -1 : 1;
+        }
+    }
+    if ((p->set < 0) != (q->set < 0)) {
+        return p->set < 0 ? 1 : -1;
+    }
+    return (p->name > q->name) - (p->name < q->name);
+}
+
+struct tally {
+    int64_t inside, nowhere; /* named triangles between two elements; that are no faces */
+};
+
+/* One group of equal triangles: the named ones come first, then the faces. */
+static void mark_group(const rg_import *m, const struct triangle *t, size_t count, char *const set_name[],
+                       rg_mesh *mesh, struct tally *tally) {
+    size_t names = 0;
+    while (names < count && t[names].set >= 0) {
+        if (t[names].set != t[0].set) {
+            rg_fatal(RG_USAGE,
+                     "%s: %" PRId64 " and %" PRId64
+                     " are the same face, in surface sets '%s' and '%s'; it can be in one only",
+                     m->path, t[0].name, t[names].name, set_name[t[0].set], set_name[t[names].set]);
+        }
+        names++;
+    }
+    tally->inside += names > 0 && count - names > 1;
+    tally->nowhere += names > 0 && count == names;
+    if (names > 0 && count - names == 1) {
+        mesh->set[t[names].name] = (int8_t)t[0].set;
+    }
+}
+
+/* The input's triangles that have corners, then all faces of the mesh. */
+static struct triangle *list_triangles(const rg_import *m, const rg_gid *vertex, const rg_mesh *mesh,
+                                       size_t *count, struct tally *tally) {
+    struct triangle *list = RG_NEW(struct triangle, m->faces + 4 * (size_t)mesh->elements);
+    *count = 0;
+    for (size_t i = 0; i < m->faces; i++) {
+        struct triangle t = {.name = m->face[i].name, .set = m->face[i].set};
+        bool known = true;
+        for (int k = 0; k < 3; k++) {
+            size_t n = m->face[i].node[k];
+            t.vertex[k] = n < m->nodes ? vertex[n] : -1;
+            known = known && t.vertex[k] >= 0;
+        }
+        qsort(t.vertex, 3, sizeof *t.vertex, ascending);
+        list[*count] = t;
+        *count += known;
+        tally->nowhere += !known;
+    }
+    for (rg_gid slot = 0; slot < 4 * mesh->elements; slot++) {
+        struct triangle t = {.name = slot, .set = -1};
+        for (int k = 0; k < 3; k++) {
+            t.vertex[k] = mesh->corner[slot / 4 * 4 + rg_face_node[slot % 4][k]];
+        }
+        list[(*count)++] = t;
+    }
+    return list;
+}
+
+static void mark_faces(const rg_import *m, const rg_gid *vertex, char *const set_name[], rg_mesh *mesh) {
+    struct tally tally = {0, 0};
+    size_t count;
+    struct triangle *list = list_triangles(m, vertex, mesh, &count, &tally);
+    qsort(list, count, sizeof *list, by_vertices);
+    for (size_t i = 0, n; i < count; i += n) {
+        for (n = 1; i + n < count && memcmp(list[i].vertex, list[i + n].vertex, sizeof list->vertex) == 0;
+             n++) {
+        }
+        mark_group(m, list + i, n, set_name, mesh, &tally);
+    }
+    if (tally.inside > 0) {
+        rg_warn("%s: %" PRId64 " faces of surface sets lie between elements, not on the surface: in no set",
+                m->path, tally.inside);
+    }
+    if (tally.nowhere > 0) {
+        rg_warn("%s: %" PRId64 " triangles of surface sets are no faces of tetrahedra: left out", m->path,
+                tally.nowhere);
+    }
+    rg_free(list);
+}
+
+rg_mesh *rg_import_finish(rg_import *m, char *const set_name[]) {
+    if (m->elements == 0) {
+        rg_fatal(RG_USAGE, "%s: no tetrahedra", m->path);
+    }
+    rg_mesh *mesh = RG_NEW(rg_mesh, 1);
+    rg_gid *vertex = number_vertices(m, mesh);
+    fill_elements(m, vertex, mesh);
+    tell_nodes(m, vertex);
+    mark_faces(m, vertex, set_name, mesh);
+    rg_free(vertex);
+    void *blocks[] = {m->x, m->there, m->corner, m->name, m->region, m->face};
+    for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) {
+        rg_free(blocks[i]);
+    }
+    return mesh;
+}
