@@ -30,7 +30,7 @@ void rg_gmsh_require(const char *path, int error) {
             break;
         }
     }
-    rg_fatal(RG_USAGE, "%s: Gmsh %s: %s", path, GMSH_API_VERSION, said);
+    rg_fatal(RG_USAGE, "%s: Gmsh: %s", path, said);
 }
 
 /* ---- opening ---- */

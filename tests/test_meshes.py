@@ -1,0 +1,479 @@
+"""Mesh files: imports in every format that Gmsh here writes, the meshes of bench/cases, runs from a file."""
+
+import re
+import shutil
+import subprocess
+
+import h5py
+import numpy as np
+import pytest
+from conftest import BENCH, CASES, PROGRAM, launch, overrides
+
+GMSH = shutil.which("gmsh")
+needs_gmsh = pytest.mark.skipif(GMSH is None or not PROGRAM.with_name("rhegma-mesh").exists(),
+                                reason="no Gmsh here (Debian: gmsh, libgmsh-dev), or rhegma-mesh is not built")
+
+# Two materials, one above the other; two named sides.
+TWO = """
+SetFactory("OpenCASCADE");
+Mesh.MeshSizeMax = 0.5;
+Box(1) = {0, 0, 0, 1, 1, 1};
+Box(2) = {0, 0, 1, 1, 1, 1};
+BooleanFragments{ Volume{1}; Delete; }{ Volume{2}; Delete; }
+bottom[] = Surface In BoundingBox{-1, -1, -0.1, 2, 2, 0.1};
+top[] = Surface In BoundingBox{-1, -1, 1.9, 2, 2, 2.1};
+"""
+NAMED = TWO + """
+Physical Volume("steel") = {1};
+Physical Volume("brass") = {2};
+Physical Surface("bottom") = bottom[];
+Physical Surface("top") = top[];
+"""
+NAMES = {"surface": ["bottom", "top"], "volume": ["steel", "brass"]}
+NUMBERS = {"surface": ["5", "11"], "volume": ["1", "2"]}  # of Gmsh's entities, where a format has no names
+ALL = {"surface": ["1"], "volume": ["1"]}  # VTK as Gmsh writes it tells no entities apart
+FORMATS = [("msh2", ".msh", [], NAMES), ("msh2", ".msh", ["-bin"], NAMES), ("msh40", ".msh", [], NAMES),
+           ("msh41", ".msh", [], NAMES), ("msh41", ".msh", ["-bin"], NAMES), ("unv", ".unv", [], NAMES),
+           ("inp", ".inp", [], NAMES), ("bdf", ".bdf", [], NUMBERS), ("mesh", ".mesh", [], NUMBERS),
+           ("vtk", ".vtk", [], ALL)]
+
+
+def gmsh(text, out, *options):
+    """The mesh that Gmsh makes of a geometry."""
+    geo = out.with_suffix(".geo")
+    geo.write_text(text + "\n")
+    process = subprocess.run([GMSH, "-3", geo, *options, "-o", out], capture_output=True, text=True, timeout=300)
+    assert process.returncode == 0, process.stdout + process.stderr
+    return out
+
+
+def convert(source, out, *options):
+    """rhegma mesh: the mesh file opened for reading, and the warnings."""
+    process = launch("mesh", source, "-o", out, *options)
+    assert process.returncode == 0, process.stderr
+    return h5py.File(out), process.stderr
+
+
+def refused(source, out, *options):
+    process = launch("mesh", source, "-o", out, *options)
+    assert process.returncode == 2, process.stdout + process.stderr
+    assert not out.exists() and not out.with_name(out.name + ".part").exists()
+    return process.stderr
+
+
+def positions(file):
+    """[vertices][3], from the tiles' lists."""
+    x = np.full((file.attrs["vertices"], 3), np.nan)
+    x[file["vertex"][:]] = file["x"][:]
+    return x
+
+
+def corners(file):
+    return positions(file)[file["corner"][:]]
+
+
+def volumes(c):
+    return abs(np.linalg.det(c[:, 1:] - c[:, :1])) / 6
+
+
+def names(file, kind):
+    return [name.decode() for name in file[kind + "_sets"]] if kind + "_sets" in file else []
+
+
+def face_areas(c):
+    """[elements][4]: area of the face opposite each corner."""
+    p, q, r = ([c[:, face[i]] for face in ([1, 2, 3], [0, 2, 3], [0, 1, 3], [0, 1, 2])] for i in range(3))
+    return np.stack([np.linalg.norm(np.cross(b - a, d - a), axis=1) / 2 for a, b, d in zip(p, q, r)], axis=1)
+
+
+# ---- Formats ----
+
+
+@needs_gmsh
+@pytest.mark.parametrize("order", [1, 2])
+@pytest.mark.parametrize("name, suffix, options, sets", FORMATS, ids=lambda v: " ".join(v) if type(v) is list else None)
+def test_format(tmp_path, name, suffix, options, sets, order):
+    source = gmsh(NAMED, tmp_path / f"two{suffix}", "-format", name, "-order", str(order), *options)
+    file, said = convert(source, tmp_path / "two.h5")
+    c = corners(file)
+    size = volumes(c)
+    assert file.attrs["elements"] == len(c) == 1413
+    assert size.sum() == pytest.approx(2, rel=1e-4)  # Nastran's short fields hold five digits
+    assert (np.sort(names(file, "surface")) == np.sort(sets["surface"])).all()
+    assert (np.sort(names(file, "volume")) == np.sort(sets["volume"])).all()
+    height = c[:, :, 2].mean(axis=1)
+    for side, there in (("bottom", 0), ("top", 2)):
+        if sets is not ALL:
+            key = sets["surface"][0 if there == 0 else 1]
+            faces = file["set"][:] == names(file, "surface").index(key)
+            assert face_areas(c)[faces].sum() == pytest.approx(1, rel=1e-4), side
+            assert (abs(height[faces.any(axis=1)] - there) < 0.5).all()
+    if sets is not ALL:
+        lower = file["region"][:] == names(file, "volume").index(sets["volume"][0])
+        assert (lower == (height < 1)).all()
+    bent = [line for line in said.splitlines() if "mid-nodes" in line]
+    assert bool(bent) == (name == "bdf" and order == 2)  # its digits bend edges
+
+
+@needs_gmsh
+def test_neighbours_of_an_import(tmp_path):
+    file, _ = convert(gmsh(NAMED, tmp_path / "two.msh"), tmp_path / "two.h5")
+    corner, neighbour, face = file["corner"][:], file["neighbour"][:], file["face"][:]
+    assert (np.diff(corner, axis=1) > 0).all()
+    for e, f in np.argwhere(neighbour >= 0):
+        other, back = neighbour[e, f], face[e, f]
+        assert (neighbour[other, back], face[other, back]) == (e, f)
+        assert set(np.delete(corner[e], f)) == set(np.delete(corner[other], back))
+    area = face_areas(corners(file))
+    assert area[neighbour < 0].sum() == pytest.approx(10)  # the whole surface and nothing else
+    assert file.attrs["interfaces"] == (neighbour >= 0).sum() // 2
+    assert len(np.unique(file["original"])) == len(corner)
+
+
+@needs_gmsh
+def test_curved_second_order_is_counted(tmp_path):
+    text = 'SetFactory("OpenCASCADE"); Sphere(1) = {0, 0, 0, 1}; Mesh.MeshSizeMax = 0.4;'
+    source = gmsh(text, tmp_path / "ball.msh", "-format", "msh2", "-order", "2")
+    lines = source.read_text().splitlines()
+    count = int(lines[lines.index("$Nodes") + 1])
+    x = np.array([line.split() for line in lines[lines.index("$Nodes") + 2:][:count]], float)
+    place = dict(zip(x[:, 0].astype(int), x[:, 1:]))
+    tets = [list(map(int, line.split()[-10:])) for line in lines if re.match(r"\d+ 11 ", line)]
+    nodes = np.array([[place[n] for n in tet] for tet in tets])
+    ends = [(0, 1), (1, 2), (2, 0), (3, 0), (2, 3), (1, 3)]
+    off = np.stack([np.linalg.norm(nodes[:, 4 + k] - (nodes[:, a] + nodes[:, b]) / 2, axis=1) /
+                    np.linalg.norm(nodes[:, a] - nodes[:, b], axis=1) for k, (a, b) in enumerate(ends)])
+    assert (off > 1e-6).sum() > 100
+    file, said = convert(source, tmp_path / "ball.h5")
+    assert f"{(off > 1e-6).sum()} of {off.size} mid-nodes are off straight by more than 1e-06" in said
+    assert volumes(corners(file)).sum() == pytest.approx(volumes(nodes[:, :4]).sum(), rel=1e-12)
+
+
+@needs_gmsh
+def test_scale(tmp_path):
+    source = gmsh(NAMED, tmp_path / "two.msh")
+    file, _ = convert(source, tmp_path / "mm.h5", "--scale", "1e-3")
+    assert file.attrs["box"].tolist() == [[0, 0, 0], [1e-3, 1e-3, 2e-3]]
+
+
+@needs_gmsh
+def test_no_names_become_numbers(tmp_path):
+    file, _ = convert(gmsh(TWO, tmp_path / "two.msh"), tmp_path / "two.h5")
+    assert len(names(file, "surface")) == 11 and names(file, "volume") == ["1", "2"]
+    inner = [i for i in range(11) if (file["set"][:] == i).sum() == 0]
+    assert len(inner) == 1  # the surface between the two volumes is inside
+
+
+@needs_gmsh
+@pytest.mark.parametrize("text, message", [
+    (TWO + 'Physical Surface("a") = {5}; Physical Surface("b") = {5};', "surface 5 is in two physical groups"),
+    ('Point(1) = {0, 0, 0}; Point(2) = {1, 0, 0}; Line(1) = {1, 2};', "no tetrahedra"),
+    ("Point(1) = {0, 0, 0, 1}; Point(2) = {1, 0, 0, 1}; Line(1) = {1, 2};"
+     "s[] = Extrude {0, 1, 0} { Line{1}; Layers{2}; Recombine; };"
+     "Extrude {0, 0, 1} { Surface{s[1]}; Layers{2}; Recombine; }", "Hexahedron"),
+    ("Box(1) = {0, 0, 0, 1, 1", "syntax error"),
+])
+def test_geometry_that_is_refused(tmp_path, text, message):
+    geo = tmp_path / "bad.geo"
+    geo.write_text(text + "\n")
+    said = refused(geo, tmp_path / "out.h5")
+    assert message.lower() in said.lower() and "bad.geo" in said
+
+
+@needs_gmsh
+def test_elements_outside_of_physical_volumes_are_left_out(tmp_path):
+    geo = tmp_path / "half.geo"
+    geo.write_text(TWO + 'Physical Volume("steel") = {1};\n')
+    file, said = convert(geo, tmp_path / "half.h5")
+    assert "in no physical volume" in said
+    assert volumes(corners(file)).sum() == pytest.approx(1)
+
+
+@needs_gmsh
+def test_open_mesh_is_refused(tmp_path):
+    geo = tmp_path / "open.geo"  # the two boxes do not share the surface between them
+    geo.write_text(re.sub(r"BooleanFragments.*", "", NAMED).replace("11", "5"))
+    said = refused(geo, tmp_path / "out.h5")
+    assert re.search(r"open.geo: (elements \d+ and \d+ have different vertices at the same place|"
+                     r"a vertex of element \d+ .* hanging)", said)
+
+
+@needs_gmsh
+def test_parts_are_told(tmp_path):
+    geo = tmp_path / "apart.geo"
+    geo.write_text('SetFactory("OpenCASCADE"); Mesh.MeshSizeMax = 0.5;'
+                   "Box(1) = {0, 0, 0, 1, 1, 1}; Box(2) = {0, 0, 3, 1, 1, 1};\n")
+    _, said = convert(geo, tmp_path / "apart.h5")
+    assert "the mesh has 2 parts that share no face" in said and "part 2: " in said
+
+
+def test_missing_and_foreign_inputs(tmp_path):
+    assert "nowhere.inp: cannot be read" in refused("nowhere.inp", tmp_path / "out.h5")
+    other = tmp_path / "other.h5"
+    other.write_text("not HDF5")
+    process = launch("mesh", "--info", other)
+    assert process.returncode == 2 and "other.h5: not a mesh file of Rhegma" in process.stderr
+
+
+@pytest.mark.parametrize("arguments, message", [
+    ([], "nothing to read"), (["a.msh"], "-o OUT.h5 is missing"), (["a.msh", "-o"], "missing value after: -o"),
+    (["a.msh", "b.msh"], "one mesh at a time"), (["a.msh", "-o", "x.h5", "--scale", "0"], "--scale must be a number > 0"),
+    (["--info", "a.h5", "-o", "b.h5"], "--info writes nothing"), (["a.msh", "--frob", "1"], "unknown option: --frob"),
+])
+def test_wrong_arguments(tmp_path, arguments, message):
+    process = launch("mesh", *arguments, cwd=tmp_path)
+    assert process.returncode == 2 and message in process.stderr.splitlines()[0]
+    assert "usage: rhegma mesh" in process.stderr and list(tmp_path.iterdir()) == []
+
+
+# ---- Abaqus ----
+
+PART = """*HEADING
+two tetrahedra
+*PART, NAME=P
+** the nodes
+*NODE
+10, 0., 0., 0.
+20, 1., 0., 0.
+30, 0., 1., 0.
+40, 0., 0., 1.
+50, 0., 0., -1.
+*ELEMENT, TYPE=C3D4, ELSET=All
+1, 10, 20, 30, 40
+2, 10,
+20, 30, 50
+*ELSET, ELSET=up
+1
+*Elset, elset=both, generate
+ 1, 2, 1
+*ELSET, ELSET=_s_S2, INTERNAL, INSTANCE=I
+1, 2
+*SURFACE, TYPE=ELEMENT, NAME=side
+_s_S2, S2
+2, S3
+"""
+END = """*SOLID SECTION, ELSET=both, MATERIAL=glass
+1.
+*END PART
+*INSTANCE, NAME=I, PART=P
+*END INSTANCE
+"""
+
+
+def inp(tmp_path, text):
+    path = tmp_path / "a.inp"
+    path.write_text(text)
+    return path
+
+
+def test_abaqus_sections_and_surfaces(tmp_path):
+    file, said = convert(inp(tmp_path, PART + END), tmp_path / "a.h5", "--scale", "2")
+    assert said == ""
+    assert names(file, "volume") == ["both"] and (file["region"][:] == 0).all()
+    assert names(file, "surface") == ["side"]
+    first = {original: i for i, original in enumerate(file["original"])}
+    marked = {(int(e) + 0, f) for e, f in np.argwhere(file["set"][:] == 0)}
+    # corners in order: 10 20 30 40 and 10 20 30 50; S2 has nodes 1 4 2, so it is opposite 30; S3 opposite 10
+    assert marked == {(first[1], 2), (first[2], 2), (first[2], 0)}
+    assert positions(file).max() == 2 and file.attrs["interfaces"] == 1
+
+
+def test_abaqus_sets_without_sections(tmp_path):
+    text = PART.replace("*Elset, elset=both, generate\n 1, 2, 1\n", "")
+    file, _ = convert(inp(tmp_path, text), tmp_path / "a.h5")
+    region = dict(zip(file["original"][:], file["region"][:]))
+    assert names(file, "volume")[region[1]] == "up" and names(file, "volume")[region[2]] == "All"
+
+
+@pytest.mark.parametrize("old, new, message", [
+    (END, "", "element 1 is in two sets, 'up' and 'both'"),
+    ("TYPE=C3D4", "TYPE=C3D8R", "a.inp:11: *ELEMENT, TYPE=C3D8R: only tetrahedra"),
+    ("20, 30, 50", "20, 60, 50", "element 2 has node 60, which is not there"),
+    ("20, 30, 50", "20, 30", "a.inp:15: element 2 has 3 of 4 nodes"),
+    ("2, 10,\n", "1, 10,\n", "element 1 is defined twice"),
+    ("10, 0., 0., 0.", "10, 0., 0.", "a.inp:6: node 10 needs three coordinates"),
+    ("2, S3", "7, S3", "NAME=side: element 7 is not there"),
+    ("_s_S2, S2", "nix, S2", "no set of elements 'nix'"),
+    ("2, S3", "2, S5", "'element or set, S1 to S4' is expected"),
+    ("*HEADING", "*PART, NAME=Q\n*HEADING", "a second *PART"),
+    ("*HEADING", "*INSTANCE, NAME=I, PART=P\n1., 0., 0.\n*HEADING", "*INSTANCE that is moved"),
+    ("1, 10, 20, 30, 40", "1, 10, 20, 30, x", "'x' is not the number of a node"),
+])
+def test_abaqus_that_is_refused(tmp_path, old, new, message):
+    assert message in refused(inp(tmp_path, (PART + END).replace(old, new)), tmp_path / "out.h5")
+
+
+# ---- The meshes of bench/cases ----
+
+THESIS = {"spall-uniform": 13683, "spall-middle": 150742, "spall-graded": 223394,
+          "plate-structured": 183673, "plate-unstructured": 198431}
+SIDES = ["x+", "x-", "y+", "y-", "z+", "z-"]
+
+
+@pytest.fixture(scope="module")
+def thesis(scratch):
+    made = {}
+
+    def make(name):
+        if name not in made:
+            made[name] = convert(BENCH / f"{name}.geo", scratch / f"{name}.h5", "--scale", "1e-3")[0]
+        return made[name]
+
+    return make
+
+
+@needs_gmsh
+@pytest.mark.parametrize("name", THESIS)
+def test_mesh_of_the_thesis(thesis, name):
+    file = thesis(name)
+    size = [0.4e-3, 0.4e-3, 4e-3] if name.startswith("spall") else [50.8e-3, 50.8e-3, 12e-3]
+    assert file.attrs["elements"] == pytest.approx(THESIS[name], rel=0.05)
+    assert np.ptp(file.attrs["box"], axis=0) == pytest.approx(size, rel=1e-12)
+    assert sorted(names(file, "surface")) == SIDES
+    c = corners(file)
+    assert volumes(c).sum() == pytest.approx(np.prod(size), rel=1e-9)
+    areas = face_areas(c)
+    for i, side in enumerate(names(file, "surface")):
+        axis = "xyz".index(side[0])
+        assert areas[file["set"][:] == i].sum() == pytest.approx(np.prod(np.delete(size, axis)), rel=1e-9)
+
+
+def mean_edge(c, within):
+    c = c[abs(c[:, :, 2].mean(axis=1)) < within]
+    return np.mean([np.linalg.norm(c[:, a] - c[:, b], axis=1) for a in range(4) for b in range(a)])
+
+
+def flat_area(c):
+    """Largest area of faces in one plane of constant z inside the bar (m^2); c[elements][4][3]."""
+    areas, most = face_areas(c), {}
+    for f in range(4):
+        z = np.delete(c[:, :, 2], f, axis=1)
+        flat = (np.ptp(z, axis=1) < 1e-12) & (abs(z[:, 0]) < 1.9e-3)
+        for height, area in zip(np.round(z[flat, 0], 12), areas[flat, f]):
+            most[height] = most.get(height, 0) + area / 2
+    return max(most.items(), key=lambda item: item[1], default=(None, 0))
+
+
+@needs_gmsh
+def test_middle_of_the_refined_meshes(thesis):
+    c = corners(thesis("spall-middle"))
+    assert mean_edge(c, 0.08e-3) == pytest.approx(14.8e-6, rel=0.05)
+    assert flat_area(c)[1] < 0.05 * 0.16e-6
+    c = corners(thesis("spall-graded"))
+    assert mean_edge(c, 5e-6) == pytest.approx(11.4e-6, rel=0.05)
+    height, area = flat_area(c)
+    assert height == 0 and area == pytest.approx(0.16e-6, rel=1e-9)
+
+
+@needs_gmsh
+def test_meshing_twice_gives_the_same_file(thesis, tmp_path):
+    thesis("spall-uniform")
+    _, _ = convert(BENCH / "spall-uniform.geo", tmp_path / "again.h5", "--scale", "1e-3")
+    assert (tmp_path / "again.h5").read_bytes() == open(thesis("spall-uniform").filename, "rb").read()
+
+
+@needs_gmsh
+def test_part_with_holes(tmp_path):
+    file, _ = convert(BENCH / "part.geo", tmp_path / "part.h5", "--scale", "1e-3")
+    c = corners(file)
+    areas = face_areas(c)
+    area = {name: areas[file["set"][:] == i].sum() for i, name in enumerate(names(file, "surface"))}
+    holes = 4 * np.pi * 3.5e-3**2
+    assert area["bore"] == pytest.approx(2 * np.pi * 11e-3 * 30e-3, rel=0.03)
+    assert area["bolts"] == pytest.approx(4 * 2 * np.pi * 3.5e-3 * 8e-3, rel=0.04)
+    assert area["base"] == pytest.approx(3.6e-3 - np.pi * 11e-3**2 - holes, rel=0.01)
+    assert area["rim"] == pytest.approx(np.pi * (18e-3**2 - 11e-3**2), rel=0.03)
+
+
+# ---- Runs ----
+
+BOX = {"mesh.cells": [3, 3, 24], "time.steps": 60, "output.fields": []}
+
+
+def file_case(tmp_path, mesh, source=CASES / "fragments.yaml"):
+    """The case with a mesh file in place of its box."""
+    text = re.sub(r"^mesh:\n(  .*\n)+", f"mesh:\n  file: {mesh.name}\n", source.read_text(), flags=re.M)
+    case = tmp_path / "from-file.yaml"
+    case.write_text(text)
+    return case
+
+
+@pytest.fixture(scope="module")
+def box(scratch):
+    """A case that reads the box of fragments.yaml from a file."""
+    folder = scratch / "box"
+    folder.mkdir()
+    file, _ = convert(CASES / "fragments.yaml", folder / "box.h5", "--set", f"mesh.cells={BOX['mesh.cells']}")
+    assert file.attrs["elements"] == 1296
+    return file_case(folder, folder / "box.h5")
+
+
+@pytest.mark.parametrize("ranks", [1, 2, 3])
+def test_box_from_a_file_runs_the_same(run, box, ranks):
+    memory = run(CASES / "fragments.yaml", sets=BOX)
+    file = run(box, ranks=ranks, sets={key: BOX[key] for key in BOX if key != "mesh.cells"})
+    assert file.summary["state_hash"] == memory.summary["state_hash"]
+    assert (file.dir / "energy.csv").read_bytes() == (memory.dir / "energy.csv").read_bytes()
+
+
+def test_echoed_case_finds_the_file(run, box, tmp_path):
+    sets = {key: BOX[key] for key in BOX if key != "mesh.cells"}
+    first = run(box, sets=sets)
+    moved = tmp_path / "case.yaml"
+    shutil.copy(first.dir / "case.yaml", moved)
+    assert run(moved).summary["state_hash"] == first.summary["state_hash"]
+
+
+def test_unknown_set_of_a_file(box, tmp_path):
+    boundary = [{"set": "z*", "component": "z", "velocity": 1}]
+    process = launch("run", box, "-q", "-o", tmp_path / "out", *overrides({"boundary": boundary}))
+    assert process.returncode == 2 and not (tmp_path / "out").exists()
+    assert "boundary[0].set: z*: " in process.stderr and "did you mean 'z-'?" in process.stderr
+    assert "allowed: x-, x+, y-, y+, z-, z+" in process.stderr
+
+
+def test_damaged_file_is_refused_by_a_run(box, tmp_path):
+    mesh = tmp_path / "box.h5"
+    data = bytearray((box.parent / "box.h5").read_bytes())
+    with h5py.File(box.parent / "box.h5") as file:
+        data[file["neighbour"].id.get_offset() + 100] ^= 4
+    mesh.write_bytes(data)
+    process = launch("run", file_case(tmp_path, mesh), "-q", "-o", tmp_path / "out", ranks=2)
+    assert process.returncode == 2 and not (tmp_path / "out").exists()
+    assert "box.h5: neighbour: the checksum of tile 0 is wrong; the file is damaged" in process.stderr
+
+
+@needs_gmsh
+def test_run_on_an_import(run, thesis, tmp_path_factory):
+    """The spall test on the unstructured mesh: the wave arrives with the stress of the theory."""
+    folder = tmp_path_factory.mktemp("import")
+    shutil.copy(thesis("spall-uniform").filename, folder / "bar.h5")
+    case = file_case(folder, folder / "bar.h5", BENCH / "spall.yaml")
+    sets = {"time.end": 0.2e-6, "output.fields": []}
+    one, two = run(case, threads=2, sets=sets), run(case, ranks=2, sets=sets)
+    plateau = one.history["time"] > 0.15e-6
+    assert one.history["p1mm_szz"][plateau].mean() == pytest.approx(200e6, rel=0.02)
+    assert two.summary["state_hash"] == one.summary["state_hash"]
+
+
+# ---- --info ----
+
+
+def test_info_of_a_cube(tmp_path):
+    sets = {"mesh.cells": [2, 2, 2], "mesh.size": [2, 2, 2], "mesh.jitter": 0}
+    convert(CASES / "fragments.yaml", tmp_path / "cube.h5", *overrides(sets))
+    process = launch("mesh", "--info", tmp_path / "cube.h5")
+    assert process.returncode == 0 and process.stderr == ""
+    said = process.stdout
+    assert "48 in 1 tiles, 27 vertices, 72 interfaces, 48 surface faces" in said
+    assert "volume 8 m3" in said and "1 that share no face: 48 elements" in said
+    for side in SIDES:
+        assert f"{side}: 8 faces" in said
+    # Kuhn's tetrahedron: inradius V/(A/3), circumradius sqrt(3)/2; dihedral angles 45, 60 and 90 degrees
+    quality = 3 * 3 / 6 / ((2 * 0.5 + 2 * np.sqrt(2) / 2)) / (np.sqrt(3) / 2)
+    assert f"worst {quality:.4g}" in said
+    assert "from 45 to 90 degrees" in said
+    assert f"{3 / 6 / (np.sqrt(2) / 2):.4g} .. 0.7071 m" in said
+    assert re.search(r"0.7071 .. 1.414 s +48", said)
+    process = launch("mesh", "--info", tmp_path / "cube.h5", "--case", CASES / "fragments.yaml")
+    assert f"{np.sqrt(0.5) / 8905.95:.4g} .. " in process.stdout
