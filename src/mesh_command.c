@@ -194,6 +194,8 @@ int rg_mesh_command(int argc, char **argv) {
         status = show(&a);
     } else if (ends_with(a.input, ".yaml") || ends_with(a.input, ".yml")) {
         status = from_case(&a);
+    } else if (ends_with(a.input, ".h5")) {
+        complain("a mesh file already, which --info shows", a.input);
     } else if (ends_with(a.input, ".inp")) { /* Gmsh writes but does not read them */
         status = from_inp(&a);
     } else {

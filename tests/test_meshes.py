@@ -218,7 +218,7 @@ def test_missing_and_foreign_inputs(tmp_path):
 @pytest.mark.parametrize("arguments, message", [
     ([], "nothing to read"), (["a.msh"], "-o OUT.h5 is missing"), (["a.msh", "-o"], "missing value after: -o"),
     (["a.msh", "b.msh"], "one mesh at a time"), (["a.msh", "-o", "x.h5", "--scale", "0"], "--scale must be a number > 0"),
-    (["--info", "a.h5", "-o", "b.h5"], "--info writes nothing"), (["a.msh", "--frob", "1"], "unknown option: --frob"),
+    (["--info", "a.h5", "-o", "b.h5"], "--info writes nothing"), (["a.h5", "-o", "b.h5"], "a mesh file already"), (["a.msh", "--frob", "1"], "unknown option: --frob"),
 ])
 def test_wrong_arguments(tmp_path, arguments, message):
     process = launch("mesh", *arguments, cwd=tmp_path)
@@ -430,6 +430,13 @@ def test_unknown_set_of_a_file(box, tmp_path):
     assert process.returncode == 2 and not (tmp_path / "out").exists()
     assert "boundary[0].set: z*: " in process.stderr and "did you mean 'z-'?" in process.stderr
     assert "allowed: x-, x+, y-, y+, z-, z+" in process.stderr
+
+
+def test_probe_outside_of_a_file(box, tmp_path):
+    probes = [{"name": "in", "at": [0, 0, 0]}, {"name": "out", "at": [0, 0, 1.7e-3]}]
+    process = launch("run", box, "-q", "-o", tmp_path / "out", *overrides({"output.probes": probes}), ranks=2)
+    assert process.returncode == 2 and not (tmp_path / "out").exists()
+    assert "output.probes[1].at: [0, 0, 0.0017]: no element of" in process.stderr
 
 
 def test_damaged_file_is_refused_by_a_run(box, tmp_path):
