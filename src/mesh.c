@@ -1,7 +1,6 @@
 /* The whole mesh: which elements are neighbours. */
 #include "mesh.h"
 
-#include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
 
@@ -113,17 +112,6 @@ void rg_mesh_connect(rg_mesh *mesh) {
     }
     rg_free(bundle.face);
     rg_free(head);
-}
-
-void rg_mesh_bounds(const rg_mesh *mesh, double box[2][3]) {
-    for (int i = 0; i < 3; i++) {
-        box[0][i] = INFINITY;
-        box[1][i] = -INFINITY;
-        for (rg_gid v = 0; v < mesh->vertices; v++) {
-            box[0][i] = fmin(box[0][i], mesh->x[3 * v + i]);
-            box[1][i] = fmax(box[1][i], mesh->x[3 * v + i]);
-        }
-    }
 }
 
 void rg_mesh_free(rg_mesh *mesh) {

@@ -8,7 +8,10 @@
 typedef int64_t rg_gid; /* global element or vertex number */
 typedef int32_t rg_lid; /* number local to a rank */
 
-enum { RG_MAX_SETS = 64 };
+enum {
+    RG_MAX_SETS = 64,
+    RG_TILE = 256, /* elements of a tile of a large mesh */
+};
 
 /* The whole mesh. Held by rank 0 only, during set-up. */
 typedef struct {
@@ -43,11 +46,14 @@ static inline rg_gid rg_mesh_original(const rg_mesh *mesh, rg_gid e) {
  * `face` to rg_mesh_connect. */
 void rg_mesh_sort(rg_mesh *mesh);
 
+/* Elements of a tile in a mesh of so many: RG_TILE, fewer in a small mesh, so that there are tiles enough. */
+int rg_tile_elements(rg_gid elements);
+
 /* Fills `neighbour` and `face` from `corner`. Ends the run with a message if three elements share a face. */
 void rg_mesh_connect(rg_mesh *mesh);
 
 /* Lower and upper corner of all vertices (m). */
-void rg_mesh_bounds(const rg_mesh *mesh, double box[2][3]);
+void rg_mesh_box_around(const rg_mesh *mesh, double box[2][3]);
 
 void rg_mesh_free(rg_mesh *mesh);
 

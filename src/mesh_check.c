@@ -121,7 +121,7 @@ static void check_places(const rg_mesh *mesh, const char *name) {
     static const double line[3] = {0.5257311, 0.6360098, 0.5648217}; /* of length 1 */
     struct projected *p = RG_NEW(struct projected, (size_t)mesh->vertices);
     double box[2][3];
-    rg_mesh_bounds(mesh, box);
+    rg_mesh_box_around(mesh, box);
     double reach = same_place * distance(box[0], box[1]);
     for (rg_gid v = 0; v < mesh->vertices; v++) {
         const double *x = mesh->x + 3 * v;

@@ -183,7 +183,7 @@ static void read_header(rg_mesh_file *f) {
     h->elements = read_count(f, "elements", 1, most);
     h->vertices = read_count(f, "vertices", 4, most);
     h->interfaces = read_count(f, "interfaces", 0, 2 * h->elements);
-    h->tile_elements = read_count(f, "tile_elements", RG_TILE_ELEMENTS, RG_TILE_ELEMENTS);
+    h->tile_elements = read_count(f, "tile_elements", 1, RG_TILE);
     int64_t tiles = (h->elements + h->tile_elements - 1) / h->tile_elements;
     h->tiles = read_count(f, "tiles", tiles, tiles);
     h->sets = (int)read_count(f, "surface_sets", 0, RG_MAX_SETS);
@@ -470,7 +470,7 @@ static rg_mesh *adopt(rg_mesh_slab *slab, rg_mesh_header *h) {
 
 static void check_box(const rg_mesh_file *f, const rg_mesh *mesh) {
     double box[2][3];
-    rg_mesh_bounds(mesh, box);
+    rg_mesh_box_around(mesh, box);
     if (memcmp(box, f->head.box, sizeof box) != 0) {
         refuse(f, "box", "is not that of the vertices");
     }

@@ -1,7 +1,7 @@
 /* Mesh files: a mesh as the solver wants it, so that a run builds nothing and each rank reads its own part.
  *
  * HDF5, one dataset per array, all at the top. Elements are numbered along a Hilbert curve through their
- * centroids; a tile is the run of `tile_elements` consecutive numbers (the last one may be shorter).
+ * centroids; a tile is the run of `tile_elements` (256; fewer in a small mesh) consecutive numbers.
  * Integers are signed and as wide as their values need, numbers are 64-bit floats, lengths are in m.
  *
  *   attributes      format = "rhegma mesh", version = 1, program
@@ -47,7 +47,7 @@
 
 #include "mesh.h"
 
-enum { RG_TILE_ELEMENTS = 256, RG_MESH_VERSION = 1 };
+enum { RG_MESH_VERSION = 1 };
 
 typedef struct {
     rg_gid vertices, elements, interfaces;

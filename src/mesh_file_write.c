@@ -123,16 +123,20 @@ static void put_header(const target *w, const rg_mesh *mesh) {
     for (rg_gid slot = 0; slot < 4 * mesh->elements; slot++) {
         sides += mesh->neighbour[slot] >= 0;
     }
-    rg_mesh_bounds(mesh, box);
+    rg_mesh_box_around(mesh, box);
     put_text(w, "format", "rhegma mesh");
     put_text(w, "program", "rhegma");
     const struct {
         const char *name;
         int64_t value;
-    } counts[] = {{"version", RG_MESH_VERSION},        {"vertices", mesh->vertices},
-                  {"elements", mesh->elements},        {"interfaces", sides / 2},
-                  {"tile_elements", RG_TILE_ELEMENTS}, {"tiles", w->tiles},
-                  {"surface_sets", mesh->sets},        {"volume_sets", mesh->regions}};
+    } counts[] = {{"version", RG_MESH_VERSION},
+                  {"vertices", mesh->vertices},
+                  {"elements", mesh->elements},
+                  {"interfaces", sides / 2},
+                  {"tile_elements", rg_tile_elements(mesh->elements)},
+                  {"tiles", w->tiles},
+                  {"surface_sets", mesh->sets},
+                  {"volume_sets", mesh->regions}};
     for (size_t i = 0; i < sizeof counts / sizeof *counts; i++) {
         put_attribute(w, counts[i].name, H5T_NATIVE_INT64, 1, &counts[i].value);
     }
@@ -179,7 +183,7 @@ static int64_t tile_vertices(const target *w, const rg_mesh *mesh, int64_t t, in
 }
 
 static void find_vertices(target *w, const rg_mesh *mesh) {
-    int64_t list[4 * RG_TILE_ELEMENTS], room = 0;
+    int64_t list[4 * RG_TILE], room = 0;
     w->vertex_start = RG_NEW(int64_t, (size_t)w->tiles + 1);
     for (int64_t t = 0; t < w->tiles; t++) {
         int64_t n = tile_vertices(w, mesh, t, list), at = w->vertex_start[t];
@@ -259,10 +263,11 @@ static void finish(target *w) {
 
 void rg_mesh_file_write(const char *path, const rg_mesh *mesh, int partitions,
                         const rg_tile_partition *partition) {
-    target w = {.path = path, .tiles = (mesh->elements + RG_TILE_ELEMENTS - 1) / RG_TILE_ELEMENTS};
+    int tile = rg_tile_elements(mesh->elements);
+    target w = {.path = path, .tiles = (mesh->elements + tile - 1) / tile};
     w.element_start = RG_NEW(int64_t, (size_t)w.tiles + 1);
     for (int64_t t = 0; t <= w.tiles; t++) {
-        rg_gid end = t * RG_TILE_ELEMENTS;
+        rg_gid end = t * tile;
         w.element_start[t] = end < mesh->elements ? end : mesh->elements;
     }
     create(&w);

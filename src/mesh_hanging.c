@@ -69,7 +69,7 @@ static int64_t cell_of(const struct grid *g, const double x[3]) {
 static void lay_cells(struct grid *g, const rg_mesh *mesh) {
     double box[2][3], sum = 0, longest = 0;
     rg_gid faces = 0;
-    rg_mesh_bounds(mesh, box);
+    rg_mesh_box_around(mesh, box);
     for (rg_gid slot = 0; slot < 4 * mesh->elements; slot++) {
         if (mesh->neighbour[slot] < 0) {
             sum += get_triangle(mesh, slot).reach / near_face;

@@ -196,16 +196,16 @@ static void print_parts(const rg_mesh *mesh, FILE *out) {
 
 static void print_counts(const rg_mesh *mesh, const struct totals *t, FILE *out) {
     double box[2][3];
-    rg_gid sides = 0;
-    rg_mesh_bounds(mesh, box);
+    rg_gid sides = 0, tile = rg_tile_elements(mesh->elements);
+    rg_mesh_box_around(mesh, box);
     for (rg_gid slot = 0; slot < 4 * mesh->elements; slot++) {
         sides += mesh->neighbour[slot] >= 0;
     }
     fprintf(out,
             "elements       %" PRId64 " in %" PRId64 " tiles, %" PRId64 " vertices, %" PRId64
             " interfaces, %" PRId64 " surface faces\n",
-            mesh->elements, (mesh->elements + RG_TILE_ELEMENTS - 1) / RG_TILE_ELEMENTS, mesh->vertices,
-            sides / 2, 4 * mesh->elements - sides);
+            mesh->elements, (mesh->elements + tile - 1) / tile, mesh->vertices, sides / 2,
+            4 * mesh->elements - sides);
     fprintf(out, "box            %g .. %g, %g .. %g, %g .. %g m; volume %.9g m3\n", box[0][0], box[1][0],
             box[0][1], box[1][1], box[0][2], box[1][2], t->volume);
 }

@@ -5,13 +5,28 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../kernels/layout.h"
 #include "hilbert.h"
 #include "mem.h"
+
+/* Tiles a mesh should have: enough for a few ranks and threads to share evenly. */
+enum { FEWEST_TILES = 64 };
 
 struct place {
     uint64_t key; /* index on the curve */
     rg_gid id;    /* number so far */
 };
+
+void rg_mesh_box_around(const rg_mesh *mesh, double box[2][3]) {
+    for (int i = 0; i < 3; i++) {
+        box[0][i] = INFINITY;
+        box[1][i] = -INFINITY;
+        for (rg_gid v = 0; v < mesh->vertices; v++) {
+            box[0][i] = fmin(box[0][i], mesh->x[3 * v + i]);
+            box[1][i] = fmax(box[1][i], mesh->x[3 * v + i]);
+        }
+    }
+}
 
 static int by_key(const void *a, const void *b) {
     const struct place *p = a, *q = b;
@@ -35,7 +50,7 @@ static uint64_t curve_index(const rg_mesh *mesh, rg_gid e, const double low[3], 
  * lengthen the ways between neighbours. */
 static struct place *find_places(const rg_mesh *mesh) {
     double box[2][3];
-    rg_mesh_bounds(mesh, box);
+    rg_mesh_box_around(mesh, box);
     double edge = fmax(box[1][0] - box[0][0], fmax(box[1][1] - box[0][1], box[1][2] - box[0][2]));
     struct place *place = RG_NEW(struct place, (size_t)mesh->elements);
     for (rg_gid e = 0; e < mesh->elements; e++) {
@@ -73,4 +88,12 @@ void rg_mesh_sort(rg_mesh *mesh) {
     move_rows(&mesh->region, sizeof *mesh->region, place, mesh->elements);
     move_rows(&mesh->original, sizeof *mesh->original, place, mesh->elements);
     rg_free(place);
+}
+
+int rg_tile_elements(rg_gid elements) {
+    rg_gid tile = elements / FEWEST_TILES;
+    if (tile >= RG_TILE) {
+        return RG_TILE;
+    }
+    return (int)(tile >= RG_LANES ? tile / RG_LANES * RG_LANES : tile > 0 ? tile : 1);
 }

@@ -15,12 +15,12 @@ static int ascending(const void *a, const void *b) {
 }
 
 static void collect(const rg_mesh *mesh, int64_t t, struct list *l) {
-    rg_gid begin = t * RG_TILE_ELEMENTS, end = begin + RG_TILE_ELEMENTS;
+    rg_gid tile = rg_tile_elements(mesh->elements), begin = t * tile, end = begin + tile;
     end = end < mesh->elements ? end : mesh->elements;
     l->count = 0;
     for (rg_gid slot = 4 * begin; slot < 4 * end; slot++) {
-        if (mesh->neighbour[slot] >= 0 && mesh->neighbour[slot] / RG_TILE_ELEMENTS != t) {
-            l->tile[l->count++] = mesh->neighbour[slot] / RG_TILE_ELEMENTS;
+        if (mesh->neighbour[slot] >= 0 && mesh->neighbour[slot] / tile != t) {
+            l->tile[l->count++] = mesh->neighbour[slot] / tile;
         }
     }
     qsort(l->tile, l->count, sizeof *l->tile, ascending);
@@ -48,8 +48,9 @@ static void append(rg_tile_graph *g, int64_t t, const struct list *l, size_t *ro
 rg_tile_graph *rg_tile_graph_make(const rg_mesh *mesh) {
     rg_tile_graph *g = RG_NEW(rg_tile_graph, 1);
     size_t room = 0;
-    struct list list = {.tile = RG_NEW(int64_t, 4 * RG_TILE_ELEMENTS)};
-    g->tiles = (mesh->elements + RG_TILE_ELEMENTS - 1) / RG_TILE_ELEMENTS;
+    struct list list = {.tile = RG_NEW(int64_t, 4 * RG_TILE)};
+    rg_gid tile = rg_tile_elements(mesh->elements);
+    g->tiles = (mesh->elements + tile - 1) / tile;
     g->start = RG_NEW(int64_t, (size_t)g->tiles + 1);
     for (int64_t t = 0; t < g->tiles; t++) {
         collect(mesh, t, &list);

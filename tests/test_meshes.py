@@ -472,7 +472,7 @@ def test_info_of_a_cube(tmp_path):
     process = launch("mesh", "--info", tmp_path / "cube.h5")
     assert process.returncode == 0 and process.stderr == ""
     said = process.stdout
-    assert "48 in 1 tiles, 27 vertices, 72 interfaces, 48 surface faces" in said
+    assert "48 in 48 tiles, 27 vertices, 72 interfaces, 48 surface faces" in said
     assert "volume 8 m3" in said and "1 that share no face: 48 elements" in said
     for side in SIDES:
         assert f"{side}: 8 faces" in said
