@@ -15,7 +15,6 @@
 #define STRENGTH 400e6
 #define OPENING  1.7e-7 /* m */
 
-enum { TILE_ELEMENTS = 256 };
 enum { KEY_U = 1, KEY_VELOCITY, KEY_PULL, KEY_TRACTION, KEY_IPULL, KEY_BREAK, KEY_CRACK };
 
 const char *const bench_size_name[BENCH_SIZES] = {"cache", "memory"};
@@ -24,8 +23,16 @@ double bench_noise(uint64_t field, rg_gid element, int place) {
     return 2 * rg_hash_uniform(rg_hash(rg_hash(field, (uint64_t)element), (uint64_t)place)) - 1;
 }
 
-bool bench_is_broken(rg_gid minus, int face, int percent) {
-    return 50 * (bench_noise(KEY_BREAK, minus, face) + 1) < percent;
+bool bench_is_broken(const rg_domain *d, const rg_tile *t, size_t i, int percent) {
+    int32_t own = d->side[0][i];
+    const double *corner = d->corner + 12 * (t->begin * RG_LANES + (size_t)own / RG_FACES);
+    uint64_t h = KEY_BREAK;
+    for (int k = 0; k < 9; k++) {
+        uint64_t bits;
+        memcpy(&bits, &corner[3 * rg_face_node[own % RG_FACES][k / 3] + k % 3], sizeof bits);
+        h = rg_hash(h, bits);
+    }
+    return 100 * rg_hash_uniform(h) < percent;
 }
 
 /* In the cache: 252 tetrahedra a thread. Beyond: more than 200,000 (some 8,000 if `quick`). */
@@ -38,9 +45,9 @@ static rg_domain *make_domain(bench_size size, bool quick, const rg_interface_ma
         extent[c] = CELL * (double)cells[c];
     }
     rg_mesh *mesh = rg_mesh_box(cells, origin, extent, 0.1, 1);
-    rg_part *part = rg_part_distribute(mesh, MPI_COMM_SELF);
+    rg_part *part = rg_part_distribute(mesh, (int)mesh->elements, MPI_COMM_SELF); /* one tile */
     rg_mesh_free(mesh);
-    rg_domain *d = rg_domain_build(part, 0, m, TILE_ELEMENTS);
+    rg_domain *d = rg_domain_build(part, 0, m);
     rg_part_free(part);
     return d;
 }
@@ -132,22 +139,22 @@ static void reset_interfaces(bench_problem *p, size_t begin, size_t end, int per
     const rg_domain *d = p->domain;
     memset(p->crack + begin * RG_CRACK_BLOCK, 0, (end - begin) * RG_CRACK_BLOCK * sizeof(double));
     for (size_t i = begin * RG_LANES; i < end * RG_LANES; i++) {
-        int32_t minus = d->side[0][i];
         p->active[i / RG_LANES] = i % RG_LANES == 0 ? 0 : p->active[i / RG_LANES];
         p->broken[i] = p->unlinked[i] = 0;
-        if (d->counted[i] && bench_is_broken(d->id[minus / RG_FACES], minus % RG_FACES, percent)) {
+        if (d->counted[i] && bench_is_broken(d, d->tile, i, percent)) {
             break_face(p, i);
         }
     }
 }
 
 /* Faces of element block `b` that have unlinked points in some lane. */
-static int unlinked_faces(const rg_domain *d, const uint8_t *unlinked, size_t b) {
+int bench_unlinked_faces(const rg_domain *d, const uint8_t *unlinked, size_t b) {
     int faces = 0;
     for (int f = 0; f < RG_FACES; f++) {
         uint8_t any = 0;
         for (int l = 0; l < RG_LANES; l++) {
-            any |= unlinked[d->interface[b * RG_LINK_BLOCK + (size_t)(f * RG_LANES + l)] >> 1];
+            int32_t link = d->interface[b * RG_LINK_BLOCK + (size_t)(f * RG_LANES + l)];
+            any |= link == RG_NO_INTERFACE ? 0 : unlinked[link / 4];
         }
         faces += any != 0;
     }
@@ -178,7 +185,7 @@ void bench_problem_reset(bench_problem *p, int percent) {
         spoil(p->kinetic, begin, end, RG_LANES);
         spoil(p->cauchy, begin, end, RG_GAUSS * 6 * RG_LANES);
         for (size_t b = begin; b < end; b++) {
-            p->cracked[b] = unlinked_faces(p->domain, p->unlinked, b) > 0;
+            p->cracked[b] = bench_unlinked_faces(p->domain, p->unlinked, b) > 0;
         }
     }
 }
@@ -186,9 +193,13 @@ void bench_problem_reset(bench_problem *p, int percent) {
 rg_cost_variant bench_mesh_state(const rg_domain *d, const uint8_t *active, const uint8_t *unlinked,
                                  rg_cost_variant flags, bool by_interface) {
     rg_cost_variant v = flags;
-    size_t faces = 0, broken = 0;
-    for (size_t b = 0; b < d->blocks; b++) {
-        faces += (size_t)unlinked_faces(d, unlinked, b);
+    size_t faces = 0, broken = 0, seams = 0;
+    for (size_t t = 0; t < d->tiles; t++) {
+        const rg_tile *tile = &d->tile[t];
+        for (size_t b = tile->begin; b < tile->end; b++) {
+            faces += (size_t)bench_unlinked_faces(d, unlinked + tile->ibegin * RG_LANES, b);
+        }
+        seams += tile->iend - tile->sbegin;
     }
     for (size_t b = 0; b < d->iblocks; b++) {
         broken += active[b];
@@ -197,6 +208,7 @@ rg_cost_variant bench_mesh_state(const rg_domain *d, const uint8_t *active, cons
     v.damaged = (double)broken / (double)d->iblocks;
     v.points = RG_POINTS;
     v.interfaces = (double)d->iblocks / (double)d->blocks;
+    v.seams = (double)seams / (double)d->blocks;
     v.fill = by_interface ? (double)d->interfaces / (double)(d->iblocks * RG_LANES)
                           : (double)d->elements / (double)(d->blocks * RG_LANES);
     return v;

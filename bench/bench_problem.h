@@ -10,9 +10,8 @@ typedef struct {
     rg_material material;
     rg_cohesive law;
     rg_domain *domain;
-    double *pull, *itraction,
-        *ipull;                   /* in: bulk force, corner tractions, interface force with a zero block */
-    double *u, *velocity, *crack; /* in and out */
+    double *pull, *itraction, *ipull; /* in: bulk force, corner tractions, interface force */
+    double *u, *velocity, *crack;     /* in and out */
     uint8_t *cracked, *broken, *unlinked, *active;
     double *force, *traction, *stiffening, *iforce; /* out */
     double *energy, *cauchy, *kinetic, *ienergy;    /* out */
@@ -28,14 +27,17 @@ void bench_problem_reset(bench_problem *p, int percent);
 
 void bench_problem_free(bench_problem *p);
 
-/* What the cost model has to know of a mesh: `flags` with padding, broken blocks and unlinked faces filled
- * in. */
+/* What the cost model has to know of a mesh: `flags` with padding, broken blocks and unlinked faces
+ * filled in. */
 rg_cost_variant bench_mesh_state(const rg_domain *d, const uint8_t *active, const uint8_t *unlinked,
                                  rg_cost_variant flags, bool by_interface);
 
-/* Whether a face, known by the minus element's number and its local face there, is among the `percent` that
- * are broken. */
-bool bench_is_broken(rg_gid minus, int face, int percent);
+/* Faces of element block `b` with unlinked points in some lane; `unlinked` of the block's tile. */
+int bench_unlinked_faces(const rg_domain *d, const uint8_t *unlinked, size_t b);
+
+/* Whether interface i of tile t is among the `percent` that are broken: the same for both copies of a seam.
+ */
+bool bench_is_broken(const rg_domain *d, const rg_tile *t, size_t i, int percent);
 
 /* Uniform in [-1, 1), by field, element and place in it. */
 double bench_noise(uint64_t field, rg_gid element, int place);

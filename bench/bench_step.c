@@ -73,22 +73,19 @@ static rg_case *make_case(const int cells[3], const char *form) {
 /* ---- State ---- */
 
 /* All points failed and open. */
-static void break_face(rg_solver *s, size_t i) {
+static void break_face(rg_solver *s, const rg_tile *t, size_t i) {
     const rg_domain *d = s->domain;
+    double normal[3], area = rg_interface_area(d, i, normal);
     s->broken[i] = s->unlinked[i] = (1 << RG_POINTS) - 1;
     s->active[i / RG_LANES] = 1;
     for (int q = 0; q < RG_POINTS; q++) {
         s->crack[rg_crack_index(i, q, RG_CRACK_OPENING)] = 10 * OPENING;
         for (int c = 0; c < 3; c++) {
-            s->crack[rg_crack_index(i, q, RG_CRACK_ORIGIN + c)] =
-                -2 * OPENING * d->igeom[rg_igeom_index(i, RG_IGEOM_NORMAL + c)];
+            s->crack[rg_crack_index(i, q, RG_CRACK_ORIGIN + c)] = -2 * OPENING * normal[c] / area;
         }
     }
-    for (int k = 0; k < 2; k++) {
-        size_t block = (size_t)d->side[k][i] / (RG_FACES * RG_LANES);
-        if (block < d->blocks) {
-            s->cracked[block] = 1;
-        }
+    for (int k = 0; k < (i < t->sbegin * RG_LANES ? 2 : 1); k++) {
+        s->cracked[t->begin + (size_t)d->side[k][i] / (RG_FACES * RG_LANES)] = 1;
     }
 }
 
@@ -98,11 +95,13 @@ static void break_faces(rg_solver *s, int percent) {
     memset(s->unlinked, 0, d->iblocks * RG_LANES);
     memset(s->active, 0, d->iblocks);
     memset(s->cracked, 0, d->blocks);
-    for (size_t i = 0; i < d->iblocks * RG_LANES; i++) {
-        int32_t minus = d->side[0][i];
-        bool padding = !(d->igeom[rg_igeom_index(i, RG_IGEOM_AREA)] > 0);
-        if (!padding && bench_is_broken(d->id[minus / RG_FACES], minus % RG_FACES, percent)) {
-            break_face(s, i);
+    for (size_t t = 0; t < d->tiles; t++) {
+        for (size_t i = d->tile[t].ibegin * RG_LANES; i < d->tile[t].iend * RG_LANES; i++) {
+            double normal[3];
+            bool padding = !(rg_interface_area(d, i, normal) > 0);
+            if (!padding && bench_is_broken(d, &d->tile[t], i, percent)) {
+                break_face(s, &d->tile[t], i);
+            }
         }
     }
 }
@@ -126,7 +125,7 @@ static void reset(rg_solver *s, const rg_kernels *set, int percent) {
     s->step = 0;
     set_motion(s);
     break_faces(s, percent);
-    rg_solver_forces(s);
+    rg_solver_impulse(s, s->now, 0);
 }
 
 /* ---- Calls ---- */
@@ -137,15 +136,14 @@ static void take_steps(void *context, int calls) {
     }
 }
 
-static void exchange(rg_halo *h, double *field) {
-    rg_halo_pack(h, field);
+static void exchange(rg_halo *h) {
+    rg_halo_pack(h);
 #pragma omp master
     {
         rg_halo_start(h);
         rg_halo_finish(h);
     }
 #pragma omp barrier
-    rg_halo_unpack(h, field);
 }
 
 /* Both messages of a step, with nothing to hide them. */
@@ -153,8 +151,8 @@ static void exchange_all(void *context, int calls) {
     rg_solver *s = context;
 #pragma omp parallel
     for (int i = 0; i < calls; i++) {
-        exchange(s->halo_u, s->u);
-        exchange(s->halo_t, s->traction);
+        exchange(s->halo_u[s->current]);
+        exchange(s->halo_t);
     }
 }
 
@@ -162,9 +160,9 @@ static void exchange_all(void *context, int calls) {
 
 static bench_row *add_row(bench *b, const rg_solver *s, const char *name, int threads) {
     const rg_domain *d = s->domain;
-    const rg_cost_variant flags = {.lift = s->bulk.lift, .displacement = true, .lumped = s->update.lumped};
+    const rg_cost_variant flags = {.lift = s->lift, .lumped = s->lumped};
     rg_cost_variant v = bench_mesh_state(d, s->active, s->unlinked, flags, false);
-    rg_cost c = rg_cost_step(&v, (double)d->between_begin / (double)d->iblocks);
+    rg_cost c = rg_cost_step(&v);
     double blocks = (double)d->blocks;
     double sum[4] = {(double)d->elements, blocks * c.flops, blocks * c.minimal, blocks * c.actual};
     MPI_Allreduce(MPI_IN_PLACE, sum, 4, MPI_DOUBLE, MPI_SUM, s->comm);

@@ -72,7 +72,7 @@ RG_INLINE bool unlinked_points(const element *e, int f, uint8_t unlinked[RG_VLEN
     const int32_t *link = e->args->interface + e->block * RG_LINK_BLOCK + f * RG_LANES + e->lane;
     uint8_t any = 0;
     for (int l = 0; l < RG_VLEN; l++) {
-        unlinked[l] = e->args->unlinked[link[l] >> 1];
+        unlinked[l] = link[l] >= 0 ? e->args->unlinked[link[l] >> 2] : 0;
         any |= unlinked[l];
     }
     return any != 0;
@@ -83,7 +83,7 @@ RG_INLINE void gather_moments(element *e) {
     for (int f = 0; f < RG_FACES; f++) {
         vec3 jump[RG_FNODES];
         const int32_t *link = e->args->neighbour + e->block * RG_LINK_BLOCK + f * RG_LANES + e->lane;
-        rg_gather_face(e->args->u, link, jump);
+        rg_gather_neighbour(e->args->u, e->args->ghost, link, jump);
         for (int a = 0; a < RG_FNODES; a++) {
             for (int c = 0; c < 3; c++) {
                 jump[a][c] -= node(e, rg_face_node[f][a], c);

@@ -70,33 +70,35 @@ static double bulk_state_flops(const rg_cost_variant *v) {
 enum {
     /* corner tractions: half the difference; per component their sum, a product per rule, an FMA a point */
     MEAN_TRACTION = RG_FCORNERS * 3 * 2 + 3 * (2 + 2 + RG_POINTS * FMA),
-    DG_TRACTION = RG_POINTS * (DOT + 1 + 3 * 2 * FMA), /* mean + iso [u] + norm (N.[u]) N */
-    TEST = 3 + RG_POINTS * DOT,                        /* bound, square of the traction */
+    DG_TRACTION = RG_POINTS * (DOT + 1 + 3 * 2 * FMA), /* mean + iso [u] + norm (A.[u]) A */
+    AREA = CROSS + 3 + DOT,                            /* area vector and its square */
+    TEST = 1 + RG_POINTS * DOT,                        /* bound, square of the traction */
     /* per component: two weighted sums of three points; 1 + FMA for corners and for edges; 2 FMA a node */
     FACE_FORCE = 3 * (2 * 3 + 2 * (1 + FMA) + RG_FNODES * 2 * FMA),
     /* mean of the sides; at a point two tangents of 6 FMA a component, their cross product, length, n */
-    MID_SURFACE = CROSS + DOT + 2 * JUMP + RG_POINTS * (2 * 3 * RG_FNODES * FMA + CROSS + DOT + 2 + 1 + 3),
-    /* at a point: Cauchy traction, its normal part, tau, effective, and the bound again */
-    CRITERION = 3 + RG_POINTS * (3 + DOT + 3 * FMA + (DOT + 1 + FMA + 1) + DOT),
+    MID_SURFACE = 2 * JUMP + RG_POINTS * (2 * 3 * RG_FNODES * FMA + CROSS + DOT + 2 + 1 + 3),
+    /* area; at a point: Cauchy traction, its normal part, tau, effective, and the bound again */
+    CRITERION = 1 + 1 + RG_POINTS * (3 + DOT + 3 * FMA + (DOT + 1 + FMA + 1) + DOT),
     /* opening w, its normal part, tangential part, effective opening */
     OPENING = 3 + DOT + 3 * FMA + (DOT + 1 + FMA + 1),
-    SECANT = 1 + 1 + 1 + 1,                               /* area strength (1/delta_max - 1/opening) */
-    LAW = OPENING + SECANT + 2 + 1 + FMA + 3 * (2 + FMA), /* normal part with contact; traction */
+    SECANT = 1 + 1 + 1 + 1,                                     /* area strength (1/delta_max - 1/opening) */
+    LAW = OPENING + SECANT + 1 + FMA + 1 + FMA + 3 * (2 + FMA), /* normal part with contact; traction */
     PENALTY_ENERGY = RG_POINTS * (DOT + DOT + 2 + FMA + 2),
     /* stored, contact and dissipated energy of a point, each weighted and summed */
     CRACK_ENERGY = OPENING + SECANT + 3 + 2 + 4 + 3 * 2,
 };
 
 static double interface_flops(const rg_cost_variant *v) {
-    return JUMP + TO_POINTS + MEAN_TRACTION + DG_TRACTION + (1 - v->damaged) * TEST + FACE_FORCE +
+    return AREA + JUMP + TO_POINTS + MEAN_TRACTION + DG_TRACTION + (1 - v->damaged) * TEST + FACE_FORCE +
            v->damaged * (MID_SURFACE + CRITERION + v->points * LAW);
 }
 
 static double interface_state_flops(const rg_cost_variant *v) {
-    return JUMP + TO_POINTS + PENALTY_ENERGY + v->damaged * (MID_SURFACE + RG_POINTS * CRACK_ENERGY);
+    return AREA + 1 + JUMP + TO_POINTS + PENALTY_ENERGY +
+           v->damaged * (MID_SURFACE + RG_POINTS * CRACK_ENERGY);
 }
 
-/* ---- Update and kinetic energy ---- */
+/* ---- Kick, drift and kinetic energy ---- */
 
 enum {
     ADD_FACES = 3 * RG_FACES * RG_FNODES * FMA,
@@ -108,9 +110,8 @@ enum {
     SQUARE_LUMPED = 3 * (RG_NODES * (1 + FMA) + 1),
 };
 
-static double update_flops(const rg_cost_variant *v) {
-    return 2 + ADD_FACES + (v->lumped ? SOLVE_LUMPED : SOLVE_CONSISTENT) +
-           ADVANCE * (v->displacement ? 2 : 1);
+static double kick_flops(const rg_cost_variant *v) {
+    return 2 + ADD_FACES + (v->lumped ? SOLVE_LUMPED : SOLVE_CONSISTENT) + ADVANCE;
 }
 
 static double kinetic_flops(const rg_cost_variant *v) {
@@ -123,10 +124,9 @@ enum {
     NODAL = RG_NODES * 3,
     TRACTION = RG_FACES * RG_FCORNERS * 3,
     FACE = RG_FNODES * 3,
-    SIDES_TRACTION = 2 * RG_FCORNERS * 3,
-    FLAT = RG_IGEOM_EDGE,             /* interface geometry without the edges */
-    EDGES = RG_IGEOM - RG_IGEOM_EDGE, /* of damaged faces only */
-    HISTORY = RG_CRACK_TIME,          /* of a broken point: opening and origin; the time is not read */
+    SEAM_TRACTION = RG_FCORNERS * 3,
+    SIDES_TRACTION = 2 * SEAM_TRACTION,
+    HISTORY = RG_CRACK_TIME, /* of a broken point: opening and origin; the time is not read */
     STRESSES = RG_GAUSS * 6,
 };
 
@@ -153,7 +153,7 @@ static traffic bulk_traffic(const rg_cost_variant *v, double out) {
 /* Displacements of the elements belong to `interfaces` blocks of interfaces; an element's second and later
  * faces find them in the cache. */
 static traffic interface_traffic(const rg_cost_variant *v, double in, double out) {
-    return (traffic){.in = NODAL / v->interfaces + in + v->damaged * (EDGES + HISTORY * RG_POINTS),
+    return (traffic){.in = NODAL / v->interfaces + in + v->damaged * HISTORY * RG_POINTS,
                      .out = out,
                      .index = SIDES + 1 + v->damaged * 2 * 2 * RG_LANES};
 }
@@ -165,13 +165,13 @@ static traffic traffic_of(rg_cost_kernel kernel, const rg_cost_variant *v) {
     case RG_COST_BULK_STATE:
         return bulk_traffic(v, 1 + (v->cauchy ? STRESSES : 0));
     case RG_COST_INTERFACE:
-        return interface_traffic(v, SIDES_TRACTION + FLAT, FACE);
-    case RG_COST_INTERFACE_STATE: /* an intact face's penalty has its area in it */
-        return interface_traffic(v, FLAT - 1 + v->damaged, RG_E_INTERFACE);
-    case RG_COST_UPDATE: /* in: bulk force, the forces of all interfaces, volume */
-        return (traffic){.in = NODAL + FACE * v->interfaces + 1,
-                         .updated = NODAL * (v->displacement ? 2 : 1),
-                         .index = LINKS};
+        return interface_traffic(v, SIDES_TRACTION + RG_IGEOM, FACE);
+    case RG_COST_INTERFACE_STATE:
+        return interface_traffic(v, RG_IGEOM, RG_E_INTERFACE);
+    case RG_COST_KICK: /* in: bulk force, the forces of all interfaces, volume */
+        return (traffic){.in = NODAL + FACE * v->interfaces + 1, .updated = NODAL, .index = LINKS};
+    case RG_COST_DRIFT:
+        return (traffic){.in = NODAL, .updated = NODAL};
     default: /* kinetic: velocity and volume */
         return (traffic){.in = NODAL + 1, .out = 1};
     }
@@ -187,8 +187,10 @@ static double flops_of(rg_cost_kernel kernel, const rg_cost_variant *v) {
         return interface_flops(v);
     case RG_COST_INTERFACE_STATE:
         return interface_state_flops(v);
-    case RG_COST_UPDATE:
-        return update_flops(v);
+    case RG_COST_KICK:
+        return kick_flops(v);
+    case RG_COST_DRIFT:
+        return ADVANCE;
     default:
         return kinetic_flops(v);
     }
@@ -201,12 +203,15 @@ rg_cost rg_cost_block(rg_cost_kernel kernel, const rg_cost_variant *v) {
                      .actual = ROW * (t.in + 2 * t.updated + 2 * t.out) + t.index};
 }
 
-rg_cost rg_cost_step(const rg_cost_variant *v, double inside) {
+rg_cost rg_cost_step(const rg_cost_variant *v) {
     rg_cost bulk = rg_cost_block(RG_COST_BULK, v), interface = rg_cost_block(RG_COST_INTERFACE, v),
-            update = rg_cost_block(RG_COST_UPDATE, v);
-    double streamed = 2 * 2 * NODAL + RG_GEOM + v->interfaces * FLAT;
-    double cached = inside * (NODAL + v->interfaces * SIDES_TRACTION);
-    return (rg_cost){.flops = bulk.flops + v->interfaces * interface.flops + update.flops,
-                     .minimal = ROW * v->fill * streamed,
-                     .actual = bulk.actual + v->interfaces * interface.actual + update.actual - ROW * cached};
+            kick = rg_cost_block(RG_COST_KICK, v), drift = rg_cost_block(RG_COST_DRIFT, v);
+    double again = v->seams > 0 ? kick.flops : 0; /* at most: blocks without seams are left out */
+    double faces = v->interfaces * (RG_IGEOM + v->damaged * HISTORY * RG_POINTS);
+    double first = NODAL + 2 * NODAL + RG_GEOM + v->seams * (FACE + 2 * SEAM_TRACTION);
+    double second = 2 * NODAL + 2 * NODAL + 1 + v->seams * (FACE + 2 * SEAM_TRACTION + 2 * FACE);
+    double index = (2 + 1) * LINKS + v->interfaces * (SIDES + 1);
+    return (rg_cost){.flops = bulk.flops + v->interfaces * interface.flops + kick.flops + again + drift.flops,
+                     .minimal = ROW * v->fill * (2 * 2 * NODAL + RG_GEOM + v->interfaces * RG_IGEOM),
+                     .actual = ROW * (first + second + faces) + index};
 }

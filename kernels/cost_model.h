@@ -10,7 +10,8 @@
 typedef enum {
     RG_COST_BULK,
     RG_COST_INTERFACE,
-    RG_COST_UPDATE,
+    RG_COST_KICK,
+    RG_COST_DRIFT,
     RG_COST_BULK_STATE,
     RG_COST_KINETIC,
     RG_COST_INTERFACE_STATE,
@@ -19,14 +20,14 @@ typedef enum {
 
 /* The work asked for and the state of the mesh. Each kernel reads the members that concern it. */
 typedef struct {
-    bool lift;         /* bulk, bulk_state: variational form */
-    bool lumped;       /* update, kinetic: HRZ mass */
-    bool displacement; /* update: advances u too */
-    bool cauchy;       /* bulk_state: writes the stress, not the energy alone */
+    bool lift;       /* bulk, bulk_state: variational form */
+    bool lumped;     /* kick, kinetic: HRZ mass */
+    bool cauchy;     /* bulk_state: writes the stress, not the energy alone */
     double unlinked; /* bulk, bulk_state: faces (0 to 4) of an element block with points that left the lift */
     double damaged;  /* interface, interface_state: share of the blocks in which some point is broken */
     double points;   /* interface: broken points (0 to 6) of such a block */
-    double interfaces; /* blocks of interfaces per block of elements; 2 in a large mesh */
+    double interfaces; /* blocks of interfaces per block of elements; 2 in one large tile */
+    double seams;      /* step: blocks of seams among them, each face counted on both sides */
     double fill;       /* share of the lanes that carry an element or interface; the rest is padding */
 } rg_cost_variant;
 
@@ -42,9 +43,9 @@ typedef struct {
 /* Cost of one block (RG_LANES elements or interfaces). */
 rg_cost rg_cost_block(rg_cost_kernel kernel, const rg_cost_variant *v);
 
-/* Cost of one time step per block of elements: update, bulk and interfaces. `inside` is the share of the
- * interfaces that find the displacements and tractions of their tile in the cache. Minimal: u and v in and
- * out and the geometry in; everything else could stay in the cache. */
-rg_cost rg_cost_step(const rg_cost_variant *v, double inside);
+/* Cost of one time step per block of elements. Forces, tractions and interface forces of a tile stay in the
+ * cache; actual: what its two sweeps stream. Minimal: u and v in and out and the geometry of elements and
+ * faces in, once. */
+rg_cost rg_cost_step(const rg_cost_variant *v);
 
 #endif

@@ -5,16 +5,24 @@
 #include "kernels.h"
 
 #define RG_KERNEL_SET(isa, label)                                                                            \
+    void rg_send_##isa(const rg_trace_args *, size_t, size_t);                                               \
+    void rg_send_tractions_##isa(const rg_trace_args *, size_t, size_t);                                     \
+    void rg_receive_##isa(const rg_trace_args *, size_t, size_t);                                            \
     void rg_bulk_##isa(const rg_bulk_args *, size_t, size_t);                                                \
     void rg_interface_##isa(const rg_interface_args *, size_t, size_t);                                      \
-    void rg_update_##isa(const rg_update_args *, size_t, size_t);                                            \
+    void rg_kick_##isa(const rg_kick_args *, size_t, size_t);                                                \
+    void rg_drift_##isa(const rg_drift_args *, size_t, size_t);                                              \
     void rg_bulk_state_##isa(const rg_bulk_state_args *, size_t, size_t);                                    \
     void rg_kinetic_##isa(const rg_kinetic_args *, size_t, size_t);                                          \
     void rg_interface_state_##isa(const rg_interface_state_args *, size_t, size_t);                          \
     static const rg_kernels set_##isa = {label,                                                              \
+                                         rg_send_##isa,                                                      \
+                                         rg_send_tractions_##isa,                                            \
+                                         rg_receive_##isa,                                                   \
                                          rg_bulk_##isa,                                                      \
                                          rg_interface_##isa,                                                 \
-                                         rg_update_##isa,                                                    \
+                                         rg_kick_##isa,                                                      \
+                                         rg_drift_##isa,                                                     \
                                          rg_bulk_state_##isa,                                                \
                                          rg_kinetic_##isa,                                                   \
                                          rg_interface_state_##isa}

@@ -1,5 +1,9 @@
 /* The 12-node interface kernel: DG traction, fracture, cohesive law and contact at the six points of a face.
  *
+ * The same code does the faces inside a tile and its seams. A seam knows the other side by a ghost trace and
+ * a row of tractions; it turns differences into the direction from minus to plus, so that both tiles get the
+ * same bits.
+ *
  * A face without damage costs only the DG terms and a bound on its traction; the normal of the deformed
  * mid-surface, the criterion and the cohesive law are computed, out of line, where a lane needs them. Lanes
  * that do not need them keep their bits: a face's result never depends on the faces that share its block. All
@@ -15,60 +19,103 @@ typedef struct {
     const rg_interface_args *args;
     size_t block;
     int lane;
-    const double *geom;
-    vec3 normal;
-    rg_vec area, pen_iso, pen_norm;
+    bool seam;
+    vec3 edge[2], normal; /* normal: area vector A */
+    rg_vec area_square, area, pen_iso, pen_norm;
     vec3 jump[RG_POINTS];  /* [u] */
-    vec3 mean[RG_POINTS];  /* <P> N */
+    vec3 mean[RG_POINTS];  /* <P> A */
     vec3 total[RG_POINTS]; /* traction that acts */
 } interface;
-
-RG_INLINE rg_vec geometry(const interface *s, int k) {
-    return rg_load(s->geom + k * RG_LANES);
-}
 
 RG_INLINE const int32_t *side(const interface *s, int k) {
     return s->args->side[k] + s->block * RG_LANES + s->lane;
 }
 
-RG_INLINE void load_interface(interface *s, const rg_interface_args *args, size_t block, int lane) {
+RG_INLINE void load_interface(interface *s, const rg_interface_args *args, size_t block, int lane,
+                              bool seam) {
     s->args = args;
     s->block = block;
     s->lane = lane;
-    s->geom = args->geom + block * RG_IGEOM_BLOCK + lane;
-    for (int c = 0; c < 3; c++) {
-        s->normal[c] = geometry(s, RG_IGEOM_NORMAL + c);
+    s->seam = seam;
+    const double *geom = args->geom + block * RG_IGEOM_BLOCK + lane;
+    for (int k = 0; k < 2; k++) {
+        for (int c = 0; c < 3; c++) {
+            s->edge[k][c] = rg_load(geom + (RG_IGEOM_EDGE + 3 * k + c) * RG_LANES);
+        }
     }
-    s->area = geometry(s, RG_IGEOM_AREA);
-    s->pen_iso = geometry(s, RG_IGEOM_PEN_ISO);
-    s->pen_norm = geometry(s, RG_IGEOM_PEN_NORM);
+    rg_cross(s->edge[0], s->edge[1], s->normal);
+    for (int c = 0; c < 3; c++) {
+        s->normal[c] *= 0.5;
+    }
+    s->area_square = rg_dot(s->normal, s->normal);
+    s->pen_iso = rg_load(geom + RG_IGEOM_PEN_ISO * RG_LANES);
+    s->pen_norm = rg_load(geom + RG_IGEOM_PEN_NORM * RG_LANES);
+}
+
+/* What turns (other - own) into (plus - minus). */
+RG_INLINE rg_vec direction(const interface *s) {
+    rg_vec sign;
+    for (int l = 0; l < RG_VLEN; l++) {
+        sign[l] = 1 - 2 * (side(s, 1)[l] & 1);
+    }
+    return sign;
+}
+
+/* Displacement on both sides: minus and plus, or own and other. */
+RG_INLINE void traces(const interface *s, vec3 one[RG_FNODES], vec3 two[RG_FNODES]) {
+    rg_gather_face(s->args->u, side(s, 0), one);
+    if (!s->seam) {
+        rg_gather_face(s->args->u, side(s, 1), two);
+        return;
+    }
+    const double *ghost = s->args->ghost + (s->block - s->args->first_seam) * RG_GHOST_BLOCK + s->lane;
+    for (int a = 0; a < RG_FNODES; a++) {
+        for (int c = 0; c < 3; c++) {
+            two[a][c] = rg_load(ghost + (a * 3 + c) * RG_LANES);
+        }
+    }
 }
 
 RG_INLINE void jump_at_points(interface *s) {
-    vec3 minus[RG_FNODES], plus[RG_FNODES];
-    rg_gather_face(s->args->u, side(s, 0), minus);
-    rg_gather_face(s->args->u, side(s, 1), plus);
+    vec3 one[RG_FNODES], two[RG_FNODES];
+    traces(s, one, two);
     for (int a = 0; a < RG_FNODES; a++) {
         for (int c = 0; c < 3; c++) {
-            plus[a][c] -= minus[a][c];
+            two[a][c] -= one[a][c];
+            if (s->seam) {
+                two[a][c] *= direction(s);
+            }
         }
     }
-    rg_face_to_points(plus, s->jump);
+    rg_face_to_points(two, s->jump);
 }
 
-/* <P> N at the points, from the corner tractions of both sides (each with its own outward normal). */
-RG_INLINE void mean_traction(interface *s) {
-    enum { ROW = RG_FCORNERS * 3 };
-    rg_vec t[2][ROW];
-    for (int k = 0; k < 2; k++) {
-        rg_lanes at;
-        for (int l = 0; l < RG_VLEN; l++) { /* a link is the number of a face: 4 * element + face */
-            at.lane[l] = s->args->traction + (size_t)side(s, k)[l] * ROW;
+/* Corner tractions of side k, each with its own outward normal. */
+RG_INLINE void tractions(const interface *s, int k, rg_vec t[RG_SEAM_ROW]) {
+    rg_lanes at;
+    for (int l = 0; l < RG_VLEN; l++) {
+        if (!s->seam) { /* a side link is the number of a face: 4 * element + face */
+            at.lane[l] = s->args->traction + (size_t)side(s, k)[l] * RG_SEAM_ROW;
+        } else if (k == 0) {
+            size_t seam = (s->block - s->args->first_seam) * RG_LANES + (size_t)(s->lane + l);
+            at.lane[l] = s->args->own_tractions + seam * RG_SEAM_ROW;
+        } else {
+            at.lane[l] = s->args->tractions + (size_t)((uint32_t)side(s, 1)[l] / 2) * RG_SEAM_ROW;
         }
-        rg_load_rows(&at, ROW, t[k]);
     }
-    for (int i = 0; i < ROW; i++) {
+    rg_load_rows(&at, RG_SEAM_ROW, t);
+}
+
+/* <P> A at the points. */
+RG_INLINE void mean_traction(interface *s) {
+    rg_vec t[2][RG_SEAM_ROW];
+    tractions(s, 0, t[0]);
+    tractions(s, 1, t[1]);
+    for (int i = 0; i < RG_SEAM_ROW; i++) {
         t[0][i] = 0.5 * (t[0][i] - t[1][i]);
+        if (s->seam) {
+            t[0][i] *= direction(s);
+        }
     }
     for (int c = 0; c < 3; c++) {
         for (int q = 0; q < RG_POINTS; q++) {
@@ -79,7 +126,7 @@ RG_INLINE void mean_traction(interface *s) {
     }
 }
 
-/* DG traction <P> N + (beta_s/h_s) <A> [u]. */
+/* DG traction <P> A + (beta_s/h_s) <A> [u]. */
 RG_INLINE void dg_traction(interface *s) {
     for (int q = 0; q < RG_POINTS; q++) {
         rg_vec normal_jump = s->pen_norm * rg_dot(s->normal, s->jump[q]);
@@ -89,12 +136,16 @@ RG_INLINE void dg_traction(interface *s) {
     }
 }
 
+/* Normal stiffness of the penalty (N/m). */
+RG_INLINE rg_vec normal_penalty(const interface *s) {
+    return s->pen_iso + s->pen_norm * s->area_square;
+}
+
 /* The Piola traction below which a point is not tested: half the strength, as an area-weighted square. */
 RG_INLINE rg_vec test_bound(const interface *s) {
     double beta = s->args->law.beta, strength = s->args->law.strength;
     double reach = beta > 0 && beta < 1 ? 1 / (beta * beta) : 1;
-    rg_vec half = (0.5 * strength) * s->area;
-    return half * half / reach;
+    return (0.25 * strength * strength / reach) * s->area_square;
 }
 
 RG_INLINE bool any_to_test(const interface *s) {
@@ -143,24 +194,17 @@ RG_INLINE void face_derivatives(int q, double xi[RG_FNODES], double eta[RG_FNODE
 
 /* Unit normals n of the deformed mid-surface at the points, and its area there (m^2). */
 RG_INLINE void mid_surface(const interface *s, vec3 n[RG_POINTS], rg_vec area[RG_POINTS]) {
-    vec3 minus[RG_FNODES], plus[RG_FNODES], edge[2], reference;
-    rg_gather_face(s->args->u, side(s, 0), minus);
-    rg_gather_face(s->args->u, side(s, 1), plus);
-    for (int c = 0; c < 3; c++) {
-        edge[0][c] = geometry(s, RG_IGEOM_EDGE + c);
-        edge[1][c] = geometry(s, RG_IGEOM_EDGE + 3 + c);
-    }
-    rg_cross(edge[0], edge[1], reference);
-    rg_vec sign = rg_select(rg_dot(reference, s->normal) < 0.0, rg_splat(-1.0), rg_splat(1.0));
+    vec3 one[RG_FNODES], two[RG_FNODES];
+    traces(s, one, two);
     for (int q = 0; q < RG_POINTS; q++) {
         double xi[RG_FNODES], eta[RG_FNODES];
         face_derivatives(q, xi, eta);
         vec3 g1, g2;
         for (int c = 0; c < 3; c++) {
-            g1[c] = edge[0][c];
-            g2[c] = edge[1][c];
+            g1[c] = s->edge[0][c];
+            g2[c] = s->edge[1][c];
             for (int a = 0; a < RG_FNODES; a++) {
-                rg_vec u = 0.5 * (minus[a][c] + plus[a][c]);
+                rg_vec u = 0.5 * (one[a][c] + two[a][c]);
                 g1[c] += xi[a] * u;
                 g2[c] += eta[a] * u;
             }
@@ -169,7 +213,7 @@ RG_INLINE void mid_surface(const interface *s, vec3 n[RG_POINTS], rg_vec area[RG
         rg_vec twice = rg_sqrt(rg_dot(n[q], n[q]));
         area[q] = 0.5 * twice;
         for (int c = 0; c < 3; c++) {
-            n[q][c] *= sign / rg_max(twice, rg_splat(1e-300)); /* padding has no area */
+            n[q][c] *= 1.0 / rg_max(twice, rg_splat(1e-300)); /* padding has no area */
         }
     }
 }
@@ -214,12 +258,12 @@ RG_INLINE rg_mask switch_points(const interface *s, int q, const vec3 n, rg_vec 
     }
     rg_vec effective = rg_sqrt(tension * tension + shear * rg_dot(tau, tau));
     rg_mask tested =
-        (s->area > 0.0) & (rg_dot(s->mean[q], s->mean[q]) > test_bound(s)); /* padding has no area */
+        (s->area_square > 0.0) & (rg_dot(s->mean[q], s->mean[q]) > test_bound(s)); /* padding has no area */
     rg_mask now = intact & tested & (effective > law->strength);
     if (!rg_any(now)) {
         return now;
     }
-    rg_vec eps = (law->total ? 0.0 : RG_ONSET * law->strength) * s->area / (s->pen_iso + s->pen_norm);
+    rg_vec eps = (law->total ? 0.0 : RG_ONSET * law->strength) * s->area / normal_penalty(s);
     for (int c = 0; c < 3; c++) {
         d[c] = (shear * tau[c] + tension * n[c]) / effective;
         rg_vec origin = law->total ? rg_splat(0.0) : s->jump[q][c] - eps * d[c];
@@ -266,8 +310,8 @@ RG_INLINE rg_mask broken_traction(interface *s, int q, const vec3 n, rg_mask bro
     }
     rg_vec secant = s->area * rg_cohesive_secant(law, delta_max);
     rg_vec touching = rg_select(o.normal < law->contact_below, o.normal, rg_splat(0.0));
-    rg_vec along = secant * rg_max(o.normal, rg_splat(0.0)) +
-                   (law->flux ? 0.0 : 1.0) * (s->pen_iso + s->pen_norm) * touching;
+    rg_vec along =
+        secant * rg_max(o.normal, rg_splat(0.0)) + (law->flux ? 0.0 : 1.0) * normal_penalty(s) * touching;
     double beta2 = law->beta * law->beta;
     for (int c = 0; c < 3; c++) {
         rg_vec t = secant * (beta2 * o.tangential[c]) + along * n[c];
@@ -281,6 +325,7 @@ static __attribute__((noinline)) void damaged(interface *s) {
     size_t first = s->block * RG_LANES + (size_t)s->lane;
     vec3 n[RG_POINTS];
     rg_vec area[RG_POINTS];
+    s->area = rg_sqrt(s->area_square);
     mid_surface(s, n, area);
     uint8_t broken[RG_VLEN], unlinked[RG_VLEN] = {0}, any = 0;
     memcpy(broken, args->broken + first, sizeof broken);
@@ -304,18 +349,26 @@ static __attribute__((noinline)) void damaged(interface *s) {
     }
 }
 
+RG_INLINE void interface_vector(const rg_interface_args *args, size_t block, int lane, bool seam) {
+    interface s;
+    load_interface(&s, args, block, lane, seam);
+    jump_at_points(&s);
+    mean_traction(&s);
+    dg_traction(&s);
+    if (args->active[block] || any_to_test(&s)) {
+        damaged(&s);
+    }
+    store_nodal_force(&s);
+}
+
 void RG_ISA_NAME(rg_interface)(const rg_interface_args *args, size_t begin, size_t end) {
     for (size_t b = begin; b < end; b++) {
         for (int lane = 0; lane < RG_LANES; lane += RG_VLEN) {
-            interface s;
-            load_interface(&s, args, b, lane);
-            jump_at_points(&s);
-            mean_traction(&s);
-            dg_traction(&s);
-            if (args->active[b] || any_to_test(&s)) {
-                damaged(&s);
+            if (b < args->first_seam) {
+                interface_vector(args, b, lane, false);
+            } else {
+                interface_vector(args, b, lane, true);
             }
-            store_nodal_force(&s);
         }
     }
 }
@@ -330,7 +383,7 @@ RG_INLINE void broken_energy(const interface *s, int q, const vec3 n, rg_mask br
     rg_vec zero = {0}, weight = rg_splat(rg_tri[q / 3].weight);
     rg_vec delta_max = rg_load(crack_state(s, q, RG_CRACK_OPENING));
     rg_vec stored = 0.5 * s->area * rg_cohesive_secant(law, delta_max) * o.effective * o.effective;
-    rg_vec contact = 0.5 * (s->pen_iso + s->pen_norm) * o.normal * o.normal;
+    rg_vec contact = 0.5 * normal_penalty(s) * o.normal * o.normal;
     rg_mask touching = law->flux ? (rg_mask){0} : broken & (o.normal < law->contact_below);
     sum[RG_E_COHESIVE] += weight * rg_select(broken & unlinked, stored, zero);
     sum[RG_E_CONTACT] += weight * rg_select(touching, contact, zero);
@@ -338,31 +391,36 @@ RG_INLINE void broken_energy(const interface *s, int q, const vec3 n, rg_mask br
         weight * rg_select(broken, s->area * rg_cohesive_dissipated(law, delta_max), zero);
 }
 
+RG_INLINE void state_vector(const rg_interface_state_args *args, size_t block, size_t row, int lane) {
+    interface s;
+    load_interface(&s, args->interface, block, lane, block >= args->interface->first_seam);
+    s.area = rg_sqrt(s.area_square);
+    jump_at_points(&s);
+    vec3 n[RG_POINTS];
+    rg_vec area[RG_POINTS], sum[RG_E_INTERFACE] = {{0}};
+    const uint8_t *broken = s.args->broken + block * RG_LANES + lane;
+    const uint8_t *unlinked = s.args->unlinked + block * RG_LANES + lane;
+    if (s.args->active[block]) {
+        mid_surface(&s, n, area);
+    }
+    for (int q = 0; q < RG_POINTS; q++) {
+        rg_mask gone = bit_mask(unlinked, q);
+        rg_vec along = rg_dot(s.normal, s.jump[q]);
+        rg_vec penalty = s.pen_iso * rg_dot(s.jump[q], s.jump[q]) + s.pen_norm * along * along;
+        sum[RG_E_PENALTY] += rg_select(gone, rg_splat(0.0), 0.5 * rg_tri[q / 3].weight * penalty);
+        if (s.args->active[block]) {
+            broken_energy(&s, q, n[q], bit_mask(broken, q), gone, sum);
+        }
+    }
+    for (size_t k = 0; k < RG_E_INTERFACE; k++) {
+        rg_store(args->energy + (row * RG_E_INTERFACE + k) * RG_LANES + lane, sum[k]);
+    }
+}
+
 void RG_ISA_NAME(rg_interface_state)(const rg_interface_state_args *args, size_t begin, size_t end) {
     for (size_t b = begin; b < end; b++) {
         for (int lane = 0; lane < RG_LANES; lane += RG_VLEN) {
-            interface s;
-            load_interface(&s, args->interface, b, lane);
-            jump_at_points(&s);
-            vec3 n[RG_POINTS];
-            rg_vec area[RG_POINTS], sum[RG_E_INTERFACE] = {{0}};
-            const uint8_t *broken = s.args->broken + b * RG_LANES + lane;
-            const uint8_t *unlinked = s.args->unlinked + b * RG_LANES + lane;
-            if (s.args->active[b]) {
-                mid_surface(&s, n, area);
-            }
-            for (int q = 0; q < RG_POINTS; q++) {
-                rg_mask gone = bit_mask(unlinked, q);
-                rg_vec along = rg_dot(s.normal, s.jump[q]);
-                rg_vec penalty = s.pen_iso * rg_dot(s.jump[q], s.jump[q]) + s.pen_norm * along * along;
-                sum[RG_E_PENALTY] += rg_select(gone, rg_splat(0.0), 0.5 * rg_tri[q / 3].weight * penalty);
-                if (s.args->active[b]) {
-                    broken_energy(&s, q, n[q], bit_mask(broken, q), gone, sum);
-                }
-            }
-            for (int k = 0; k < RG_E_INTERFACE; k++) {
-                rg_store(args->energy + ((b - begin) * RG_E_INTERFACE + (size_t)k) * RG_LANES + lane, sum[k]);
-            }
+            state_vector(args, b, b - begin, lane);
         }
     }
 }

@@ -8,9 +8,13 @@
 #define RG_PASTE(name, isa)  RG_PASTE_(name, isa)
 #define RG_ISA_NAME(name)    RG_PASTE(name, RG_ISA)
 
+void RG_ISA_NAME(rg_send)(const rg_trace_args *args, size_t begin, size_t end);
+void RG_ISA_NAME(rg_send_tractions)(const rg_trace_args *args, size_t begin, size_t end);
+void RG_ISA_NAME(rg_receive)(const rg_trace_args *args, size_t begin, size_t end);
 void RG_ISA_NAME(rg_bulk)(const rg_bulk_args *args, size_t begin, size_t end);
 void RG_ISA_NAME(rg_interface)(const rg_interface_args *args, size_t begin, size_t end);
-void RG_ISA_NAME(rg_update)(const rg_update_args *args, size_t begin, size_t end);
+void RG_ISA_NAME(rg_kick)(const rg_kick_args *args, size_t begin, size_t end);
+void RG_ISA_NAME(rg_drift)(const rg_drift_args *args, size_t begin, size_t end);
 void RG_ISA_NAME(rg_bulk_state)(const rg_bulk_state_args *args, size_t begin, size_t end);
 void RG_ISA_NAME(rg_kinetic)(const rg_kinetic_args *args, size_t begin, size_t end);
 void RG_ISA_NAME(rg_interface_state)(const rg_interface_state_args *args, size_t begin, size_t end);

@@ -1,10 +1,11 @@
 /* What the kernels compute, as one table of functions per instruction set.
  *
- * A kernel works on whole blocks [begin, end) of RG_LANES elements or interfaces. It reads where it must (its
- * neighbours' traces) and writes only what belongs to its own blocks. So loops over blocks need no colours,
- * no atomics and no order: each sum has the order that the mesh gives it (bulk, then faces 0 to 3), whatever
- * the number of ranks and threads. Equations: A. N. Seagraves, MIT 2010, and the papers named at each kernel.
- */
+ * A kernel works on whole blocks [begin, end) of RG_LANES elements or interfaces of one tile (layout.h); its
+ * pointers are to the tile's first block. It reads where it must (its neighbours' traces) and writes only
+ * what belongs to its own blocks. So loops over blocks and tiles need no colours, no atomics and no order:
+ * each sum has the order that the mesh gives it (bulk, then the faces inside the tile, then its seams),
+ * whatever the number of ranks and threads. Equations: A. N. Seagraves, MIT 2010, and the papers named at
+ * each kernel. */
 #ifndef RG_KERNELS_H
 #define RG_KERNELS_H
 
@@ -17,15 +18,28 @@ typedef struct {
     double density;    /* reference density (kg/m^3) */
 } rg_material;
 
+/* Traces: what seams tell each other. `send` writes the own traces as rows, `receive` collects those of the
+ * other sides into ghosts, and traction rows likewise. Blocks are the tile's seam blocks. */
+typedef struct {
+    const double *u;        /* displacement (m) */
+    const double *traction; /* area-weighted corner tractions (N) */
+    const int32_t *side;    /* [seam]: own face */
+    const int32_t *other;   /* [seam]: row of the other side */
+    const double *rows;     /* all trace rows of this rank */
+    double *own_rows;       /* out: the tile's trace rows */
+    double *own_tractions;  /* out: the tile's traction rows */
+    double *ghost;          /* out: ghost traces */
+} rg_trace_args;
+
 /* Bulk: tet10 at the lifted gradient F + R (Ten Eyck & Lew 2006), or at F alone. */
 typedef struct {
     rg_material material;
-    bool lift;          /* variational form: add the lifted jumps R to F */
-    const double *u;    /* displacement, own and ghost blocks (m) */
-    const double *geom; /* element geometry */
-    const int32_t
-        *neighbour; /* links: 4 * element + face on the other side; the own face where there is none */
-    const int32_t *interface; /* links: 2 * interface + side; the zero interface where there is none */
+    bool lift;                /* variational form: add the lifted jumps R to F */
+    const double *u;          /* displacement (m) */
+    const double *ghost;      /* traces of the other tiles' elements (m) */
+    const double *geom;       /* element geometry */
+    const int32_t *neighbour; /* links */
+    const int32_t *interface; /* links */
     const uint8_t *cracked;   /* [block]: not 0 where some face of the block has an unlinked point */
     const uint8_t *unlinked;  /* [interface]: bit q set where point q has left the lift */
     double *force;            /* out: internal nodal force of the bulk, -dW/du (N) */
@@ -33,8 +47,8 @@ typedef struct {
     double *stiffening; /* out: [block][lane], largest ratio of the acoustic tensor to its value at F = I */
 } rg_bulk_args;
 
-/* 12-node interface. The minus side is the element with the lower global number, N points from minus to plus,
- * jump [u] = u+ - u-. Force on the minus side is +g, on the plus side -g. */
+/* 12-node interface. The area vector points from minus to plus, jump [u] = u+ - u-. Force on the minus side
+ * is +g, on the plus side -g. */
 typedef struct {
     double strength;      /* sigma_c (Pa); infinite: never breaks */
     double opening;       /* delta_c (m) */
@@ -47,10 +61,14 @@ typedef struct {
 
 typedef struct {
     rg_cohesive law;
-    double time;            /* time of the state (s), recorded where a point switches */
-    const double *u;        /* displacement (m) */
-    const double *traction; /* area-weighted corner tractions of both sides (N) */
-    const int32_t *side[2]; /* [interface]: 4 * element + face on the minus and on the plus side */
+    double time;                 /* time of the state (s), recorded where a point switches */
+    const double *u;             /* displacement (m) */
+    const double *traction;      /* area-weighted corner tractions of the tile's elements (N) */
+    size_t first_seam;           /* blocks from here on are seams */
+    const double *ghost;         /* seams: trace of the other side (m) */
+    const double *own_tractions; /* seams: the tile's traction rows (N) */
+    const double *tractions;     /* seams: all traction rows of this rank (N) */
+    const int32_t *side[2]; /* [interface]: links of the minus and plus side; of a seam, `side` and `other` */
     const double *geom;     /* interface geometry */
     uint8_t *broken;        /* [interface] in/out: bit q set where point q has switched */
     uint8_t *unlinked; /* [interface] in/out: bit q set where point q has no DG terms (never set for a closed
@@ -62,18 +80,28 @@ typedef struct {
     double *force;       /* out: g, nodal force on the minus side (N) */
 } rg_interface_args;
 
-/* Central difference: v += dt M^-1 (bulk + interface force); u += dt v. */
+/* Central difference, in two parts: v += dt M^-1 (bulk force + interfaces inside the tile), and, once the
+ * seams are known, v += dt M^-1 seams. */
 typedef struct {
     double density;
-    double dt_velocity, dt_displacement; /* s; they differ in the first half step */
-    bool lumped;                         /* HRZ diagonal mass instead of the consistent one */
+    bool lumped; /* HRZ diagonal mass instead of the consistent one */
+    bool seams;  /* second part: seams alone, else bulk and inside */
+    double dt;   /* s */
     const double *geom;
-    const double *force;      /* bulk */
-    const double *iforce;     /* interface, with a zero block behind the last */
-    const int32_t *interface; /* links: 2 * interface + side */
-    double *velocity;
-    double *u; /* NULL: leave displacements alone */
-} rg_update_args;
+    const double *force;      /* bulk; not read in the second part */
+    const double *iforce;     /* interface */
+    const int32_t *interface; /* links */
+    double *velocity;         /* in/out (m/s) */
+    double *now; /* NULL, or out: first part v + dt_now M^-1 (...), second part += dt_now M^-1 (...) */
+    double dt_now;
+} rg_kick_args;
+
+/* u += dt v. */
+typedef struct {
+    double dt;
+    const double *velocity;
+    double *u;
+} rg_drift_args;
 
 /* State for ledger and output, per element or interface. Output rows count from the first block asked for:
  * block `begin` writes row 0. */
@@ -100,9 +128,13 @@ typedef struct {
 /* A set of kernels. `begin` and `end` count blocks. */
 typedef struct {
     const char *name; /* "x86-64-v4", ..., "reference" */
+    void (*send)(const rg_trace_args *args, size_t begin, size_t end);
+    void (*send_tractions)(const rg_trace_args *args, size_t begin, size_t end);
+    void (*receive)(const rg_trace_args *args, size_t begin, size_t end);
     void (*bulk)(const rg_bulk_args *args, size_t begin, size_t end);
     void (*interface)(const rg_interface_args *args, size_t begin, size_t end);
-    void (*update)(const rg_update_args *args, size_t begin, size_t end);
+    void (*kick)(const rg_kick_args *args, size_t begin, size_t end);
+    void (*drift)(const rg_drift_args *args, size_t begin, size_t end);
     void (*bulk_state)(const rg_bulk_state_args *args, size_t begin, size_t end);
     void (*kinetic)(const rg_kinetic_args *args, size_t begin, size_t end);
     void (*interface_state)(const rg_interface_state_args *args, size_t begin, size_t end);

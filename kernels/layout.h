@@ -1,5 +1,12 @@
 /* The one place that states how fields lie in memory.
  *
+ * The mesh is cut into tiles: runs of consecutive elements along a space-filling curve, small enough for the
+ * cache. A kernel works on one tile; all its pointers are to the tile's first block, all numbers in it count
+ * from the tile's first element or interface. A face between two elements of a tile is one interface inside
+ * it; a face between tiles is a seam, of which each of the two tiles has its own copy, computed from the same
+ * numbers to the same bits. What a seam must know of the other side travels as a row: the trace of the
+ * displacement, then the corner tractions. Whether the other tile lies on the same rank makes no difference.
+ *
  * Every field is a structure of arrays in blocks of RG_LANES elements (or interfaces): the lane is the
  * fastest index, so a kernel loads a vector of eight elements with one aligned load, and every array is
  * padded to whole blocks, so no kernel has a scalar remainder.
@@ -11,6 +18,8 @@
  *   interface geometry              [interface block][RG_IGEOM][lane]
  *   interface nodal force           [interface block][6 nodes][3][lane]
  *   crack state                     [interface block][6 points][RG_CRACK][lane]
+ *   ghost traces                    [seam block][6 nodes][3][lane]
+ *   trace rows, traction rows       [row][6 nodes][3], [row][3 corners][3]
  *
  * The face tractions are rows instead: their reader, an interface, finds the nine values of its face in two
  * cache lines, where the lanes of a block would spread them over nine; it transposes rows into vectors in
@@ -36,6 +45,7 @@ enum {
     RG_FCORNERS = 3, /* corners of a face */
     RG_POINTS = 6,   /* quadrature points of an interface */
     RG_GAUSS = 4,    /* quadrature points of a tetrahedron */
+    RG_TILE = 256,   /* elements of a tile of a large mesh: some 0.4 MB of fields */
 };
 
 enum { /* element geometry: grad l_k of barycentric coordinates k = 0, 1, 2 (1/m), volume (m^3) */
@@ -44,15 +54,13 @@ enum { /* element geometry: grad l_k of barycentric coordinates k = 0, 1, 2 (1/m
        RG_GEOM = 10,
 };
 
-enum {                       /* interface geometry */
-       RG_IGEOM_NORMAL = 0,  /* unit normal from the minus to the plus element, reference configuration */
-       RG_IGEOM_AREA = 3,    /* m^2; 0 in padding */
-       RG_IGEOM_PEN_ISO = 4, /* area (beta_s/h_s) mu */
-       RG_IGEOM_PEN_NORM =
-           5, /* area (beta_s/h_s) (lambda + mu): the penalty is (PEN_ISO I + PEN_NORM N(x)N) [u] */
-       RG_IGEOM_EDGE =
-           6, /* edges corner 0 -> 1 and 0 -> 2, 6 components (m); their cross product is +-2 area N */
-       RG_IGEOM = 12,
+enum {                    /* interface geometry */
+       RG_IGEOM_EDGE = 0, /* edges corner 0 -> 1 and 0 -> 2, 6 components (m); half their cross product is the
+                             area vector A, area N, from the minus to the plus element; 0 in padding */
+       RG_IGEOM_PEN_ISO = 6,  /* area (beta_s/h_s) mu (N/m) */
+       RG_IGEOM_PEN_NORM = 7, /* (beta_s/h_s) (lambda + mu) / area: the penalty is (PEN_ISO I + PEN_NORM
+                                 A(x)A) [u] */
+       RG_IGEOM = 8,
 };
 
 enum { /* crack state of one interface point; meaningful only where the point's bit in `broken` is set */
@@ -72,6 +80,9 @@ enum { /* doubles per row, and per block */
        RG_IGEOM_BLOCK = RG_IGEOM * RG_LANES,
        RG_IFORCE_BLOCK = RG_IFORCE_ROW * RG_LANES,
        RG_CRACK_BLOCK = RG_POINTS * RG_CRACK * RG_LANES,
+       RG_TRACE_ROW = RG_FNODES * 3,
+       RG_SEAM_ROW = RG_FCORNERS * 3, /* tractions of one face */
+       RG_GHOST_BLOCK = RG_TRACE_ROW * RG_LANES,
 };
 
 /* Nodes of local face f in the order both neighbours share. */
@@ -111,11 +122,26 @@ static inline size_t rg_crack_index(size_t i, int q, int k) {
     return (i / RG_LANES) * RG_CRACK_BLOCK + (size_t)(q * RG_CRACK + k) * RG_LANES + i % RG_LANES;
 }
 
-/* Interface-side link of an element's face: the interface's number and the side the element is on (0 minus, 1
- * plus). Element-side link: the element's number and its local face. Both fit 32 bits: at most 2^29 elements
- * per rank. */
-static inline int32_t rg_link(int32_t number, int32_t low, int32_t base) {
-    return number * base + low;
+/* Links are 32-bit numbers with a small code in the low bits.
+ *
+ * neighbour (element's face -> trace on its other side): 8 * element + local face of an element of the tile;
+ * 8 * seam + RG_GHOST for a ghost trace; the own face where there is none.
+ * interface (element's face -> interface): 4 * interface + side (0 minus, 1 plus), + RG_SEAM if it is one of
+ * the tile's seams; RG_NO_INTERFACE on the surface.
+ * side (inside: minus and plus; seam: own): 4 * element + local face.
+ * other (seam: the other side): 2 * row + (1 if the own element is on the plus side). */
+enum { RG_GHOST = RG_FACES, RG_SEAM = 2, RG_NO_INTERFACE = -1 };
+
+static inline int32_t rg_link(size_t number, int code, int base) {
+    return (int32_t)number * base + code;
+}
+
+static inline int32_t rg_neighbour_link(size_t element, int face) {
+    return rg_link(element, face, 8);
+}
+
+static inline int32_t rg_side_link(size_t element, int face) {
+    return rg_link(element, face, RG_FACES);
 }
 
 #endif

@@ -20,9 +20,13 @@ void rg_reference_face_shape(const double l[3], double n[RG_FNODES]) {
 
 const rg_kernels rg_kernels_reference = {
     .name = "reference",
+    .send = rg_reference_send,
+    .send_tractions = rg_reference_send_tractions,
+    .receive = rg_reference_receive,
     .bulk = rg_reference_bulk,
     .interface = rg_reference_interface,
-    .update = rg_reference_update,
+    .kick = rg_reference_kick,
+    .drift = rg_reference_drift,
     .bulk_state = rg_reference_bulk_state,
     .kinetic = rg_reference_kinetic,
     .interface_state = rg_reference_interface_state,

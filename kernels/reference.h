@@ -1,4 +1,4 @@
-/* Shared by the files of the scalar reference: face quadrature, 3-vectors, and the six kernels themselves.
+/* Shared by the files of the scalar reference: face quadrature, 3-vectors, and the kernels themselves.
  *
  * The reference is written straight after the equations (shape functions, quadrature sums, full matrices),
  * with no regard for speed, so that the fast kernels have something independent to be compared with. */
@@ -25,11 +25,15 @@ static inline void rg_reference_cross(const double a[3], const double b[3], doub
 }
 
 /* The entries of rg_kernels_reference; see kernels.h. */
+void rg_reference_send(const rg_trace_args *args, size_t begin, size_t end);
+void rg_reference_send_tractions(const rg_trace_args *args, size_t begin, size_t end);
+void rg_reference_receive(const rg_trace_args *args, size_t begin, size_t end);
 void rg_reference_bulk(const rg_bulk_args *args, size_t begin, size_t end);
 void rg_reference_bulk_state(const rg_bulk_state_args *args, size_t begin, size_t end);
 void rg_reference_interface(const rg_interface_args *args, size_t begin, size_t end);
 void rg_reference_interface_state(const rg_interface_state_args *args, size_t begin, size_t end);
-void rg_reference_update(const rg_update_args *args, size_t begin, size_t end);
+void rg_reference_kick(const rg_kick_args *args, size_t begin, size_t end);
+void rg_reference_drift(const rg_drift_args *args, size_t begin, size_t end);
 void rg_reference_kinetic(const rg_kinetic_args *args, size_t begin, size_t end);
 
 #endif

@@ -31,10 +31,18 @@ static double extend(int corner, int g) {
     return ((g == corner) - a) / (b - a);
 }
 
+/* Node a of the trace that a neighbour link names. */
+static double neighbour_value(const rg_bulk_args *args, int32_t link, int a, int c) {
+    size_t number = (size_t)link / 8;
+    if (link % 8 == RG_GHOST)
+        return args->ghost[rg_iforce_index(number, a, c)];
+    return args->u[rg_node_index(number, rg_face_node[link % 8][a], c)];
+}
+
 static void load_jumps(const rg_bulk_args *args, size_t e, element *el) {
     for (int f = 0; f < RG_FACES; f++) {
-        int32_t other = args->neighbour[rg_link_index(e, f)];
-        unsigned out = args->unlinked[args->interface[rg_link_index(e, f)] >> 1];
+        int32_t other = args->neighbour[rg_link_index(e, f)], here = args->interface[rg_link_index(e, f)];
+        unsigned out = here == RG_NO_INTERFACE ? 0 : args->unlinked[here / 4];
         for (int q = 0; q < RG_POINTS; q++) {
             double l[3], n[RG_FNODES];
             rg_reference_face_point(q, l);
@@ -42,10 +50,9 @@ static void load_jumps(const rg_bulk_args *args, size_t e, element *el) {
             if (out >> q & 1)
                 continue;
             for (int a = 0; a < RG_FNODES; a++)
-                for (int c = 0; c < 3; c++) {
-                    double theirs = args->u[rg_node_index((size_t)other / 4, rg_face_node[other % 4][a], c)];
-                    el->jump[f][q][c] += n[a] * (theirs - el->u[rg_face_node[f][a]][c]);
-                }
+                for (int c = 0; c < 3; c++)
+                    el->jump[f][q][c] +=
+                        n[a] * (neighbour_value(args, other, a, c) - el->u[rg_face_node[f][a]][c]);
         }
     }
 }

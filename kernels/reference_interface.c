@@ -19,14 +19,32 @@ typedef struct {
     double effective;
 } opening;
 
-static double side_value(const rg_interface_args *args, size_t i, int side, int a, int c) {
-    int32_t link = args->side[side][i];
+/* Whether side k of interface i is what `side[0]` names: the minus side, or the own one of a seam. */
+static bool is_first(const rg_interface_args *args, size_t i, int k) {
+    bool plus_is_own = i / RG_LANES >= args->first_seam && args->side[1][i] % 2 == 1;
+    return (k == 0) != plus_is_own;
+}
+
+static double element_value(const rg_interface_args *args, int32_t link, int a, int c) {
     return args->u[rg_node_index((size_t)link / 4, rg_face_node[link % 4][a], c)];
 }
 
+static double side_value(const rg_interface_args *args, size_t i, int side, int a, int c) {
+    if (is_first(args, i, side))
+        return element_value(args, args->side[0][i], a, c);
+    if (i / RG_LANES >= args->first_seam)
+        return args->ghost[rg_iforce_index(i - args->first_seam * RG_LANES, a, c)];
+    return element_value(args, args->side[1][i], a, c);
+}
+
 static double side_traction(const rg_interface_args *args, size_t i, int side, int corner, int c) {
-    int32_t link = args->side[side][i];
-    return args->traction[rg_traction_index((size_t)link / 4, link % 4, corner, c)];
+    size_t place = (size_t)(3 * corner + c);
+    bool first = is_first(args, i, side);
+    if (i / RG_LANES < args->first_seam)
+        return args->traction[(size_t)args->side[first ? 0 : 1][i] * RG_SEAM_ROW + place];
+    if (first)
+        return args->own_tractions[(i - args->first_seam * RG_LANES) * RG_SEAM_ROW + place];
+    return args->tractions[(size_t)(args->side[1][i] / 2) * RG_SEAM_ROW + place];
 }
 
 /* Derivatives of the shape functions by xi and eta, l = (1 - xi - eta, xi, eta). */
@@ -41,44 +59,49 @@ static void shape_derivatives(const double l[3], double dxi[RG_FNODES], double d
     }
 }
 
+static double edge(const rg_interface_args *args, size_t i, int k, int c) {
+    return args->geom[rg_igeom_index(i, RG_IGEOM_EDGE + 3 * k + c)];
+}
+
 /* Normal and area of the deformed mid-surface. */
 static void sample_surface(const rg_interface_args *args, size_t i, const double l[3], point *p) {
-    double dxi[RG_FNODES], deta[RG_FNODES], edge[2][3], tangent[2][3], reference[3], unit[3];
+    double dxi[RG_FNODES], deta[RG_FNODES], tangent[2][3];
     shape_derivatives(l, dxi, deta);
     for (int c = 0; c < 3; c++) {
-        unit[c] = args->geom[rg_igeom_index(i, RG_IGEOM_NORMAL + c)];
         for (int k = 0; k < 2; k++)
-            tangent[k][c] = edge[k][c] = args->geom[rg_igeom_index(i, RG_IGEOM_EDGE + 3 * k + c)];
+            tangent[k][c] = edge(args, i, k, c);
         for (int a = 0; a < RG_FNODES; a++) {
             double mean = (side_value(args, i, 0, a, c) + side_value(args, i, 1, a, c)) / 2;
             tangent[0][c] += dxi[a] * mean;
             tangent[1][c] += deta[a] * mean;
         }
     }
-    rg_reference_cross(edge[0], edge[1], reference);
     rg_reference_cross(tangent[0], tangent[1], p->normal);
     double length = sqrt(rg_reference_dot(p->normal, p->normal));
-    double sign = rg_reference_dot(reference, unit) > 0 ? 1 : -1;
     for (int c = 0; c < 3; c++)
-        p->normal[c] = length > 0 ? sign * p->normal[c] / length : 0;
+        p->normal[c] = length > 0 ? p->normal[c] / length : 0;
     p->current = length / 2;
 }
 
 static void sample(const rg_interface_args *args, size_t i, int q, point *p) {
-    double l[3], unit[3];
+    double l[3], edges[2][3], cross[3];
     *p = (point){.weight = rg_reference_face_point(q, l)};
-    p->area = args->geom[rg_igeom_index(i, RG_IGEOM_AREA)];
+    for (int k = 0; k < 2; k++)
+        for (int c = 0; c < 3; c++)
+            edges[k][c] = edge(args, i, k, c);
+    rg_reference_cross(edges[0], edges[1], cross);
+    p->area = sqrt(rg_reference_dot(cross, cross)) / 2;
     p->iso = args->geom[rg_igeom_index(i, RG_IGEOM_PEN_ISO)];
-    p->norm = args->geom[rg_igeom_index(i, RG_IGEOM_PEN_NORM)];
+    p->norm = args->geom[rg_igeom_index(i, RG_IGEOM_PEN_NORM)] * p->area * p->area;
     rg_reference_face_shape(l, p->shape);
-    for (int c = 0; c < 3; c++) {
-        unit[c] = args->geom[rg_igeom_index(i, RG_IGEOM_NORMAL + c)];
+    for (int c = 0; c < 3; c++)
         for (int a = 0; a < RG_FNODES; a++)
             p->jump[c] += p->shape[a] * (side_value(args, i, 1, a, c) - side_value(args, i, 0, a, c));
+    for (int c = 0; c < 3; c++) {
+        double unit = p->area > 0 ? cross[c] / (2 * p->area) : 0;
+        double across = p->area > 0 ? rg_reference_dot(cross, p->jump) / (2 * p->area) : 0;
+        p->dg[c] = p->iso * p->jump[c] + p->norm * across * unit;
     }
-    double across = rg_reference_dot(unit, p->jump);
-    for (int c = 0; c < 3; c++)
-        p->dg[c] = p->iso * p->jump[c] + p->norm * across * unit[c];
     sample_surface(args, i, l, p);
 }
 

@@ -76,21 +76,23 @@ static void invert(double m[RG_NODES][RG_NODES], double inv[RG_NODES][RG_NODES])
     }
 }
 
-/* Bulk force plus the forces of the four interfaces, by side. */
-static void total_force(const rg_update_args *args, size_t e, double f[RG_NODES][3]) {
+/* Bulk force plus the forces of the interfaces inside the tile, by side; or those of the seams alone. */
+static void total_force(const rg_kick_args *args, size_t e, double f[RG_NODES][3]) {
     for (int a = 0; a < RG_NODES; a++)
         for (int c = 0; c < 3; c++)
-            f[a][c] = args->force[rg_node_index(e, a, c)];
+            f[a][c] = args->seams ? 0 : args->force[rg_node_index(e, a, c)];
     for (int face = 0; face < RG_FACES; face++) {
         int32_t link = args->interface[rg_link_index(e, face)];
-        double sign = link & 1 ? -1 : 1;
+        if (link == RG_NO_INTERFACE || (link % 4 >= RG_SEAM) != args->seams)
+            continue;
+        double sign = link % 2 == 1 ? -1 : 1;
         for (int a = 0; a < RG_FNODES; a++)
             for (int c = 0; c < 3; c++)
-                f[rg_face_node[face][a]][c] += sign * args->iforce[rg_iforce_index((size_t)link >> 1, a, c)];
+                f[rg_face_node[face][a]][c] += sign * args->iforce[rg_iforce_index((size_t)link / 4, a, c)];
     }
 }
 
-void rg_reference_update(const rg_update_args *args, size_t begin, size_t end) {
+void rg_reference_kick(const rg_kick_args *args, size_t begin, size_t end) {
     double m[RG_NODES][RG_NODES], inv[RG_NODES][RG_NODES];
     mass_matrix(args->lumped, m);
     invert(m, inv);
@@ -104,11 +106,17 @@ void rg_reference_update(const rg_update_args *args, size_t begin, size_t end) {
                 for (int b = 0; b < RG_NODES; b++)
                     acceleration += inv[a][b] * f[b][c] / mass;
                 size_t k = rg_node_index(e, a, c);
-                args->velocity[k] += args->dt_velocity * acceleration;
-                if (args->u)
-                    args->u[k] += args->dt_displacement * args->velocity[k];
+                if (args->now)
+                    args->now[k] =
+                        (args->seams ? args->now[k] : args->velocity[k]) + args->dt_now * acceleration;
+                args->velocity[k] += args->dt * acceleration;
             }
     }
+}
+
+void rg_reference_drift(const rg_drift_args *args, size_t begin, size_t end) {
+    for (size_t k = begin * RG_NODE_BLOCK; k < end * RG_NODE_BLOCK; k++)
+        args->u[k] += args->dt * args->velocity[k];
 }
 
 void rg_reference_kinetic(const rg_kinetic_args *args, size_t begin, size_t end) {

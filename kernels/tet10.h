@@ -25,24 +25,46 @@ static const rg_tri_rule rg_tri[2] = {RG_TRI_RULE(RG_TRI_P0, RG_TRI_W0), RG_TRI_
 /* Face node (3-5) on the edge facing face corner i. */
 static const int rg_facing[3] = {4, 5, 3};
 
-/* Six nodal vectors of the faces that `link` (4 * element + face) names, one face per lane. */
-RG_INLINE void rg_gather_face(const double *u, const int32_t link[RG_VLEN], rg_vec out[RG_FNODES][3]) {
-    const double *element[RG_VLEN];
-    const int *node[RG_VLEN];
-    for (int l = 0; l < RG_VLEN; l++) {
-        uint32_t side = (uint32_t)link[l];
-        element[l] = rg_first_value(u, side / RG_FACES, RG_NODE_BLOCK);
-        node[l] = rg_face_node[side % RG_FACES];
-    }
+/* Six nodal vectors of a face in each lane: lane l reads node a at trace[l] + place[l][a] * 3 * RG_LANES. */
+RG_INLINE void rg_gather_nodes(const double *const trace[RG_VLEN], const int *const place[RG_VLEN],
+                               rg_vec out[RG_FNODES][3]) {
     for (int a = 0; a < RG_FNODES; a++) {
         rg_lanes at;
         for (int l = 0; l < RG_VLEN; l++) {
-            at.lane[l] = element[l] + node[l][a] * (3 * RG_LANES);
+            at.lane[l] = trace[l] + place[l][a] * (3 * RG_LANES);
         }
         for (int c = 0; c < 3; c++) {
             out[a][c] = rg_gather(&at, c * RG_LANES);
         }
     }
+}
+
+/* Traces of a nodal field on the elements' faces that side links name. */
+RG_INLINE void rg_gather_face(const double *u, const int32_t link[RG_VLEN], rg_vec out[RG_FNODES][3]) {
+    const double *trace[RG_VLEN];
+    const int *place[RG_VLEN];
+    for (int l = 0; l < RG_VLEN; l++) {
+        uint32_t side = (uint32_t)link[l];
+        trace[l] = rg_first_value(u, side / RG_FACES, RG_NODE_BLOCK);
+        place[l] = rg_face_node[side % RG_FACES];
+    }
+    rg_gather_nodes(trace, place, out);
+}
+
+/* Traces that neighbour links name: of elements of the tile, or ghosts. */
+RG_INLINE void rg_gather_neighbour(const double *u, const double *ghost, const int32_t link[RG_VLEN],
+                                   rg_vec out[RG_FNODES][3]) {
+    static const int order[RG_FACES + 1][RG_FNODES] = {
+        {1, 2, 3, 5, 9, 8}, {0, 2, 3, 6, 9, 7}, {0, 1, 3, 4, 8, 7}, {0, 1, 2, 4, 5, 6}, {0, 1, 2, 3, 4, 5}};
+    const double *trace[RG_VLEN];
+    const int *place[RG_VLEN];
+    for (int l = 0; l < RG_VLEN; l++) {
+        uint32_t number = (uint32_t)link[l] / 8, code = (uint32_t)link[l] % 8;
+        trace[l] = code == RG_GHOST ? rg_first_value(ghost, number, RG_GHOST_BLOCK)
+                                    : rg_first_value(u, number, RG_NODE_BLOCK);
+        place[l] = order[code];
+    }
+    rg_gather_nodes(trace, place, out);
 }
 
 /* Values at the six points of one component of a field given at the six face nodes. */

@@ -9,13 +9,15 @@
 static const int edge_corner[6][2] = {{0, 1}, {1, 2}, {0, 2}, {0, 3}, {1, 3}, {2, 3}};
 static const int edge_opposite[6] = {5, 3, 4, 1, 2, 0};
 
-/* Adds the interface forces of face k to the nodal forces. */
-RG_INLINE void add_face(const rg_update_args *args, const int32_t link[RG_VLEN], int k,
+/* Adds the interface forces of face k, if it is one of the kind asked for. */
+RG_INLINE void add_face(const rg_kick_args *args, const int32_t link[RG_VLEN], int k, bool seams,
                         rg_vec f[3][RG_NODES]) {
+    static _Alignas(64) const double none[RG_IFORCE_BLOCK];
     rg_lanes at;
     rg_vec sign;
     for (int l = 0; l < RG_VLEN; l++) {
-        at.lane[l] = rg_first_value(args->iforce, (uint32_t)link[l] / 2, RG_IFORCE_BLOCK);
+        bool there = link[l] >= 0 && ((link[l] & RG_SEAM) != 0) == seams;
+        at.lane[l] = there ? rg_first_value(args->iforce, (uint32_t)link[l] / 4, RG_IFORCE_BLOCK) : none;
         sign[l] = 1 - 2 * (link[l] & 1);
     }
     for (int a = 0; a < RG_FNODES; a++) {
@@ -25,17 +27,18 @@ RG_INLINE void add_face(const rg_update_args *args, const int32_t link[RG_VLEN],
     }
 }
 
-/* Nodal forces: bulk first, then the faces in their local order. The order is the mesh's, so the sum has the
- * same bits however the mesh is distributed. */
-RG_INLINE void sum_force(const rg_update_args *args, size_t block, int lane, rg_vec f[3][RG_NODES]) {
-    const double *force = args->force + block * RG_NODE_BLOCK + lane;
+/* Nodal forces: bulk, then the faces in their local order. The order is the mesh's, so the sum has the same
+ * bits however the mesh is distributed. */
+RG_INLINE void sum_force(const rg_kick_args *args, size_t block, int lane, bool seams,
+                         rg_vec f[3][RG_NODES]) {
     for (int n = 0; n < RG_NODES; n++) {
         for (int c = 0; c < 3; c++) {
-            f[c][n] = rg_load(force + (n * 3 + c) * RG_LANES);
+            f[c][n] = seams ? rg_splat(0.0)
+                            : rg_load(args->force + block * RG_NODE_BLOCK + (n * 3 + c) * RG_LANES + lane);
         }
     }
     for (int k = 0; k < RG_FACES; k++) {
-        add_face(args, args->interface + block * RG_LINK_BLOCK + k * RG_LANES + lane, k, f);
+        add_face(args, args->interface + block * RG_LINK_BLOCK + k * RG_LANES + lane, k, seams, f);
     }
 }
 
@@ -68,12 +71,13 @@ RG_INLINE void solve_lumped(rg_vec f[RG_NODES]) {
     }
 }
 
-RG_INLINE void update_vector(const rg_update_args *args, size_t block, int lane, bool lumped) {
-    rg_vec volume = rg_load(args->geom + block * RG_GEOM_BLOCK + RG_GEOM_VOLUME * RG_LANES + lane);
-    rg_vec scale = args->dt_velocity / (args->density * volume);
-    double *velocity = args->velocity + block * RG_NODE_BLOCK + lane;
+/* Adds dt M^-1 f to the velocity; dt_now M^-1 f leads to the velocity now, at the time of the forces. */
+RG_INLINE void kick_vector(const rg_kick_args *args, size_t block, int lane, bool lumped, bool seams) {
+    rg_vec mass =
+        args->density * rg_load(args->geom + block * RG_GEOM_BLOCK + RG_GEOM_VOLUME * RG_LANES + lane);
+    rg_vec scale = args->dt / mass, scale_now = args->dt_now / mass;
     rg_vec f[3][RG_NODES];
-    sum_force(args, block, lane, f);
+    sum_force(args, block, lane, seams, f);
     for (int c = 0; c < 3; c++) {
         if (lumped) {
             solve_lumped(f[c]);
@@ -81,26 +85,44 @@ RG_INLINE void update_vector(const rg_update_args *args, size_t block, int lane,
             solve_consistent(f[c]);
         }
         for (int n = 0; n < RG_NODES; n++) {
-            int row = (n * 3 + c) * RG_LANES;
-            rg_vec v = rg_load(velocity + row) + scale * f[c][n];
-            rg_store(velocity + row, v);
-            if (args->u != NULL) {
-                double *u = args->u + block * RG_NODE_BLOCK + lane + row;
-                rg_store(u, rg_load(u) + args->dt_displacement * v);
+            size_t at = block * RG_NODE_BLOCK + (size_t)((n * 3 + c) * RG_LANES + lane);
+            rg_vec v = rg_load(args->velocity + at);
+            if (args->now != NULL) {
+                rg_store(args->now + at, (seams ? rg_load(args->now + at) : v) + scale_now * f[c][n]);
+            }
+            rg_store(args->velocity + at, v + scale * f[c][n]);
+        }
+    }
+}
+
+static bool has_seam(const int32_t *link) {
+    int32_t any = 0;
+    for (int k = 0; k < RG_LINK_BLOCK; k++) {
+        any |= link[k] >= 0 ? link[k] : 0;
+    }
+    return (any & RG_SEAM) != 0;
+}
+
+void RG_ISA_NAME(rg_kick)(const rg_kick_args *args, size_t begin, size_t end) {
+    for (size_t b = begin; b < end; b++) {
+        if (args->seams && !has_seam(args->interface + b * RG_LINK_BLOCK)) {
+            continue;
+        }
+        for (int lane = 0; lane < RG_LANES; lane += RG_VLEN) {
+            if (args->seams) {
+                kick_vector(args, b, lane, args->lumped, true);
+            } else if (args->lumped) {
+                kick_vector(args, b, lane, true, false);
+            } else {
+                kick_vector(args, b, lane, false, false);
             }
         }
     }
 }
 
-void RG_ISA_NAME(rg_update)(const rg_update_args *args, size_t begin, size_t end) {
-    for (size_t b = begin; b < end; b++) {
-        for (int lane = 0; lane < RG_LANES; lane += RG_VLEN) {
-            if (args->lumped) {
-                update_vector(args, b, lane, true);
-            } else {
-                update_vector(args, b, lane, false);
-            }
-        }
+void RG_ISA_NAME(rg_drift)(const rg_drift_args *args, size_t begin, size_t end) {
+    for (size_t i = begin * RG_NODE_BLOCK; i < end * RG_NODE_BLOCK; i += RG_VLEN) {
+        rg_store(args->u + i, rg_load(args->u + i) + args->dt * rg_load(args->velocity + i));
     }
 }
 

@@ -185,7 +185,7 @@ RG_INLINE rg_vec rg_log(rg_vec x) {
     const rg_mask magic =
         (rg_mask){0} + INT64_C(0x4338000000000000); /* 1.5 * 2^52: its low bits count units */
     const double unit = 0x1.8p52, log2_high = 0x1.62e42fefa3800p-1, log2_low = 0x1.ef35793c76730p-45;
-    rg_mask bits = (rg_mask)x;
+    rg_mask bits = (rg_mask)rg_abs(x); /* with the sign the next line could overflow */
     rg_mask e = (bits - sqrt_half) >> 52;
     rg_vec m = (rg_vec)(bits - (e << 52)), k = (rg_vec)(e + magic) - unit;
     rg_vec s = (m - 1.0) / (m + 1.0), z = s * s;

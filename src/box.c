@@ -156,6 +156,7 @@ rg_mesh *rg_mesh_box(const int64_t cells[3], const double origin[3], const doubl
     rg_mesh *mesh = allocate(&g);
     place_vertices(&g, mesh);
     fill_cells(&g, mesh);
+    rg_mesh_sort(mesh);
     rg_mesh_connect(mesh);
     return mesh;
 }

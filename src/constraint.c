@@ -24,10 +24,12 @@ typedef struct {
     bool varies;
     int16_t boundary[RG_NODES];
     const pattern *pattern;
-    double mass, work;
-    double before[RG_NODES]; /* velocity before the step */
-    double target[RG_NODES]; /* velocity after it */
-    double place[RG_NODES];  /* displacement after it, where that is prescribed */
+    double mass;
+    double work, work_now;    /* of all kicks; up to the present time (J) */
+    double before[RG_NODES];  /* velocity before the kick */
+    double present[RG_NODES]; /* velocity at the time of the kick */
+    double target[RG_NODES];  /* velocity after it */
+    double place[RG_NODES];   /* displacement after it, where that is prescribed */
 } entry;
 
 #define JUMP                                                                                                 \
@@ -40,7 +42,7 @@ struct rg_constraints {
     entry *entry;
     pattern *patterns[1 << RG_NODES];
     bool lumped, varies; /* varies: some value depends on time or is a displacement */
-    double dt;
+    bool moving;         /* at the start the velocities are the initial ones */
 };
 
 /* ---- Patterns ---- */
@@ -183,12 +185,12 @@ static double value_at(const rg_constraints *k, const entry *e, int i, double ti
 }
 
 /* Velocity of constrained node i at `time`; of a prescribed displacement, its difference over a step. */
-static double velocity_at(const rg_constraints *k, const entry *e, int i, double time) {
+static double velocity_at(const rg_constraints *k, const entry *e, int i, double time, double dt) {
     if (!k->input->boundary[e->boundary[i]].is_displacement) {
         return value_at(k, e, i, time);
     }
-    double half = 0.5 * k->dt;
-    return half > 0 ? (value_at(k, e, i, time + half) - value_at(k, e, i, time - half)) / k->dt : 0;
+    double half = 0.5 * dt;
+    return dt > 0 ? (value_at(k, e, i, time + half) - value_at(k, e, i, time - half)) / dt : 0;
 }
 
 void rg_constraints_start(rg_constraints *k, const double *u, const double *velocity) {
@@ -199,7 +201,7 @@ void rg_constraints_start(rg_constraints *k, const double *u, const double *velo
             size_t at = rg_node_index((size_t)e->slot, e->pattern->node[i], e->component);
             e->before[i] = velocity[at];
             e->place[i] = u[at];
-            e->target[i] = velocity_at(k, e, i, 0);
+            e->target[i] = e->present[i] = velocity_at(k, e, i, 0, 0);
             bool placed = k->input->boundary[e->boundary[i]].is_displacement;
             jumps += placed &&
                      fabs(value_at(k, e, i, 0) - u[at]) > JUMP * cbrt(e->mass / k->input->material.density);
@@ -212,31 +214,30 @@ void rg_constraints_start(rg_constraints *k, const double *u, const double *velo
     }
 }
 
-void rg_constraints_set(rg_constraints *k, double time_velocity, double time_displacement,
-                        double dt_displacement) {
-    k->dt = dt_displacement;
+void rg_constraints_set(rg_constraints *k, double time, double dt, bool moving) {
+    k->moving = moving;
     for (size_t n = 0; k->varies && n < k->entries; n++) {
         entry *e = &k->entry[n];
         for (int i = 0; e->varies && i < e->pattern->constrained; i++) {
             if (k->input->boundary[e->boundary[i]].is_displacement) {
-                double next = value_at(k, e, i, time_displacement);
-                e->target[i] = (next - e->place[i]) / dt_displacement;
+                double next = value_at(k, e, i, time + dt);
+                e->target[i] = (next - e->place[i]) / dt;
                 e->place[i] = next;
             } else {
-                e->target[i] = value_at(k, e, i, time_velocity);
+                e->target[i] = value_at(k, e, i, time + 0.5 * dt);
             }
+            e->present[i] = velocity_at(k, e, i, time, dt);
         }
     }
 }
 
 /* ---- Correction ---- */
 
-/* Adds to the velocities of an entry's nodes what brings the constrained ones to `target`; gives that change
- * for all nodes, in pattern order, and returns the work of the impulse for velocities `before` ahead of it.
- */
-static double correct(const entry *e, const double *target, double *velocity, double change[RG_NODES]) {
+/* Adds to the velocities of an entry's nodes what brings the constrained ones to `target`; returns the work
+ * of that impulse. */
+static double correct(const entry *e, const double *target, double *velocity) {
     const pattern *p = e->pattern;
-    double work = 0;
+    double work = 0, change[RG_NODES];
     for (int i = 0; i < p->constrained; i++) {
         change[i] = target[i] - velocity[rg_node_index((size_t)e->slot, p->node[i], e->component)];
     }
@@ -247,66 +248,44 @@ static double correct(const entry *e, const double *target, double *velocity, do
         }
         work += 0.5 * e->mass * impulse * (e->before[i] + target[i]);
     }
-    for (int f = p->constrained; f < RG_NODES; f++) {
-        change[f] = 0;
-        for (int j = 0; j < p->constrained; j++) {
-            change[f] += p->follow[f][j] * change[j];
-        }
-    }
     for (int n = 0; n < RG_NODES; n++) {
         size_t at = rg_node_index((size_t)e->slot, p->node[n], e->component);
-        velocity[at] = n < p->constrained ? target[n] : velocity[at] + change[n];
+        if (n < p->constrained) {
+            velocity[at] = target[n];
+            continue;
+        }
+        for (int j = 0; j < p->constrained; j++) {
+            velocity[at] += p->follow[n][j] * change[j];
+        }
     }
     return work;
 }
 
-void rg_constraints_apply(rg_constraints *k, size_t tile, double *velocity, double *u,
-                          double dt_displacement) {
+void rg_constraints_kick(rg_constraints *k, size_t tile, double *velocity, double *now) {
     for (size_t n = k->tile_begin[tile]; n < k->tile_begin[tile + 1]; n++) {
         entry *e = &k->entry[n];
-        double change[RG_NODES];
-        e->work += correct(e, e->target, velocity, change);
-        for (int i = 0; i < RG_NODES; i++) {
-            size_t at = rg_node_index((size_t)e->slot, e->pattern->node[i], e->component);
-            bool placed = i < e->pattern->constrained && k->input->boundary[e->boundary[i]].is_displacement;
-            u[at] = placed ? e->place[i] : u[at] + dt_displacement * change[i];
+        if (now != NULL) {
+            e->work_now = e->work + (k->moving ? correct(e, e->present, now) : 0);
         }
+        e->work += correct(e, e->target, velocity);
         memcpy(e->before, e->target, sizeof e->before);
     }
 }
 
-/* First entry of a slot not below `slot`: entries are in the order of the slots. */
-static size_t first_entry(const rg_constraints *k, size_t slot) {
-    size_t low = 0, high = k->entries;
-    while (low < high) {
-        size_t middle = low + (high - low) / 2;
-        if ((size_t)k->entry[middle].slot < slot) {
-            low = middle + 1;
-        } else {
-            high = middle;
-        }
-    }
-    return low;
-}
-
-void rg_constraints_peek(rg_constraints *k, size_t begin, size_t end, double time, double *velocity,
-                         rg_exact_sum *work) {
-    for (size_t n = first_entry(k, begin); n < k->entries && (size_t)k->entry[n].slot < end; n++) {
+void rg_constraints_place(const rg_constraints *k, size_t tile, double *u) {
+    for (size_t n = k->tile_begin[tile]; n < k->tile_begin[tile + 1]; n++) {
         const entry *e = &k->entry[n];
-        double target[RG_NODES], change[RG_NODES];
         for (int i = 0; i < e->pattern->constrained; i++) {
-            target[i] = e->varies ? velocity_at(k, e, i, time) : e->target[i];
-        }
-        double done = correct(e, target, velocity, change);
-        if (work != NULL) {
-            rg_exact_add(work, done);
+            if (k->input->boundary[e->boundary[i]].is_displacement) {
+                u[rg_node_index((size_t)e->slot, e->pattern->node[i], e->component)] = e->place[i];
+            }
         }
     }
 }
 
 void rg_constraints_work(const rg_constraints *k, rg_exact_sum *work) {
     for (size_t n = 0; n < k->entries; n++) {
-        rg_exact_add(work, k->entry[n].work);
+        rg_exact_add(work, k->entry[n].work_now);
     }
 }
 

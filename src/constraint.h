@@ -21,21 +21,19 @@ rg_constraints *rg_constraints_make(const rg_case *c, const rg_domain *d, const 
 /* Takes the fields at t = 0 as what the constrained nodes come from. */
 void rg_constraints_start(rg_constraints *k, const double *u, const double *velocity);
 
-/* Evaluates what is prescribed: velocities at `time_velocity`, displacements at `time_displacement`, to be
- * reached by a step `dt_displacement`. One thread. */
-void rg_constraints_set(rg_constraints *k, double time_velocity, double time_displacement,
-                        double dt_displacement);
+/* Evaluates what is prescribed for a step `dt` (> 0) from `time`: velocities in its middle, displacements at
+ * its end, and, `moving`, velocities at `time` itself (at the start they are the initial ones). One thread.
+ */
+void rg_constraints_set(rg_constraints *k, double time, double dt, bool moving);
 
-/* Corrects tile `tile` after its update. */
-void rg_constraints_apply(rg_constraints *k, size_t tile, double *velocity, double *u,
-                          double dt_displacement);
+/* Corrects the velocities of tile `tile` after its kick; before that those at the present time, unless `now`
+ * is NULL. Both are whole fields. Keeps account of the work. */
+void rg_constraints_kick(rg_constraints *k, size_t tile, double *velocity, double *now);
 
-/* Corrects the velocities of own slots [begin, end) at `time` without keeping account; adds the work of doing
- * so to `work` unless that is NULL. */
-void rg_constraints_peek(rg_constraints *k, size_t begin, size_t end, double time, double *velocity,
-                         rg_exact_sum *work);
+/* Puts what has a prescribed displacement in its place after the drift of tile `tile`. */
+void rg_constraints_place(const rg_constraints *k, size_t tile, double *u);
 
-/* Adds the work done so far (J) to `work`. */
+/* Adds the work done up to the last present time at which velocities were asked for (J) to `work`. */
 void rg_constraints_work(const rg_constraints *k, rg_exact_sum *work);
 
 void rg_constraints_free(rg_constraints *k);

@@ -4,37 +4,32 @@
 
 #include "mem.h"
 #include "quadrature.h"
+#include "tile.h"
 
 double rg_damage(const rg_solver *s, size_t i, int q) {
     if (!(s->broken[i] >> q & 1)) {
         return 0;
     }
-    return fmin(1, s->crack[rg_crack_index(i, q, RG_CRACK_OPENING)] / s->interface.law.opening);
+    return fmin(1, s->crack[rg_crack_index(i, q, RG_CRACK_OPENING)] / s->law.opening);
 }
 
-/* Displacement of face node a on side k of interface i. */
-static double trace(const rg_solver *s, size_t i, int k, int a, int c) {
-    int32_t link = s->domain->side[k][i];
-    return s->u[rg_node_index((size_t)link / RG_FACES, rg_face_node[link % RG_FACES][a], c)];
-}
-
-static void corners(const rg_solver *s, size_t i, double x[3][3]) {
-    int32_t minus = s->domain->side[0][i];
-    const double *corner = s->domain->corner + 12 * ((size_t)minus / RG_FACES);
+static void corners(const rg_solver *s, const rg_tile *t, size_t i, double x[3][3]) {
+    int32_t link = s->domain->side[0][i];
+    const double *corner = s->domain->corner + 12 * (t->begin * RG_LANES + (size_t)link / RG_FACES);
     for (int a = 0; a < RG_FCORNERS; a++) {
         for (int c = 0; c < 3; c++) {
-            double mean = 0.5 * (trace(s, i, 0, a, c) + trace(s, i, 1, a, c));
-            x[a][c] = corner[3 * rg_face_node[minus % RG_FACES][a] + c] + mean;
+            double mean = 0.5 * (rg_tile_trace(s, t, i, 0, a, c) + rg_tile_trace(s, t, i, 1, a, c));
+            x[a][c] = corner[3 * rg_face_node[link % RG_FACES][a] + c] + mean;
         }
     }
 }
 
 /* The mean of a quadratic over a triangle is the mean of its mid-edge values. */
-static void mean_jump(const rg_solver *s, size_t i, double jump[3]) {
+static void mean_jump(const rg_solver *s, const rg_tile *t, size_t i, double jump[3]) {
     for (int c = 0; c < 3; c++) {
         jump[c] = 0;
         for (int a = RG_FCORNERS; a < RG_FNODES; a++) {
-            jump[c] += (trace(s, i, 1, a, c) - trace(s, i, 0, a, c)) / 3;
+            jump[c] += (rg_tile_trace(s, t, i, 1, a, c) - rg_tile_trace(s, t, i, 0, a, c)) / 3;
         }
     }
 }
@@ -57,15 +52,13 @@ static void unit_normal(double x[3][3], const double along[3], double n[3]) {
     }
 }
 
-static rg_crack_face crack_face(const rg_solver *s, size_t i) {
+static rg_crack_face crack_face(const rg_solver *s, const rg_tile *t, size_t i) {
     static const double weight[2] = {RG_TRI_W0, RG_TRI_W1};
     rg_crack_face f = {.time = INFINITY};
     double jump[3], n[3], reference[3], square = 0;
-    corners(s, i, f.x);
-    mean_jump(s, i, jump);
-    for (int c = 0; c < 3; c++) {
-        reference[c] = s->domain->igeom[rg_igeom_index(i, RG_IGEOM_NORMAL + c)];
-    }
+    corners(s, t, i, f.x);
+    mean_jump(s, t, i, jump);
+    rg_interface_area(s->domain, i, reference);
     unit_normal(f.x, reference, n);
     for (int c = 0; c < 3; c++) {
         f.opening += jump[c] * n[c];
@@ -82,15 +75,18 @@ static rg_crack_face crack_face(const rg_solver *s, size_t i) {
 }
 
 size_t rg_crack_surface(const rg_solver *s, rg_crack_face **faces) {
-    size_t count = 0, all = s->domain->iblocks * RG_LANES;
-    for (size_t i = 0; i < all; i++) {
-        count += s->broken[i] && s->domain->counted[i];
+    const rg_domain *d = s->domain;
+    size_t count = 0;
+    for (size_t i = 0; i < d->iblocks * RG_LANES; i++) {
+        count += s->broken[i] && d->counted[i];
     }
     *faces = RG_NEW(rg_crack_face, count + 1);
     size_t n = 0;
-    for (size_t i = 0; i < all; i++) {
-        if (s->broken[i] && s->domain->counted[i]) {
-            (*faces)[n++] = crack_face(s, i);
+    for (size_t t = 0; t < d->tiles; t++) {
+        for (size_t i = d->tile[t].ibegin * RG_LANES; i < d->tile[t].iend * RG_LANES; i++) {
+            if (s->broken[i] && d->counted[i]) {
+                (*faces)[n++] = crack_face(s, &d->tile[t], i);
+            }
         }
     }
     return count;

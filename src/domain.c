@@ -1,30 +1,11 @@
 #include "domain.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
-#include "error.h"
-#include "gid_map.h"
 #include "interfaces.h"
 #include "layout.h"
 #include "mem.h"
-
-static size_t round_up(size_t n) {
-    return (n + RG_LANES - 1) / RG_LANES * RG_LANES;
-}
-
-/* Slot of the part's element number i: boundary elements, padding, interior elements. */
-static size_t slot_of(const rg_part *part, size_t i) {
-    size_t boundary = (size_t)part->boundary;
-    return i < boundary ? i : round_up(boundary) + (i - boundary);
-}
-
-/* The converse, for a slot that is not padding. */
-static size_t part_index(const rg_part *part, size_t slot) {
-    size_t boundary = (size_t)part->boundary;
-    return slot < boundary ? slot : slot - round_up(boundary) + boundary;
-}
 
 /* grad l_k from the corners: rows of the inverse of the matrix with columns x_k - x_3. */
 static void gradients(const double x[4][3], double grad[3][3]) {
@@ -54,6 +35,10 @@ static void set_element(rg_domain *d, size_t slot, const rg_element *e) {
     d->id[slot] = e->id;
     memcpy(d->corner + 12 * slot, e->x, sizeof e->x);
     memcpy(d->set + 4 * slot, e->set, sizeof e->set);
+    for (int f = 0; f < RG_FACES; f++) { /* until interfaces are known */
+        d->neighbour[rg_link_index(slot, f)] = rg_neighbour_link(slot % (d->tile_blocks * RG_LANES), f);
+        d->interface[rg_link_index(slot, f)] = RG_NO_INTERFACE;
+    }
 }
 
 /* A harmless element of unit size at rest. */
@@ -63,30 +48,9 @@ static void set_padding(rg_domain *d, size_t slot) {
     set_element(d, slot, &unit);
 }
 
-/* Until interfaces are known every face links to itself and to the zero interface. */
-static void clear_links(rg_domain *d, size_t slot) {
-    for (int f = 0; f < RG_FACES; f++) {
-        d->neighbour[rg_link_index(slot, f)] = rg_link((int32_t)slot, f, RG_FACES);
-        d->interface[rg_link_index(slot, f)] = 0;
-    }
-}
-
-static void make_tiles(rg_domain *d, size_t tile_blocks) {
-    size_t start[3] = {0, d->boundary_blocks, d->blocks};
-    d->tile = RG_NEW(rg_tile, d->blocks + 2);
-    for (int group = 0; group < 2; group++) {
-        for (size_t b = start[group]; b < start[group + 1]; b += tile_blocks) {
-            size_t end = b + tile_blocks < start[group + 1] ? b + tile_blocks : start[group + 1];
-            d->tile[d->tiles++] = (rg_tile){.begin = b, .end = end};
-        }
-        if (group == 0) {
-            d->boundary_tiles = d->tiles;
-        }
-    }
-}
-
 static void allocate_elements(rg_domain *d) {
     size_t slots = d->blocks * RG_LANES;
+    d->id = RG_NEW(rg_gid, slots);
     d->corner = RG_NEW(double, 12 * slots);
     d->set = RG_NEW(int8_t, 4 * slots);
     d->geom = RG_NEW(double, d->blocks *RG_GEOM_BLOCK);
@@ -94,68 +58,63 @@ static void allocate_elements(rg_domain *d) {
     d->interface = RG_NEW(int32_t, d->blocks * RG_LINK_BLOCK);
 }
 
-/* Ghosts get their slots in the order of first appearance along the sweep. */
-static rg_gid_map find_slots(rg_domain *d, const rg_part *part, int rank) {
-    size_t own = (size_t)part->elements, ghosts = 0;
-    rg_gid_map map = rg_gid_map_make(own + 4 * (size_t)part->boundary);
-    for (size_t i = 0; i < own; i++) {
-        rg_gid_map_put(&map, part->element[i].id, (rg_lid)slot_of(part, i));
+/* Every tile but the mesh's last one has the same number of elements, so tile t starts at block t *
+ * tile_blocks; the last one is padded. */
+static void make_tiles(rg_domain *d, const rg_part *part) {
+    d->tile_elements = part->tile;
+    d->tiles = (size_t)part->tiles;
+    d->boundary_tiles = (size_t)part->boundary;
+    d->tile_blocks = ((size_t)part->tile + RG_LANES - 1) / RG_LANES;
+    d->blocks = d->tiles * d->tile_blocks;
+    d->tile = RG_NEW(rg_tile, d->tiles);
+    for (size_t t = 0; t < d->tiles; t++) {
+        d->tile[t] = (rg_tile){.first = part->tile_id[t] * part->tile,
+                               .begin = t * d->tile_blocks,
+                               .end = (t + 1) * d->tile_blocks};
     }
-    size_t first = d->blocks * RG_LANES;
-    for (size_t i = 0; i < (size_t)part->boundary; i++) {
-        const rg_element *e = &part->element[i];
-        for (int f = 0; f < RG_FACES; f++) {
-            if (e->neighbour[f] >= 0 && e->owner[f] != rank) {
-                rg_lid slot = (rg_lid)(first + ghosts);
-                ghosts += rg_gid_map_put(&map, e->neighbour[f], slot) == slot;
-            }
-        }
-    }
-    d->ghost_blocks = round_up(ghosts) / RG_LANES;
-    return map;
 }
 
-static void fill_elements(rg_domain *d, const rg_part *part, const rg_gid_map *map) {
-    size_t slots = (d->blocks + d->ghost_blocks) * RG_LANES;
-    d->id = RG_NEW(rg_gid, slots);
-    for (size_t s = 0; s < slots; s++) {
-        d->id[s] = -1;
-    }
-    for (size_t k = 0; k <= map->mask; k++) {
-        if (map->key[k] >= 0) {
-            d->id[map->value[k]] = map->key[k];
+static void fill_tile(rg_domain *d, const rg_part *part, const rg_element *element, size_t t) {
+    size_t first = d->tile[t].begin * RG_LANES, count = (size_t)rg_tile_size(part, part->tile_id[t]);
+    for (size_t i = 0; i < d->tile_blocks * RG_LANES; i++) {
+        if (i < count) {
+            set_element(d, first + i, &element[i]);
+        } else {
+            set_padding(d, first + i);
         }
+    }
+}
+
+rg_domain *rg_domain_build(const rg_part *part, int rank, const rg_interface_material *m) {
+    rg_domain *d = RG_NEW(rg_domain, 1);
+    d->elements = (size_t)part->elements;
+    make_tiles(d, part);
+    allocate_elements(d);
+    const rg_element **element = RG_NEW(const rg_element *, d->tiles + 1);
+    element[0] = part->element;
+    for (size_t t = 0; t < d->tiles; t++) {
+        element[t + 1] = element[t] + rg_tile_size(part, part->tile_id[t]);
     }
 #pragma omp parallel for schedule(static)
     for (size_t t = 0; t < d->tiles; t++) {
-        for (size_t slot = d->tile[t].begin * RG_LANES; slot < d->tile[t].end * RG_LANES; slot++) {
-            clear_links(d, slot);
-            if (d->id[slot] < 0) {
-                set_padding(d, slot);
-            } else {
-                set_element(d, slot, &part->element[part_index(part, slot)]);
-            }
-        }
+        fill_tile(d, part, element[t], t);
     }
+    rg_interfaces_build(d, element, rank, m);
+    rg_free(element);
+    return d;
 }
 
-rg_domain *rg_domain_build(const rg_part *part, int rank, const rg_interface_material *m,
-                           size_t tile_elements) {
-    rg_domain *d = RG_NEW(rg_domain, 1);
-    if (part->elements > INT32_MAX / 8) {
-        rg_fatal(RG_USAGE, "%d elements on one rank are too many for 32-bit links; use more ranks",
-                 part->elements);
+double rg_interface_area(const rg_domain *d, size_t i, double normal[3]) {
+    double edge[2][3], square = 0;
+    for (int k = 0; k < 6; k++) {
+        edge[k / 3][k % 3] = d->igeom[rg_igeom_index(i, RG_IGEOM_EDGE + k)];
     }
-    d->elements = (size_t)part->elements;
-    d->boundary_blocks = round_up((size_t)part->boundary) / RG_LANES;
-    d->blocks = d->boundary_blocks + round_up((size_t)(part->elements - part->boundary)) / RG_LANES;
-    make_tiles(d, (tile_elements + RG_LANES - 1) / RG_LANES);
-    allocate_elements(d);
-    rg_gid_map map = find_slots(d, part, rank);
-    fill_elements(d, part, &map);
-    rg_interfaces_build(d, part, rank, m, &map);
-    rg_gid_map_free(&map);
-    return d;
+    for (int c = 0; c < 3; c++) {
+        int a = (c + 1) % 3, b = (c + 2) % 3;
+        normal[c] = 0.5 * (edge[0][a] * edge[1][b] - edge[0][b] * edge[1][a]);
+        square += normal[c] * normal[c];
+    }
+    return sqrt(square);
 }
 
 void rg_domain_free(rg_domain *d) {

@@ -1,12 +1,10 @@
-/* The domain: what one rank sweeps. Elements and interfaces in blocks of RG_LANES (kernels/layout.h), their
- * links and geometry, and the schedule in which the passes run over them. Knows the mesh, no physics and no
- * messages.
+/* The domain: what one rank sweeps. Elements and interfaces in tiles and blocks (kernels/layout.h), their
+ * links and geometry. Knows the mesh, no physics and no messages.
  *
- * Elements: own ones that touch another rank, then the other own ones, then ghosts (elements of other ranks
- * across a partition face); each group is padded to whole blocks. Tiles are runs of consecutive own blocks
- * small enough for the cache; the order is a Hilbert curve, so a tile is compact. Interfaces: those inside a
- * tile, tile by tile; those between tiles; those shared with another rank; one block of zeros, to which
- * surface faces link. */
+ * Tiles are the mesh's; those that touch another rank come first. Each has its elements, the interfaces
+ * inside it and its seams, padded to whole blocks. A seam has a row by which the other side finds its trace
+ * and its tractions; the rows of other ranks' seams come behind the own ones, in the order in which they
+ * arrive. */
 #ifndef RG_DOMAIN_H
 #define RG_DOMAIN_H
 
@@ -14,43 +12,44 @@
 #include <stddef.h>
 
 #include "case.h"
+#include "layout.h"
 #include "mesh.h"
 
 typedef struct {
-    size_t begin, end;   /* element blocks */
-    size_t ibegin, iend; /* blocks of the interfaces inside the tile */
+    rg_gid first;                /* global number of its first element */
+    size_t begin, end;           /* element blocks */
+    size_t ibegin, sbegin, iend; /* interface blocks: inside, then seams */
+    size_t row;                  /* row of the first seam */
 } rg_tile;
 
 /* A face shared with another rank, from this rank's point of view. */
 typedef struct {
-    int32_t rank; /* the other rank */
-    rg_gid minus; /* key, the same on both ranks: number and local face of the minus element */
-    int8_t minus_face;
-    int32_t own, ghost; /* links: 4 * element + face */
+    int32_t rank;   /* the other rank */
+    rg_gid tile[2]; /* global numbers, the lower one first */
+    rg_gid key;     /* the same on both ranks: 4 * lower element number + its local face */
+    size_t seam;    /* its row here */
 } rg_shared_face;
 
 typedef struct {
-    size_t elements, interfaces;    /* own elements; interfaces of which the minus side is owned */
-    size_t blocks, boundary_blocks; /* own blocks; those with elements that touch another rank come first */
-    size_t ghost_blocks;
-    rg_gid *id;         /* [own and ghost slots]: global element number; -1 in padding */
-    double *corner;     /* [own slots][4][3]: m */
-    int8_t *set;        /* [own slots][4]: surface set, -1 for none */
-    double *geom;       /* kernels/layout.h, own blocks */
-    int32_t *neighbour; /* own blocks */
-    int32_t *interface; /* own blocks */
+    size_t elements, interfaces; /* own elements; interfaces that this rank counts */
+    size_t blocks, iblocks;
+    rg_gid *id;           /* [slots]: global element number; -1 in padding */
+    double *corner;       /* [slots][4][3]: m */
+    int8_t *set;          /* [slots][4]: surface set, -1 for none */
+    double *geom;         /* kernels/layout.h */
+    int32_t *neighbour;   /* links */
+    int32_t *interface;   /* links */
+    rg_gid tile_elements; /* of every tile but the mesh's last one */
     size_t tiles, boundary_tiles;
     rg_tile *tile;
+    size_t tile_blocks, tile_iblocks, tile_sblocks; /* largest of a tile: all, interfaces, seams */
 
-    size_t iblocks;       /* all but the zero block */
-    size_t between_begin; /* first block of interfaces between tiles */
-    size_t shared_begin;  /* first block of interfaces shared with another rank */
-    int32_t *side[2];     /* links of the minus and plus side */
+    int32_t *side[2]; /* links of the interfaces */
     double *igeom;
-    uint8_t *counted; /* [interface]: 1 where this rank speaks for it (owns the minus side) */
-
+    uint8_t *counted; /* [interface]: 1 where this copy speaks for the face (owns the lower-numbered side) */
+    size_t own_rows;  /* of the seams, padding included; `shared` more come behind */
     size_t shared;
-    rg_shared_face *shared_face; /* sorted by rank, then key */
+    rg_shared_face *shared_face; /* sorted by rank, tiles and key: the order in which rows are exchanged */
 } rg_domain;
 
 /* Material and penalty that enter the interface geometry. */
@@ -59,10 +58,16 @@ typedef struct {
     rg_penalty penalty;
 } rg_interface_material;
 
-/* Builds the domain of rank `rank` from its part; `tile_elements` is the size of a tile. The caller owns the
- * result. */
-rg_domain *rg_domain_build(const rg_part *part, int rank, const rg_interface_material *m,
-                           size_t tile_elements);
+/* Builds the domain of rank `rank` from its part. The caller owns the result. */
+rg_domain *rg_domain_build(const rg_part *part, int rank, const rg_interface_material *m);
+
+/* Tile that holds an element slot. */
+static inline const rg_tile *rg_tile_of(const rg_domain *d, size_t slot) {
+    return &d->tile[slot / RG_LANES / d->tile_blocks];
+}
+
+/* The area vector of an interface (m^2), and its length. */
+double rg_interface_area(const rg_domain *d, size_t i, double normal[3]);
 
 void rg_domain_free(rg_domain *d);
 

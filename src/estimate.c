@@ -39,7 +39,7 @@ static double largest_edge(const rg_solver *s) {
 
 /* Of the fields, or at most: with cracks everywhere and the three buffers of field output. */
 static double bytes_per_element(const rg_solver *s, bool at_most) {
-    double crack = (double)(s->domain->iblocks + 1) * RG_CRACK_BLOCK * sizeof(double);
+    double crack = (double)s->domain->iblocks * RG_CRACK_BLOCK * sizeof(double);
     double now = (double)rg_alloc_total(), elements = (double)s->domain->elements;
     double output = s->input->output.fields == 0 ? 0 : 3 * RG_NODES * 3 * sizeof(double) * elements;
     double sum[2] = {now + (at_most ? output : -crack), elements};
@@ -49,7 +49,7 @@ static double bytes_per_element(const rg_solver *s, bool at_most) {
 
 rg_estimate rg_estimate_run(const rg_solver *s) {
     const rg_case *c = s->input;
-    const rg_material *m = &s->bulk.material;
+    const rg_material *m = &s->material;
     rg_estimate e = {.elements = s->part->total,
                      .interfaces = s->part->interfaces,
                      .dofs = 3 * RG_NODES * s->part->total,

@@ -1,13 +1,15 @@
 #include "halo.h"
 
+#include <string.h>
+
 #include "mem.h"
 
 struct rg_halo {
     const rg_shared_face *face;
     size_t faces;
     int values, partners;
-    rg_halo_index index;
-    double *send, *receive;
+    const double *rows;
+    double *send;
     MPI_Request *request; /* persistent: receives first, then sends */
     double waited;
 };
@@ -20,14 +22,13 @@ static int count_partners(const rg_shared_face *face, size_t faces) {
     return n;
 }
 
-rg_halo *rg_halo_make(const rg_domain *d, int values, rg_halo_index index, int tag, MPI_Comm comm) {
+rg_halo *rg_halo_make(const rg_domain *d, int values, double *rows, int tag, MPI_Comm comm) {
     rg_halo *h = RG_NEW(rg_halo, 1);
-    size_t size = d->shared * (size_t)values;
-    *h = (rg_halo){.face = d->shared_face, .faces = d->shared, .values = values, .index = index};
+    *h = (rg_halo){.face = d->shared_face, .faces = d->shared, .values = values, .rows = rows};
     h->partners = count_partners(h->face, h->faces);
-    h->send = RG_NEW(double, size);
-    h->receive = RG_NEW(double, size);
+    h->send = RG_NEW(double, d->shared *(size_t)values);
     h->request = RG_NEW(MPI_Request, 2 * (size_t)h->partners);
+    double *receive = rows + d->own_rows * (size_t)values;
     size_t begin = 0;
     for (int p = 0; p < h->partners; p++) {
         size_t end = begin;
@@ -36,19 +37,18 @@ rg_halo *rg_halo_make(const rg_domain *d, int values, rg_halo_index index, int t
         }
         int count = (int)(end - begin) * values, rank = h->face[begin].rank;
         size_t at = begin * (size_t)values;
-        MPI_Recv_init(h->receive + at, count, MPI_DOUBLE, rank, tag, comm, &h->request[p]);
+        MPI_Recv_init(receive + at, count, MPI_DOUBLE, rank, tag, comm, &h->request[p]);
         MPI_Send_init(h->send + at, count, MPI_DOUBLE, rank, tag, comm, &h->request[h->partners + p]);
         begin = end;
     }
     return h;
 }
 
-void rg_halo_pack(rg_halo *h, const double *field) {
+void rg_halo_pack(rg_halo *h) {
+    size_t values = (size_t)h->values;
 #pragma omp for schedule(static)
     for (size_t i = 0; i < h->faces; i++) {
-        for (int k = 0; k < h->values; k++) {
-            h->send[i * (size_t)h->values + (size_t)k] = field[h->index(h->face[i].own, k)];
-        }
+        memcpy(h->send + i * values, h->rows + h->face[i].seam * values, values * sizeof(double));
     }
 }
 
@@ -69,19 +69,6 @@ void rg_halo_finish(rg_halo *h) {
     h->waited += MPI_Wtime() - start;
 }
 
-/* Nodes on the edge of two shared faces of one ghost arrive twice, with the same value. */
-void rg_halo_unpack(rg_halo *h, double *field) {
-#pragma omp for schedule(static)
-    for (size_t i = 0; i < h->faces; i++) {
-        for (int k = 0; k < h->values; k++) {
-            const double *from = &h->receive[i * (size_t)h->values + (size_t)k];
-            double *to = &field[h->index(h->face[i].ghost, k)];
-#pragma omp atomic write
-            *to = *from;
-        }
-    }
-}
-
 double rg_halo_waited(const rg_halo *h) {
     return h->waited;
 }
@@ -94,7 +81,6 @@ void rg_halo_free(rg_halo *h) {
         MPI_Request_free(&h->request[i]);
     }
     rg_free(h->send);
-    rg_free(h->receive);
     rg_free(h->request);
     rg_free(h);
 }

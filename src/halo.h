@@ -1,9 +1,10 @@
-/* Halo exchange: lists built once, messages that run under other work. Knows neither physics nor layout: a
- * function tells where value k of a face lies.
+/* Halo exchange: rows of the seams that lie between ranks, in messages that run under other work. Knows
+ * neither physics nor what is in a row.
  *
- * One exchange is: pack, start, other work (poll now and then), finish, unpack. Pack and unpack are
- * worksharing loops: call them from all threads of a parallel region, or from none; each ends with a barrier.
- * start, poll and finish are for the master thread alone (MPI_THREAD_FUNNELED). */
+ * One exchange is: pack, start, other work (poll now and then), finish; then the rows of the other ranks lie
+ * behind the own ones. Pack is a worksharing loop: call it from all threads of a parallel region, or from
+ * none; it ends with a barrier. start, poll and finish are for the master thread alone (MPI_THREAD_FUNNELED).
+ */
 #ifndef RG_HALO_H
 #define RG_HALO_H
 
@@ -11,20 +12,18 @@
 
 #include "domain.h"
 
-/* Index of value k of the face that `link` (4 * element + face) names, in the field to exchange. */
-typedef size_t (*rg_halo_index)(int32_t link, int k);
-
 typedef struct rg_halo rg_halo;
 
-/* Exchanges `values` doubles per shared face and direction. `tag` tells exchanges apart. Keeps a reference to
- * the domain's list of shared faces. Collective; free with rg_halo_free. */
-rg_halo *rg_halo_make(const rg_domain *d, int values, rg_halo_index index, int tag, MPI_Comm comm);
+/* Exchanges the rows of `values` doubles each in rows[own rows and shared][values]. `tag` tells exchanges
+ * apart. Keeps references to both arguments. Collective; free with rg_halo_free. */
+rg_halo *rg_halo_make(const rg_domain *d, int values, double *rows, int tag, MPI_Comm comm);
 
-void rg_halo_pack(rg_halo *h, const double *field);
+void rg_halo_pack(rg_halo *h);
 void rg_halo_start(rg_halo *h);
 void rg_halo_poll(rg_halo *h);
+
+/* Returns at once if nothing was started. */
 void rg_halo_finish(rg_halo *h);
-void rg_halo_unpack(rg_halo *h, double *field);
 
 /* Seconds that `finish` has waited so far. */
 double rg_halo_waited(const rg_halo *h);

@@ -3,203 +3,323 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "gid_map.h"
 #include "layout.h"
 #include "mem.h"
 
-/* One interface before it has its place. */
 typedef struct {
-    uint64_t group;  /* tile it lies in; then "between tiles"; then "shared" */
-    int32_t link[2]; /* 4 * slot + face of the minus and the plus side */
-    int32_t own;     /* index in the part of an own element */
-    int8_t own_face;
-    int8_t own_side; /* 0: the own element is minus */
-} face;
+    rg_domain *domain;
+    const rg_element *const *element; /* by tile */
+    int rank;
+    const rg_interface_material *material;
+    size_t *inside, *seams; /* [tiles]: interfaces */
+} builder;
 
-static int by_sweep(const void *a, const void *b) {
-    const face *p = a, *q = b;
-    if (p->group != q->group) {
-        return p->group < q->group ? -1 : 1;
-    }
-    int32_t last[2] = {p->link[0] > p->link[1] ? p->link[0] : p->link[1],
-                       q->link[0] > q->link[1] ? q->link[0] : q->link[1]};
-    if (last[0] != last[1]) {
-        return last[0] < last[1] ? -1 : 1;
-    }
-    return (p->link[0] > q->link[0]) - (p->link[0] < q->link[0]);
+/* Real elements of tile t. */
+static size_t tile_elements(const builder *b, size_t t) {
+    return (size_t)(b->element[t + 1] - b->element[t]);
 }
 
-/* Tile of each own block. */
-static uint32_t *tile_of_block(const rg_domain *d) {
-    uint32_t *tile = RG_NEW(uint32_t, d->blocks + 1);
-    for (size_t t = 0; t < d->tiles; t++) {
-        for (size_t b = d->tile[t].begin; b < d->tile[t].end; b++) {
-            tile[b] = (uint32_t)t;
-        }
-    }
-    return tile;
+static bool in_tile(const builder *b, size_t t, rg_gid e) {
+    rg_gid first = b->domain->tile[t].first;
+    return e >= first && e < first + (rg_gid)tile_elements(b, t);
 }
 
-static uint64_t group_of(const rg_domain *d, const uint32_t *tile, int32_t slot, int32_t other) {
-    size_t b[2] = {(size_t)slot / RG_LANES, (size_t)other / RG_LANES};
-    if (b[1] >= d->blocks) {
-        return d->tiles + 1;
-    }
-    return tile[b[0]] == tile[b[1]] ? tile[b[0]] : d->tiles;
-}
-
-/* Every interior face once: from its minus side, or from the own side if the other rank has the other one. */
-static face *collect(const rg_domain *d, const rg_part *part, int rank, const rg_gid_map *slot,
-                     size_t *count) {
-    face *list = RG_NEW(face, 4 * (size_t)part->elements + 1);
-    uint32_t *tile = tile_of_block(d);
-    size_t n = 0;
-    for (rg_lid i = 0; i < part->elements; i++) {
-        const rg_element *e = &part->element[i];
-        rg_lid own = rg_gid_map_get(slot, e->id);
-        for (int8_t f = 0; f < RG_FACES; f++) {
-            bool plus = e->neighbour[f] < e->id;
-            if (e->neighbour[f] < 0 || (plus && e->owner[f] == rank)) {
-                continue;
-            }
-            rg_lid other = rg_gid_map_get(slot, e->neighbour[f]);
-            int32_t here = rg_link(own, f, RG_FACES), there = rg_link(other, e->face[f], RG_FACES);
-            list[n++] = (face){.group = group_of(d, tile, own, other),
-                               .link = {plus ? there : here, plus ? here : there},
-                               .own = i,
-                               .own_face = f,
-                               .own_side = plus};
-        }
-    }
-    rg_free(tile);
-    *count = n;
-    return list;
-}
-
-/* Edges, unit normal (minus to plus), area and penalties, from the corners of the own element's face: both
- * ranks of a shared face see the same corners in the same order, so they get the same bits. */
-static void set_geometry(rg_domain *d, size_t i, const rg_element *e, const face *f,
-                         const rg_interface_material *m) {
+/* Whether the area vector of face f points away from the element: then that is the minus side. */
+static bool is_minus(const rg_element *e, int f, double edge[2][3], double *area) {
     const double *x[3];
     for (int k = 0, n = 0; k < 4; k++) {
-        if (k != f->own_face) {
+        if (k != f) {
             x[n++] = e->x[k];
         }
     }
-    double edge[2][3], away = 0, n[3];
+    double cross[3], square = 0, away = 0;
     for (int c = 0; c < 3; c++) {
         edge[0][c] = x[1][c] - x[0][c];
         edge[1][c] = x[2][c] - x[0][c];
     }
     for (int c = 0; c < 3; c++) {
         int a = (c + 1) % 3, b = (c + 2) % 3;
-        n[c] = edge[0][a] * edge[1][b] - edge[0][b] * edge[1][a];
-        away -= n[c] * (e->x[f->own_face][c] - x[0][c]);
+        cross[c] = edge[0][a] * edge[1][b] - edge[0][b] * edge[1][a];
+        square += cross[c] * cross[c];
+        away -= cross[c] * (e->x[f][c] - x[0][c]);
     }
-    double twice = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]), area = 0.5 * twice;
-    double sign = (away > 0) == (f->own_side == 0) ? 1 : -1;
-    double h = 3 * fmin(e->volume, e->other_volume[f->own_face]) / area;
-    double shear = m->penalty == RG_PENALTY_ELASTIC ? m->mu : m->lambda + 2 * m->mu;
-    double *g = d->igeom;
-    for (int c = 0; c < 3; c++) {
-        g[rg_igeom_index(i, RG_IGEOM_NORMAL + c)] = sign * n[c] / twice;
-        g[rg_igeom_index(i, RG_IGEOM_EDGE + c)] = edge[0][c];
-        g[rg_igeom_index(i, RG_IGEOM_EDGE + 3 + c)] = edge[1][c];
-    }
-    g[rg_igeom_index(i, RG_IGEOM_AREA)] = area;
-    g[rg_igeom_index(i, RG_IGEOM_PEN_ISO)] = area * m->beta_s / h * shear;
-    g[rg_igeom_index(i, RG_IGEOM_PEN_NORM)] = area * m->beta_s / h * (m->lambda + 2 * m->mu - shear);
+    *area = 0.5 * sqrt(square);
+    return away > 0;
 }
 
-/* Makes side k of interface i and the element there know each other (own elements only). */
-static void connect(rg_domain *d, size_t i, const face *f, int k) {
-    int32_t here = f->link[k];
-    d->side[k][i] = here;
-    size_t slot = (size_t)here / RG_FACES;
-    if (slot < d->blocks * RG_LANES) {
-        size_t at = rg_link_index(slot, here % RG_FACES);
-        d->neighbour[at] = f->link[1 - k];
-        d->interface[at] = rg_link((int32_t)i, k, 2);
+/* Edges and penalties of interface i, from the corners of an element at its face f: both sides see the same
+ * corners in the same order, so they get the same bits. Returns whether the element is on the minus side. */
+static bool set_geometry(const builder *b, size_t i, const rg_element *e, int f) {
+    const rg_interface_material *m = b->material;
+    double edge[2][3], area;
+    bool minus = is_minus(e, f, edge, &area);
+    double h = 3 * fmin(e->volume, e->other_volume[f]) / area;
+    double normal = m->lambda + 2 * m->mu, shear = m->penalty == RG_PENALTY_ELASTIC ? m->mu : normal;
+    double *g = b->domain->igeom;
+    for (int k = 0; k < 6; k++) {
+        g[rg_igeom_index(i, RG_IGEOM_EDGE + k)] = edge[k / 3][k % 3];
+    }
+    g[rg_igeom_index(i, RG_IGEOM_PEN_ISO)] = m->beta_s / h * shear * area;
+    g[rg_igeom_index(i, RG_IGEOM_PEN_NORM)] = m->beta_s / h * (normal - shear) / area;
+    return minus;
+}
+
+static void count(builder *b, size_t t) {
+    for (size_t i = 0; i < tile_elements(b, t); i++) {
+        const rg_element *e = &b->element[t][i];
+        for (int f = 0; f < RG_FACES; f++) {
+            bool inside = e->neighbour[f] >= 0 && in_tile(b, t, e->neighbour[f]);
+            b->inside[t] += inside && e->neighbour[f] < e->id;
+            b->seams[t] += e->neighbour[f] >= 0 && !inside;
+        }
     }
 }
 
-static void add_shared(rg_domain *d, const rg_element *e, const face *f) {
-    int32_t minus = f->link[0];
-    d->shared_face[d->shared++] = (rg_shared_face){.rank = e->owner[f->own_face],
-                                                   .minus = d->id[minus / RG_FACES],
-                                                   .minus_face = (int8_t)(minus % RG_FACES),
-                                                   .own = f->link[f->own_side],
-                                                   .ghost = f->link[1 - f->own_side]};
+static size_t whole_blocks(size_t n) {
+    return (n + RG_LANES - 1) / RG_LANES;
 }
 
-static int by_rank_and_key(const void *a, const void *b) {
-    const rg_shared_face *p = a, *q = b;
-    if (p->rank != q->rank) {
-        return p->rank < q->rank ? -1 : 1;
+static void place_tiles(builder *b) {
+    rg_domain *d = b->domain;
+    for (size_t t = 0; t < d->tiles; t++) {
+        rg_tile *tile = &d->tile[t];
+        tile->ibegin = d->iblocks;
+        tile->sbegin = tile->ibegin + whole_blocks(b->inside[t]);
+        tile->iend = d->iblocks = tile->sbegin + whole_blocks(b->seams[t]);
+        tile->row = d->own_rows;
+        d->own_rows += (tile->iend - tile->sbegin) * RG_LANES;
+        size_t all = tile->iend - tile->ibegin, seams = tile->iend - tile->sbegin;
+        d->tile_iblocks = all > d->tile_iblocks ? all : d->tile_iblocks;
+        d->tile_sblocks = seams > d->tile_sblocks ? seams : d->tile_sblocks;
     }
-    if (p->minus != q->minus) {
-        return p->minus < q->minus ? -1 : 1;
-    }
-    return p->minus_face - q->minus_face;
 }
 
-/* Where each group starts, in interfaces, whole blocks each; start[groups] is the number of all. */
-static size_t *group_starts(const face *list, size_t count, size_t groups) {
-    size_t *start = RG_NEW(size_t, groups + 1);
-    for (size_t i = 0; i < count; i++) {
-        start[list[i].group + 1]++;
-    }
-    for (size_t g = 0; g < groups; g++) {
-        start[g + 1] = start[g] + (start[g + 1] + RG_LANES - 1) / RG_LANES * RG_LANES;
-    }
-    return start;
-}
-
-static void allocate(rg_domain *d, size_t slots, size_t shared) {
+static void allocate(rg_domain *d) {
+    size_t slots = d->iblocks * RG_LANES;
     for (int k = 0; k < 2; k++) {
-        d->side[k] = RG_NEW(int32_t, slots); /* padding: both sides are face 0 of element 0, area 0 */
+        d->side[k] = RG_NEW(int32_t, slots);
     }
     d->igeom = RG_NEW(double, slots *RG_IGEOM);
     d->counted = RG_NEW(uint8_t, slots);
-    d->shared_face = RG_NEW(rg_shared_face, shared + 1);
 }
 
-void rg_interfaces_build(rg_domain *d, const rg_part *part, int rank, const rg_interface_material *m,
-                         const rg_gid_map *slot) {
-    size_t count, groups = d->tiles + 2;
-    face *list = collect(d, part, rank, slot, &count);
-    qsort(list, count, sizeof *list, by_sweep);
-    size_t *start = group_starts(list, count, groups);
+/* An interface inside tile t, seen from its later element `i`, so that both sides are in the cache. */
+static void add_inside(const builder *b, size_t t, size_t i, int f, size_t at) {
+    rg_domain *d = b->domain;
+    const rg_tile *tile = &d->tile[t];
+    const rg_element *e = &b->element[t][i];
+    size_t first = tile->begin * RG_LANES, other = (size_t)(e->neighbour[f] - tile->first);
+    int plus = !set_geometry(b, at, e, f), face = e->face[f];
+    size_t number = at - tile->ibegin * RG_LANES;
+    d->side[plus][at] = rg_side_link(i, f);
+    d->side[!plus][at] = rg_side_link(other, face);
+    d->counted[at] = 1;
+    d->neighbour[rg_link_index(first + i, f)] = rg_neighbour_link(other, face);
+    d->neighbour[rg_link_index(first + other, face)] = rg_neighbour_link(i, f);
+    d->interface[rg_link_index(first + i, f)] = rg_link(number, plus, 4);
+    d->interface[rg_link_index(first + other, face)] = rg_link(number, !plus, 4);
+}
+
+/* A seam of tile t. Its `other` link waits for the rows: until then it holds the side alone. */
+static void add_seam(const builder *b, size_t t, size_t i, int f, size_t at) {
+    rg_domain *d = b->domain;
+    const rg_tile *tile = &d->tile[t];
+    const rg_element *e = &b->element[t][i];
+    size_t slot = tile->begin * RG_LANES + i;
+    int plus = !set_geometry(b, at, e, f);
+    d->side[0][at] = rg_side_link(i, f);
+    d->side[1][at] = plus;
+    d->counted[at] = e->id < e->neighbour[f];
+    d->neighbour[rg_link_index(slot, f)] = rg_neighbour_link(at - tile->sbegin * RG_LANES, RG_GHOST);
+    d->interface[rg_link_index(slot, f)] = rg_link(at - tile->ibegin * RG_LANES, RG_SEAM + plus, 4);
+}
+
+/* A seam before it has its place. */
+typedef struct {
+    rg_gid tile, key; /* the other tile; the face's key, the same on both sides */
+    int32_t own;      /* 4 * element of the tile + face */
+} seam;
+
+/* Seams with one other tile lie side by side and in the same order on both sides, so their rows are read as a
+ * stream. */
+static int by_tile_and_key(const void *a, const void *b) {
+    const seam *p = a, *q = b;
+    if (p->tile != q->tile) {
+        return p->tile < q->tile ? -1 : 1;
+    }
+    return (p->key > q->key) - (p->key < q->key);
+}
+
+static rg_gid face_key(const rg_element *e, int f) {
+    rg_gid other = e->neighbour[f];
+    return e->id < other ? RG_FACES * e->id + f : RG_FACES * other + e->face[f];
+}
+
+static void add_seams(const builder *b, size_t t, const seam *list) {
+    size_t at = b->domain->tile[t].sbegin * RG_LANES;
+    for (size_t k = 0; k < b->seams[t]; k++) {
+        add_seam(b, t, (size_t)list[k].own / RG_FACES, list[k].own % RG_FACES, at + k);
+    }
+}
+
+static void fill_tile(const builder *b, size_t t, seam *list) {
+    const rg_domain *d = b->domain;
+    size_t inside = d->tile[t].ibegin * RG_LANES, seams = 0;
+    for (size_t i = 0; i < tile_elements(b, t); i++) {
+        const rg_element *e = &b->element[t][i];
+        for (int f = 0; f < RG_FACES; f++) {
+            rg_gid other = e->neighbour[f];
+            if (other < 0) {
+                continue;
+            }
+            if (!in_tile(b, t, other)) {
+                list[seams++] = (seam){other / d->tile_elements, face_key(e, f), rg_side_link(i, f)};
+            } else if (other < e->id) {
+                add_inside(b, t, i, f, inside++);
+            }
+        }
+    }
+    qsort(list, seams, sizeof *list, by_tile_and_key);
+    add_seams(b, t, list);
+}
+
+static void fill_tiles(const builder *b) {
+    const rg_domain *d = b->domain;
+#pragma omp parallel
+    {
+        seam *list = RG_NEW(seam, d->tile_sblocks * RG_LANES);
+#pragma omp for schedule(static)
+        for (size_t t = 0; t < d->tiles; t++) {
+            fill_tile(b, t, list);
+        }
+        rg_free(list);
+    }
+}
+
+/* Row of seam i of the domain, which lies in tile t. */
+static size_t row_of(const rg_tile *tile, size_t i) {
+    return tile->row + (i - tile->sbegin * RG_LANES);
+}
+
+/* Row of the seam at face f of element e, in an own tile. */
+static size_t find_row(const rg_domain *d, const rg_tile *tile, rg_gid e, int f) {
+    size_t slot = tile->begin * RG_LANES + (size_t)(e - tile->first);
+    return tile->row + (size_t)d->neighbour[rg_link_index(slot, f)] / 8;
+}
+
+static const rg_element *seam_element(const builder *b, size_t t, size_t i) {
+    return &b->element[t][b->domain->side[0][i] / RG_FACES];
+}
+
+static void join_tile(const builder *b, size_t t, const rg_gid_map *number) {
+    rg_domain *d = b->domain;
+    const rg_tile *tile = &d->tile[t];
+    size_t first = tile->sbegin * RG_LANES;
+    for (size_t i = first; i < tile->iend * RG_LANES; i++) {
+        size_t row = row_of(tile, i); /* padding: its own */
+        if (i < first + b->seams[t]) {
+            const rg_element *e = seam_element(b, t, i);
+            int f = d->side[0][i] % RG_FACES;
+            if (e->owner[f] != b->rank) {
+                continue;
+            }
+            rg_lid other = rg_gid_map_get(number, e->neighbour[f] / d->tile_elements);
+            row = find_row(d, &d->tile[other], e->neighbour[f], e->face[f]);
+        }
+        d->side[1][i] += 2 * (int32_t)row;
+    }
+}
+
+/* Seams between own tiles find each other's rows. */
+static void join_own(const builder *b) {
+    rg_domain *d = b->domain;
+    rg_gid_map number = rg_gid_map_make(d->tiles);
     for (size_t t = 0; t < d->tiles; t++) {
-        d->tile[t].ibegin = start[t] / RG_LANES;
-        d->tile[t].iend = start[t + 1] / RG_LANES;
+        rg_gid_map_put(&number, d->tile[t].first / d->tile_elements, (rg_lid)t);
     }
-    d->between_begin = start[d->tiles] / RG_LANES;
-    d->shared_begin = start[d->tiles + 1] / RG_LANES;
-    d->iblocks = start[groups] / RG_LANES;
-    size_t shared = 0;
-    for (size_t i = 0; i < count; i++) {
-        shared += list[i].group == d->tiles + 1;
+#pragma omp parallel for schedule(static)
+    for (size_t t = 0; t < d->tiles; t++) {
+        join_tile(b, t, &number);
     }
-    allocate(d, start[groups], shared);
-    for (size_t b = 0; b < d->blocks; b++) { /* surface faces read zeros behind the last interface */
-        for (size_t k = 0; k < RG_LINK_BLOCK; k++) {
-            d->interface[b * RG_LINK_BLOCK + k] = rg_link((int32_t)(d->iblocks * RG_LANES), 0, 2);
+    rg_gid_map_free(&number);
+}
+
+static int by_rank_and_tiles(const void *a, const void *b) {
+    const rg_shared_face *p = a, *q = b;
+    const rg_gid left[4] = {p->rank, p->tile[0], p->tile[1], p->key};
+    const rg_gid right[4] = {q->rank, q->tile[0], q->tile[1], q->key};
+    for (int k = 0; k < 4; k++) {
+        if (left[k] != right[k]) {
+            return left[k] < right[k] ? -1 : 1;
         }
     }
-    for (size_t i = 0; i < count; i++) {
-        const face *f = &list[i];
-        const rg_element *e = &part->element[f->own];
-        size_t at = start[f->group]++;
-        connect(d, at, f, 0);
-        connect(d, at, f, 1);
-        set_geometry(d, at, e, f, m);
-        d->counted[at] = f->own_side == 0;
-        d->interfaces += f->own_side == 0;
-        if (f->group == d->tiles + 1) {
-            add_shared(d, e, f);
+    return 0;
+}
+
+static size_t collect_shared(const builder *b, rg_shared_face *list) {
+    const rg_domain *d = b->domain;
+    size_t n = 0;
+    for (size_t t = 0; t < d->boundary_tiles; t++) {
+        size_t first = d->tile[t].sbegin * RG_LANES;
+        for (size_t i = first; i < first + b->seams[t]; i++) {
+            const rg_element *e = seam_element(b, t, i);
+            int f = d->side[0][i] % RG_FACES;
+            if (e->owner[f] == b->rank) {
+                continue;
+            }
+            if (list != NULL) {
+                rg_gid here = e->id / d->tile_elements, there = e->neighbour[f] / d->tile_elements;
+                list[n] = (rg_shared_face){.rank = e->owner[f],
+                                           .tile = {here < there ? here : there, here < there ? there : here},
+                                           .key = face_key(e, f),
+                                           .seam = i};
+            }
+            n++;
         }
     }
-    qsort(d->shared_face, d->shared, sizeof *d->shared_face, by_rank_and_key);
-    rg_free(start);
-    rg_free(list);
+    return n;
+}
+
+static const rg_tile *tile_of_seam(const rg_domain *d, size_t i) {
+    size_t low = 0, high = d->boundary_tiles;
+    while (high - low > 1) {
+        size_t middle = low + (high - low) / 2;
+        *(d->tile[middle].ibegin * RG_LANES <= i ? &low : &high) = middle;
+    }
+    return &d->tile[low];
+}
+
+/* Seams shared with other ranks: their rows arrive behind the own ones, in the order of rank, tiles and key,
+ * which is that in which a tile reads them. */
+static void join_shared(const builder *b) {
+    rg_domain *d = b->domain;
+    d->shared = collect_shared(b, NULL);
+    d->shared_face = RG_NEW(rg_shared_face, d->shared + 1);
+    collect_shared(b, d->shared_face);
+    qsort(d->shared_face, d->shared, sizeof *d->shared_face, by_rank_and_tiles);
+    for (size_t k = 0; k < d->shared; k++) {
+        size_t i = d->shared_face[k].seam;
+        d->side[1][i] += 2 * (int32_t)(d->own_rows + k);
+        d->shared_face[k].seam = row_of(tile_of_seam(d, i), i);
+    }
+}
+
+void rg_interfaces_build(rg_domain *d, const rg_element *const element[], int rank,
+                         const rg_interface_material *m) {
+    builder b = {d, element, rank, m, RG_NEW(size_t, d->tiles), RG_NEW(size_t, d->tiles)};
+#pragma omp parallel for schedule(static)
+    for (size_t t = 0; t < d->tiles; t++) {
+        count(&b, t);
+    }
+    place_tiles(&b);
+    allocate(d);
+    fill_tiles(&b);
+    join_own(&b);
+    join_shared(&b);
+    for (size_t i = 0; i < d->iblocks * RG_LANES; i++) {
+        d->interfaces += d->counted[i];
+    }
+    rg_free(b.inside);
+    rg_free(b.seams);
 }

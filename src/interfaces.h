@@ -1,13 +1,13 @@
-/* The interfaces of a domain: found from the elements' neighbours, sorted for the sweep, with their geometry.
+/* The interfaces of a domain: one at every interior face inside a tile, two copies of a face between tiles.
  */
 #ifndef RG_INTERFACES_H
 #define RG_INTERFACES_H
 
 #include "domain.h"
-#include "gid_map.h"
 
-/* Fills the interface part of `d` and the links of its elements. `slot` gives own and ghost elements. */
-void rg_interfaces_build(rg_domain *d, const rg_part *part, int rank, const rg_interface_material *m,
-                         const rg_gid_map *slot);
+/* Fills all that concerns interfaces in a domain whose elements are in place; element[t] are the elements of
+ * tile t. */
+void rg_interfaces_build(rg_domain *d, const rg_element *const element[], int rank,
+                         const rg_interface_material *m);
 
 #endif

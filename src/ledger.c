@@ -2,9 +2,12 @@
 
 #include <float.h>
 #include <math.h>
+#include <omp.h>
 
 #include "element.h"
+#include "mem.h"
 #include "quadrature.h"
+#include "tile.h"
 
 enum {
     KINETIC,
@@ -20,8 +23,6 @@ enum {
     SUMS = ANGULAR + 3
 };
 
-enum { CHUNK = 16 }; /* blocks whose energies fit a small buffer */
-
 static void add_all(rg_exact_sum *sum, const double *x, size_t count) {
     for (size_t i = 0; i < count; i++) {
         rg_exact_add(sum, x[i]);
@@ -32,8 +33,8 @@ static void add_all(rg_exact_sum *sum, const double *x, size_t count) {
  * nodes. */
 static void add_momentum(rg_exact_sum *sum, const rg_solver *s, size_t slot) {
     double mv[RG_NODES][3], p[3] = {0, 0, 0}, l[3] = {0, 0, 0};
-    double mass = s->bulk.material.density * s->domain->geom[rg_geom_index(slot, RG_GEOM_VOLUME)];
-    rg_mass_times(s->update.lumped, mass, s->scratch, slot, mv);
+    double mass = s->material.density * s->domain->geom[rg_geom_index(slot, RG_GEOM_VOLUME)];
+    rg_mass_times(s->lumped, mass, s->now, slot, mv);
     for (int n = 0; n < RG_NODES; n++) {
         double x[3];
         rg_node_position(s->domain->corner + 12 * slot, n, x);
@@ -52,16 +53,18 @@ static void add_momentum(rg_exact_sum *sum, const rg_solver *s, size_t slot) {
     }
 }
 
-static void element_energies(rg_solver *s, size_t begin, size_t end, rg_exact_sum sum[SUMS]) {
-    _Alignas(64) double energy[CHUNK * RG_LANES];
-    size_t count = (end - begin) * RG_LANES;
-    rg_bulk_state_args bulk = {.bulk = &s->bulk, .energy = energy};
-    s->kernels->bulk_state(&bulk, begin, end);
-    add_all(&sum[BULK], energy, count);
-    rg_kinetic_args kinetic = {s->update.density, s->update.lumped, s->domain->geom, s->scratch, energy};
-    s->kernels->kinetic(&kinetic, begin, end);
-    add_all(&sum[KINETIC], energy, count);
-    for (size_t slot = begin * RG_LANES; slot < end * RG_LANES; slot++) {
+static void element_energies(rg_solver *s, const rg_tile *t, const rg_workspace *w, double *energy,
+                             rg_exact_sum sum[SUMS]) {
+    size_t blocks = rg_tile_eblocks(t);
+    rg_bulk_args bulk = rg_tile_bulk(s, t, w);
+    rg_bulk_state_args state = {.bulk = &bulk, .energy = energy};
+    s->kernels->bulk_state(&state, 0, blocks);
+    add_all(&sum[BULK], energy, blocks * RG_LANES);
+    rg_kinetic_args kinetic = {s->material.density, s->lumped, s->domain->geom + t->begin * RG_GEOM_BLOCK,
+                               s->now + t->begin * RG_NODE_BLOCK, energy};
+    s->kernels->kinetic(&kinetic, 0, blocks);
+    add_all(&sum[KINETIC], energy, blocks * RG_LANES);
+    for (size_t slot = t->begin * RG_LANES; slot < t->end * RG_LANES; slot++) {
         if (s->domain->id[slot] >= 0) {
             rg_exact_add(&sum[VOLUME], s->domain->geom[rg_geom_index(slot, RG_GEOM_VOLUME)]);
             add_momentum(sum, s, slot);
@@ -71,29 +74,29 @@ static void element_energies(rg_solver *s, size_t begin, size_t end, rg_exact_su
 
 static void add_areas(rg_exact_sum sum[SUMS], const rg_solver *s, size_t i) {
     static const double weight[2] = {RG_TRI_W0, RG_TRI_W1};
-    double area = s->domain->igeom[rg_igeom_index(i, RG_IGEOM_AREA)];
+    double normal[3], area = rg_interface_area(s->domain, i, normal);
     for (int q = 0; q < RG_POINTS; q++) {
         if (s->broken[i] >> q & 1) {
             rg_exact_add(&sum[BROKEN], weight[q / 3] * area);
-            bool failed = s->crack[rg_crack_index(i, q, RG_CRACK_OPENING)] >= s->interface.law.opening;
+            bool failed = s->crack[rg_crack_index(i, q, RG_CRACK_OPENING)] >= s->law.opening;
             rg_exact_add(&sum[FAILED], failed ? weight[q / 3] * area : 0);
         }
     }
 }
 
-/* Each interface is counted by the rank that owns its minus side. */
-static void interface_energies(rg_solver *s, size_t begin, size_t end, rg_exact_sum sum[SUMS]) {
-    _Alignas(64) double energy[CHUNK * RG_E_INTERFACE * RG_LANES];
-    rg_interface_state_args args = {&s->interface, energy};
-    s->kernels->interface_state(&args, begin, end);
-    for (size_t i = begin * RG_LANES; i < end * RG_LANES; i++) {
+/* Of the two copies of a seam one is counted. */
+static void interface_energies(rg_solver *s, const rg_tile *t, const rg_workspace *w, double *energy,
+                               rg_exact_sum sum[SUMS]) {
+    rg_interface_args interface = rg_tile_interfaces(s, t, w);
+    rg_interface_state_args args = {&interface, energy};
+    s->kernels->interface_state(&args, 0, rg_tile_iblocks(t));
+    for (size_t i = t->ibegin * RG_LANES; i < t->iend * RG_LANES; i++) {
         if (!s->domain->counted[i]) {
             continue;
         }
-        for (int k = 0; k < RG_E_INTERFACE; k++) {
-            size_t row = i / RG_LANES - begin;
-            rg_exact_add(&sum[INTERFACE + k],
-                         energy[(row * RG_E_INTERFACE + (size_t)k) * RG_LANES + i % RG_LANES]);
+        for (size_t k = 0; k < RG_E_INTERFACE; k++) {
+            size_t row = i / RG_LANES - t->ibegin;
+            rg_exact_add(&sum[INTERFACE + k], energy[(row * RG_E_INTERFACE + k) * RG_LANES + i % RG_LANES]);
         }
         if (s->broken[i]) {
             add_areas(sum, s, i);
@@ -102,18 +105,21 @@ static void interface_energies(rg_solver *s, size_t begin, size_t end, rg_exact_
 }
 
 static void sum_up(rg_solver *s, rg_exact_sum sum[SUMS]) {
-    size_t blocks = s->domain->blocks, iblocks = s->domain->iblocks;
+    const rg_domain *d = s->domain;
+    size_t most =
+        d->tile_iblocks * RG_E_INTERFACE > d->tile_blocks ? d->tile_iblocks * RG_E_INTERFACE : d->tile_blocks;
 #pragma omp parallel
     {
         rg_exact_sum mine[SUMS] = {0};
+        rg_workspace *w = &s->work[omp_get_thread_num()];
+        double *energy = RG_NEW(double, most *RG_LANES);
 #pragma omp for schedule(static) nowait
-        for (size_t b = 0; b < blocks; b += CHUNK) {
-            element_energies(s, b, b + CHUNK < blocks ? b + CHUNK : blocks, mine);
+        for (size_t t = 0; t < d->tiles; t++) {
+            rg_tile_receive(s, &d->tile[t], w);
+            element_energies(s, &d->tile[t], w, energy, mine);
+            interface_energies(s, &d->tile[t], w, energy, mine);
         }
-#pragma omp for schedule(static) nowait
-        for (size_t b = 0; b < iblocks; b += CHUNK) {
-            interface_energies(s, b, b + CHUNK < iblocks ? b + CHUNK : iblocks, mine);
-        }
+        rg_free(energy);
 #pragma omp critical
         for (int k = 0; k < SUMS; k++) {
             rg_exact_merge(&sum[k], &mine[k]);
@@ -123,7 +129,6 @@ static void sum_up(rg_solver *s, rg_exact_sum sum[SUMS]) {
 
 const rg_energy *rg_ledger_take(rg_ledger *l, rg_solver *s) {
     rg_exact_sum sum[SUMS] = {0};
-    rg_solver_velocity_now(s, &sum[EXTERNAL]);
     rg_constraints_work(s->constraints, &sum[EXTERNAL]);
     sum_up(s, sum);
     rg_exact_allreduce(sum, SUMS, s->comm);
@@ -151,7 +156,7 @@ const rg_energy *rg_ledger_take(rg_ledger *l, rg_solver *s) {
     if (!l->begun) {
         *l = (rg_ledger){.begun = true, .start = e->total, .last = *e};
     }
-    l->largest = fmax(fmax(l->largest, fabs(stored)), 1e3 * DBL_EPSILON * s->bulk.material.mu * v[VOLUME]);
+    l->largest = fmax(fmax(l->largest, fabs(stored)), 1e3 * DBL_EPSILON * s->material.mu * v[VOLUME]);
     e->error = e->total == l->start ? 0 : (e->total - l->start) / l->largest;
     l->worst = isnan(e->error) ? INFINITY : fmax(l->worst, fabs(e->error));
     return e;

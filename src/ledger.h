@@ -25,9 +25,8 @@ typedef struct {
     rg_energy last;
 } rg_ledger;
 
-/* Takes stock of the current state, at the time of the displacements. Sums are exact: the same bits on any
- * ranks and threads. Overwrites `scratch` of the solver with the velocity at that time. Collective; returns
- * &l->last. */
+/* Takes stock of the current state, between its kick and its drift. Sums are exact: the same bits on any
+ * ranks and threads. Collective; returns &l->last. */
 const rg_energy *rg_ledger_take(rg_ledger *l, rg_solver *s);
 
 /* Time at which the first point switched (s); infinite if none has. Collective. */

@@ -8,6 +8,9 @@
  * so that the thread which uses them places them. Free with rg_free. */
 void *rg_alloc(size_t count, size_t size);
 
+/* The same for a large array of which only parts will be used: what is not touched costs no memory. */
+void *rg_alloc_sparse(size_t count, size_t size);
+
 /* Grows or shrinks a block from rg_realloc(NULL, ...); not aligned, for set-up only. Free with rg_free. */
 void *rg_realloc(void *block, size_t count, size_t size);
 

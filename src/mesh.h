@@ -8,12 +8,12 @@
 typedef int64_t rg_gid; /* global element or vertex number */
 typedef int32_t rg_lid; /* number local to a rank */
 
-enum {
-    RG_MAX_SETS = 64,
-    RG_TILE = 256, /* elements of a tile of a large mesh */
-};
+enum { RG_MAX_SETS = 64 };
 
-/* The whole mesh. Held by rank 0 only, during set-up. */
+/* The whole mesh. Held by rank 0 only, during set-up. Elements are numbered along a Hilbert curve through
+ * their centroids; a tile is a run of consecutive elements, tile t those from t * tile on. Tiles are what
+ * ranks own and what threads sweep; they follow from the mesh alone, and so does every sum that runs over
+ * one. */
 typedef struct {
     rg_gid vertices, elements;
     double *x;         /* [vertices][3] m */
@@ -42,9 +42,13 @@ static inline rg_gid rg_mesh_original(const rg_mesh *mesh, rg_gid e) {
 }
 
 /* Renumbers the elements along a Hilbert curve through their centroids, those at the same point in the order
- * of their numbers, so that runs of consecutive numbers are compact. Fills `original`; leaves `neighbour` and
- * `face` to rg_mesh_connect. */
+ * of their numbers, so that runs of consecutive numbers are compact. Lengths count in mean extents of the
+ * elements along each axis; the curve starts at the lower corner of the mesh. Fills `original`; leaves
+ * `neighbour` and `face` to rg_mesh_connect. */
 void rg_mesh_sort(rg_mesh *mesh);
+
+/* Mean extent of the elements along each axis (m); `box` is that around the mesh. */
+void rg_mesh_mean_extent(const rg_mesh *mesh, const double box[2][3], double extent[3]);
 
 /* Elements of a tile in a mesh of so many: RG_TILE, fewer in a small mesh, so that there are tiles enough. */
 int rg_tile_elements(rg_gid elements);
@@ -57,9 +61,8 @@ void rg_mesh_box_around(const rg_mesh *mesh, double box[2][3]);
 
 void rg_mesh_free(rg_mesh *mesh);
 
-/* METIS k-way partition of the dual graph, fixed seed: part[elements] in 0..parts-1, no part empty. Ends the
- * run with a message if there are more parts than elements. */
-void rg_mesh_partition(const rg_mesh *mesh, int parts, int32_t *part);
+/* Partition of the graph of tiles of `tile` elements (tile_graph.h). */
+void rg_mesh_partition(const rg_mesh *mesh, int tile, int parts, int32_t *part);
 
 /* One element with all that its rank must know of it. */
 typedef struct {
@@ -73,22 +76,33 @@ typedef struct {
     int8_t set[4];          /* surface set, -1 for none */
 } rg_element;
 
-/* The part of the mesh that a rank owns, in the order in which it is swept: first the elements that share a
- * face with another rank, then the others, each along a Hilbert curve through the centroids. */
+/* The part of the mesh that a rank owns, tile by tile in the order in which it is swept: first the tiles that
+ * share a face with another rank, then the others, each by ascending number. */
 typedef struct {
     rg_gid total;      /* elements of the whole mesh */
     rg_gid interfaces; /* interior faces of the whole mesh */
     double box[2][3];  /* lower and upper corner of the whole mesh (m) */
-    rg_lid elements;   /* own elements */
+    int tile;          /* elements of a tile; the last one of the mesh may have fewer */
+    rg_lid tiles;      /* own tiles */
     rg_lid boundary;   /* of these, how many share a face with another rank; they come first */
+    rg_gid *tile_id;   /* [tiles]: global number of the tile */
+    rg_lid elements;   /* own elements */
     rg_element *element;
+    rg_gid
+        *original; /* [elements]: numbers in the mesh that this one was cut from; NULL if it is the whole */
     int sets;
     char *set_name[RG_MAX_SETS];
 } rg_part;
 
-/* Collective. Rank 0 gives the mesh (others NULL), partitions it for the ranks of `comm` and sends each its
- * part. The caller owns the result. */
-rg_part *rg_part_distribute(const rg_mesh *mesh, MPI_Comm comm);
+/* Elements of global tile `id`. */
+static inline rg_lid rg_tile_size(const rg_part *part, rg_gid id) {
+    rg_gid left = part->total - id * part->tile;
+    return (rg_lid)(left < part->tile ? left : part->tile);
+}
+
+/* Collective. Rank 0 gives the mesh (others NULL), partitions it in tiles of `tile` elements for the ranks of
+ * `comm` and sends each its part. The caller owns the result. */
+rg_part *rg_part_distribute(const rg_mesh *mesh, int tile, MPI_Comm comm);
 
 void rg_part_free(rg_part *part);
 

@@ -72,8 +72,6 @@ rg_mesh *rg_mesh_of_case(const rg_case *c) {
         check_probes(c, mesh);
     } else {
         mesh = rg_mesh_box(c->mesh.cells, c->mesh.origin, c->mesh.size, c->mesh.jitter, c->mesh.seed);
-        rg_mesh_sort(mesh);
-        rg_mesh_connect(mesh);
     }
     return mesh;
 }

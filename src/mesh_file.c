@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "error.h"
+#include "../kernels/layout.h"
 #include "h5_reason.h"
 #include "mem.h"
 #include "mesh_check.h"
@@ -409,6 +410,8 @@ void rg_mesh_slab_free(rg_mesh_slab *slab) {
 rg_tile_graph *rg_mesh_file_graph(rg_mesh_file *f) {
     rg_tile_graph *g = RG_NEW(rg_tile_graph, 1);
     int64_t tiles = f->head.tiles, rows = tiles > 1 ? count_rows(f, &rg_rows_tile_neighbour) : 0;
+    g->elements = f->head.elements;
+    g->tile = (int)f->head.tile_elements;
     g->tiles = tiles;
     g->start = take_whole(f, &rg_rows_tile_start, tiles + 1);
     for (int64_t t = 0; t < tiles; t++) {

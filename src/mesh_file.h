@@ -46,6 +46,7 @@
 #include <stdbool.h>
 
 #include "mesh.h"
+#include "tile_graph.h"
 
 enum { RG_MESH_VERSION = 1 };
 
@@ -56,14 +57,6 @@ typedef struct {
     int sets, regions;
     char *set_name[RG_MAX_SETS], *region_name[RG_MAX_SETS];
 } rg_mesh_header;
-
-/* Which tiles share faces. */
-typedef struct {
-    int64_t tiles;
-    int64_t *start;     /* [tiles + 1] */
-    int64_t *neighbour; /* [start[tiles]] */
-    int32_t *faces;     /* [start[tiles]] */
-} rg_tile_graph;
 
 typedef struct {
     int parts;
@@ -107,9 +100,5 @@ rg_mesh *rg_mesh_file_read(const char *path);
  * renamed, so that `path` is never half a file. */
 void rg_mesh_file_write(const char *path, const rg_mesh *mesh, int partitions,
                         const rg_tile_partition *partition);
-
-/* The graph of the tiles of a mesh. Free with rg_tile_graph_free. */
-rg_tile_graph *rg_tile_graph_make(const rg_mesh *mesh);
-void rg_tile_graph_free(rg_tile_graph *g);
 
 #endif

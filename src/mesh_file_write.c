@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "error.h"
+#include "../kernels/layout.h"
 #include "h5_reason.h"
 #include "mem.h"
 #include "mesh_file.h"
@@ -209,7 +210,7 @@ static void put_vertices(const target *w, const rg_mesh *mesh) {
 }
 
 static void put_graph(const target *w, const rg_mesh *mesh) {
-    rg_tile_graph *g = rg_tile_graph_make(mesh);
+    rg_tile_graph *g = rg_tile_graph_make(mesh, rg_tile_elements(mesh->elements));
     put_whole(w, &rg_rows_tile_start, g->start, g->tiles + 1);
     put_whole(w, &rg_rows_tile_neighbour, g->neighbour, g->start[g->tiles]);
     put_whole(w, &rg_rows_tile_faces, g->faces, g->start[g->tiles]);

@@ -1,4 +1,4 @@
-/* The order of the elements: along a Hilbert curve through their centroids. */
+/* The order of the elements: along a Hilbert curve, so that consecutive elements form compact tiles. */
 #include "mesh.h"
 
 #include <math.h>
@@ -12,10 +12,13 @@
 /* Tiles a mesh should have: enough for a few ranks and threads to share evenly. */
 enum { FEWEST_TILES = 64 };
 
-struct place {
+/* Tiles fill blocks of either precision. */
+enum { WHOLE = 16 };
+
+typedef struct {
     uint64_t key; /* index on the curve */
-    rg_gid id;    /* number so far */
-};
+    rg_gid number;
+} place;
 
 void rg_mesh_box_around(const rg_mesh *mesh, double box[2][3]) {
     for (int i = 0; i < 3; i++) {
@@ -28,66 +31,98 @@ void rg_mesh_box_around(const rg_mesh *mesh, double box[2][3]) {
     }
 }
 
-static int by_key(const void *a, const void *b) {
-    const struct place *p = a, *q = b;
+/* Sums in integers: the result does not depend on the order of the elements. */
+void rg_mesh_mean_extent(const rg_mesh *mesh, const double box[2][3], double extent[3]) {
+    const double unit = 0x1p-30;
+    for (int i = 0; i < 3; i++) {
+        double size = box[1][i] - box[0][i];
+        int64_t sum = 0;
+#pragma omp parallel for schedule(static) reduction(+ : sum)
+        for (rg_gid e = 0; e < mesh->elements; e++) {
+            double low = INFINITY, high = -INFINITY;
+            for (int k = 0; k < 4; k++) {
+                double x = mesh->x[3 * mesh->corner[4 * e + k] + i];
+                low = fmin(low, x);
+                high = fmax(high, x);
+            }
+            sum += (int64_t)((high - low) / size / unit);
+        }
+        extent[i] = (double)sum * unit * size / (double)mesh->elements;
+    }
+}
+
+/* Space in units of elements, from the lower corner of the mesh: the curve runs through a cube there. */
+typedef struct {
+    double low[3], extent[3], edge;
+} curve;
+
+static curve make_curve(const rg_mesh *mesh) {
+    double box[2][3];
+    curve c = {.edge = 0};
+    rg_mesh_box_around(mesh, box);
+    rg_mesh_mean_extent(mesh, (const double(*)[3])box, c.extent);
+    for (int i = 0; i < 3; i++) {
+        c.low[i] = box[0][i];
+        c.edge = fmax(c.edge, (box[1][i] - box[0][i]) / c.extent[i]);
+    }
+    return c;
+}
+
+static uint64_t key_of(const rg_mesh *mesh, rg_gid e, const curve *c) {
+    static const double origin[3] = {0, 0, 0};
+    double at[3];
+    const rg_gid *corner = mesh->corner + 4 * e;
+    for (int i = 0; i < 3; i++) {
+        double centroid = 0.25 * ((mesh->x[3 * corner[0] + i] + mesh->x[3 * corner[1] + i]) +
+                                  (mesh->x[3 * corner[2] + i] + mesh->x[3 * corner[3] + i]));
+        at[i] = (centroid - c->low[i]) / c->extent[i];
+    }
+    return rg_hilbert_point(at, origin, c->edge);
+}
+
+static int along_curve(const void *a, const void *b) {
+    const place *p = a, *q = b;
     if (p->key != q->key) {
         return p->key < q->key ? -1 : 1;
     }
-    return (p->id > q->id) - (p->id < q->id);
+    return (p->number > q->number) - (p->number < q->number);
 }
 
-static uint64_t curve_index(const rg_mesh *mesh, rg_gid e, const double low[3], double edge) {
-    const rg_gid *c = mesh->corner + 4 * e;
-    double centroid[3];
-    for (int i = 0; i < 3; i++) {
-        centroid[i] = 0.25 * ((mesh->x[3 * c[0] + i] + mesh->x[3 * c[1] + i]) +
-                              (mesh->x[3 * c[2] + i] + mesh->x[3 * c[3] + i]));
-    }
-    return rg_hilbert_point(centroid, low, edge);
-}
-
-/* The curve runs through the cube around the mesh's box, not through the box stretched to a cube, which would
- * lengthen the ways between neighbours. */
-static struct place *find_places(const rg_mesh *mesh) {
-    double box[2][3];
-    rg_mesh_box_around(mesh, box);
-    double edge = fmax(box[1][0] - box[0][0], fmax(box[1][1] - box[0][1], box[1][2] - box[0][2]));
-    struct place *place = RG_NEW(struct place, (size_t)mesh->elements);
-    for (rg_gid e = 0; e < mesh->elements; e++) {
-        place[e] = (struct place){curve_index(mesh, e, box[0], edge), e};
-    }
-    qsort(place, (size_t)mesh->elements, sizeof *place, by_key);
-    return place;
-}
-
-/* Moves the rows of `*array`, one of `bytes` for each element, to their places. NULL stays NULL. */
-static void move_rows(void *array, size_t bytes, const struct place *place, rg_gid elements) {
-    char *old, *moved;
-    memcpy(&old, array, sizeof old);
-    if (old == NULL) {
+/* Moves records of `size` bytes to their places; there may be none. */
+static void permute(void *records, size_t size, const place *order, rg_gid count) {
+    if (records == NULL) {
         return;
     }
-    moved = rg_alloc((size_t)elements, bytes);
-    for (rg_gid e = 0; e < elements; e++) {
-        memcpy(moved + (size_t)e * bytes, old + (size_t)place[e].id * bytes, bytes);
+    char *from = rg_alloc((size_t)count, size), *to = records;
+    memcpy(from, to, (size_t)count * size);
+    for (rg_gid e = 0; e < count; e++) {
+        memcpy(to + (size_t)e * size, from + (size_t)order[e].number * size, size);
     }
-    rg_free(old);
-    memcpy(array, &moved, sizeof moved);
+    rg_free(from);
 }
 
+/* The curve runs through a cube, not through the mesh's box stretched to one, which would lengthen the ways
+ * between neighbours; but space is measured in elements, so that flat elements too make compact tiles. */
 void rg_mesh_sort(rg_mesh *mesh) {
-    struct place *place = find_places(mesh);
+    curve c = make_curve(mesh);
+    size_t count = (size_t)mesh->elements;
+    place *order = RG_NEW(place, count);
+#pragma omp parallel for schedule(static)
+    for (rg_gid e = 0; e < mesh->elements; e++) {
+        order[e] = (place){key_of(mesh, e, &c), e};
+    }
+    qsort(order, count, sizeof *order, along_curve);
     if (mesh->original == NULL) {
-        mesh->original = RG_NEW(rg_gid, (size_t)mesh->elements);
+        mesh->original = RG_NEW(rg_gid, count);
         for (rg_gid e = 0; e < mesh->elements; e++) {
             mesh->original[e] = e;
         }
     }
-    move_rows(&mesh->corner, 4 * sizeof *mesh->corner, place, mesh->elements);
-    move_rows(&mesh->set, 4 * sizeof *mesh->set, place, mesh->elements);
-    move_rows(&mesh->region, sizeof *mesh->region, place, mesh->elements);
-    move_rows(&mesh->original, sizeof *mesh->original, place, mesh->elements);
-    rg_free(place);
+    permute(mesh->corner, 4 * sizeof *mesh->corner, order, mesh->elements);
+    permute(mesh->set, 4 * sizeof *mesh->set, order, mesh->elements);
+    permute(mesh->region, sizeof *mesh->region, order, mesh->elements);
+    permute(mesh->original, sizeof *mesh->original, order, mesh->elements);
+    rg_free(order);
 }
 
 int rg_tile_elements(rg_gid elements) {
@@ -95,5 +130,5 @@ int rg_tile_elements(rg_gid elements) {
     if (tile >= RG_TILE) {
         return RG_TILE;
     }
-    return (int)(tile >= RG_LANES ? tile / RG_LANES * RG_LANES : tile > 0 ? tile : 1);
+    return (int)(tile >= WHOLE ? tile / WHOLE * WHOLE : tile > 0 ? tile : 1);
 }

@@ -1,5 +1,5 @@
-/* Distribution: rank 0 orders and packs the elements of each rank in turn and sends them in pieces of bounded
- * size, so that the whole mesh never exists twice. */
+/* Distribution: rank 0 deals out the tiles and sends each rank the elements of its own, tile by tile, so that
+ * the whole mesh never exists twice. */
 #include "mesh.h"
 
 #include <math.h>
@@ -8,44 +8,25 @@
 #include <string.h>
 
 #include "error.h"
-#include "hilbert.h"
 #include "mem.h"
 #include "tet.h"
 
-static const rg_gid piece = (1 << 20) / sizeof(rg_element); /* elements in a message of at most 1 MiB */
 static const rg_gid most_elements = 1 << 29; /* on a rank: links must fit 32 bits, see layout.h */
-
-/* Place of an element in the sweep of its rank; sorted by key, then by id. The key is the element's index on
- * the Hilbert curve, with the top bit set unless it shares a face with another rank. */
-struct place {
-    uint64_t key;
-    rg_gid id;
-};
-
-static const uint64_t inner_bit = UINT64_C(1) << 63;
 
 /* What rank 0 packs from. */
 struct source {
     const rg_mesh *mesh;
-    int32_t *part;       /* [elements]: owner */
-    double *volume;      /* [elements] m^3, computed once so that all ranks see the same bits */
-    struct place *place; /* [elements]: those of rank 0 first, then those of rank 1, ... */
-    rg_gid *start;       /* [ranks + 1]: where each rank's places begin */
+    int tile;
+    rg_gid tiles;
+    int32_t *owner; /* [tiles] */
+    double *volume; /* [elements] m^3, computed once so that all ranks see the same bits */
+    rg_gid *list;  /* [tiles]: those of rank 0 first, then those of rank 1, ... in the order of their sweep */
+    rg_gid *start; /* [ranks + 1]: where each rank's tiles begin */
+    rg_lid *shared; /* [ranks]: how many of them share a face with another rank */
 };
 
 static const double *corner(const rg_mesh *mesh, rg_gid e, int i) {
     return mesh->x + 3 * mesh->corner[4 * e + i];
-}
-
-static void find_box(const rg_mesh *mesh, double box[2][3]) {
-    for (int i = 0; i < 3; i++) {
-        box[0][i] = INFINITY;
-        box[1][i] = -INFINITY;
-        for (rg_gid v = 0; v < mesh->vertices; v++) {
-            box[0][i] = fmin(box[0][i], mesh->x[3 * v + i]);
-            box[1][i] = fmax(box[1][i], mesh->x[3 * v + i]);
-        }
-    }
 }
 
 static rg_gid count_interfaces(const rg_mesh *mesh) {
@@ -68,79 +49,64 @@ static double *compute_volumes(const rg_mesh *mesh) {
     return volume;
 }
 
-static bool shares_face(const struct source *s, rg_gid e) {
-    for (int f = 0; f < 4; f++) {
-        rg_gid other = s->mesh->neighbour[4 * e + f];
-        if (other >= 0 && s->part[other] != s->part[e]) {
+static rg_gid tile_begin(const struct source *s, rg_gid t) {
+    rg_gid begin = t * s->tile;
+    return begin < s->mesh->elements ? begin : s->mesh->elements;
+}
+
+static bool shares_face(const struct source *s, rg_gid t) {
+    for (rg_gid slot = 4 * tile_begin(s, t); slot < 4 * tile_begin(s, t + 1); slot++) {
+        rg_gid other = s->mesh->neighbour[slot];
+        if (other >= 0 && s->owner[other / s->tile] != s->owner[t]) {
             return true;
         }
     }
     return false;
 }
 
-static uint64_t sweep_key(const struct source *s, rg_gid e, const double low[3], double edge) {
-    double centroid[3];
-    for (int i = 0; i < 3; i++) {
-        centroid[i] = 0.25 * ((corner(s->mesh, e, 0)[i] + corner(s->mesh, e, 1)[i]) +
-                              (corner(s->mesh, e, 2)[i] + corner(s->mesh, e, 3)[i]));
+/* Lists each rank's tiles, those that share a face with another rank first. */
+static void order(struct source *s, int ranks) {
+    s->start = RG_NEW(rg_gid, (size_t)ranks + 1);
+    s->shared = RG_NEW(rg_lid, (size_t)ranks);
+    s->list = RG_NEW(rg_gid, (size_t)s->tiles);
+    bool *outer = RG_NEW(bool, (size_t)s->tiles);
+    for (rg_gid t = 0; t < s->tiles; t++) {
+        outer[t] = ranks > 1 && shares_face(s, t);
+        s->shared[s->owner[t]] += outer[t];
+        s->start[s->owner[t] + 1]++;
     }
-    return rg_hilbert_point(centroid, low, edge) | (shares_face(s, e) ? 0 : inner_bit);
-}
-
-static int by_key(const void *a, const void *b) {
-    const struct place *p = a, *q = b;
-    if (p->key != q->key) {
-        return p->key < q->key ? -1 : 1;
-    }
-    return (p->id > q->id) - (p->id < q->id);
-}
-
-/* start[r] = number of elements of all ranks before r. */
-static rg_gid *count_parts(const struct source *s, int ranks) {
-    rg_gid *start = RG_NEW(rg_gid, (size_t)ranks + 1);
-    for (rg_gid e = 0; e < s->mesh->elements; e++) {
-        start[s->part[e] + 1]++;
-    }
+    rg_gid *next = RG_NEW(rg_gid, 2 * (size_t)ranks);
     for (int r = 0; r < ranks; r++) {
-        if (start[r + 1] > most_elements) {
+        if (s->start[r + 1] > most_elements / s->tile) {
             rg_fatal(RG_USAGE, "mesh: %lld elements on one rank, at most %lld are possible: use more ranks",
-                     (long long)start[r + 1], (long long)most_elements);
+                     (long long)(s->start[r + 1] * s->tile), (long long)most_elements);
         }
-        start[r + 1] += start[r];
+        s->start[r + 1] += s->start[r];
+        next[2 * r] = s->start[r];
+        next[2 * r + 1] = s->start[r] + s->shared[r];
     }
-    return start;
-}
-
-/* Sorts the elements by rank and along the sweep. The curve runs through the cube around the mesh's box, not
- * through the box stretched to a cube, which would lengthen the ways between neighbours. */
-static void order(struct source *s, int ranks, double box[2][3]) {
-    double edge = fmax(box[1][0] - box[0][0], fmax(box[1][1] - box[0][1], box[1][2] - box[0][2]));
-    s->start = count_parts(s, ranks);
-    s->place = RG_NEW(struct place, (size_t)s->mesh->elements);
-    rg_gid *next = RG_NEW(rg_gid, (size_t)ranks);
-    memcpy(next, s->start, (size_t)ranks * sizeof *next);
-    for (rg_gid e = 0; e < s->mesh->elements; e++) {
-        s->place[next[s->part[e]]++] = (struct place){sweep_key(s, e, box[0], edge), e};
+    for (rg_gid t = 0; t < s->tiles; t++) {
+        s->list[next[2 * s->owner[t] + !outer[t]]++] = t;
     }
     rg_free(next);
-    for (int r = 0; r < ranks; r++) {
-        qsort(s->place + s->start[r], (size_t)(s->start[r + 1] - s->start[r]), sizeof *s->place, by_key);
-    }
+    rg_free(outer);
 }
 
-static struct source prepare(const rg_mesh *mesh, int ranks, double box[2][3]) {
-    struct source s = {.mesh = mesh, .part = RG_NEW(int32_t, (size_t)mesh->elements)};
-    rg_mesh_partition(mesh, ranks, s.part);
-    order(&s, ranks, box);
+static struct source prepare(const rg_mesh *mesh, int tile, int ranks) {
+    struct source s = {.mesh = mesh, .tile = tile, .tiles = (mesh->elements + tile - 1) / tile};
+    s.owner = RG_NEW(int32_t, (size_t)s.tiles);
+    rg_mesh_partition(mesh, tile, ranks, s.owner);
+    order(&s, ranks);
     s.volume = compute_volumes(mesh);
     return s;
 }
 
 static void release(struct source *s) {
-    rg_free(s->part);
+    rg_free(s->owner);
     rg_free(s->volume);
-    rg_free(s->place);
+    rg_free(s->list);
     rg_free(s->start);
+    rg_free(s->shared);
 }
 
 static void pack_element(const struct source *s, rg_gid e, rg_element *out) {
@@ -151,62 +117,74 @@ static void pack_element(const struct source *s, rg_gid e, rg_element *out) {
         memcpy(out->x[f], corner(s->mesh, e, f), sizeof out->x[f]);
         out->neighbour[f] = other;
         out->other_volume[f] = s->volume[other >= 0 ? other : e];
-        out->owner[f] = other >= 0 ? s->part[other] : -1;
+        out->owner[f] = other >= 0 ? s->owner[other / s->tile] : -1;
         out->face[f] = s->mesh->face[4 * e + f];
         out->set[f] = s->mesh->set[4 * e + f];
     }
 }
 
-/* Packs places [begin, end) to `out`. */
-static void pack(const struct source *s, rg_gid begin, rg_gid end, rg_element *out) {
-    for (rg_gid p = begin; p < end; p++) {
-        pack_element(s, s->place[p].id, out + (p - begin));
+/* Packs tile t to `out`; returns its number of elements. */
+static rg_lid pack_tile(const struct source *s, rg_gid t, rg_element *out) {
+    rg_gid begin = tile_begin(s, t), end = tile_begin(s, t + 1);
+    for (rg_gid e = begin; e < end; e++) {
+        pack_element(s, e, out + (e - begin));
     }
+    return (rg_lid)(end - begin);
 }
 
-static rg_gid lesser(rg_gid a, rg_gid b) {
-    return a < b ? a : b;
-}
-
+/* One message a tile: of bounded size, whatever the mesh. */
 static void send_parts(const struct source *s, int ranks, MPI_Comm comm) {
-    rg_element *buffer = RG_NEW(rg_element, (size_t)piece);
-    for (int r = 1; r < ranks; r++) {
-        for (rg_gid begin = s->start[r]; begin < s->start[r + 1]; begin += piece) {
-            rg_gid end = lesser(begin + piece, s->start[r + 1]);
-            pack(s, begin, end, buffer);
-            MPI_Send(buffer, (int)((size_t)(end - begin) * sizeof *buffer), MPI_BYTE, r, 0, comm);
-        }
+    rg_element *buffer = RG_NEW(rg_element, (size_t)s->tile);
+    for (rg_gid k = s->start[1]; k < s->start[ranks]; k++) {
+        rg_lid count = pack_tile(s, s->list[k], buffer);
+        MPI_Send(buffer, (int)((size_t)count * sizeof *buffer), MPI_BYTE, s->owner[s->list[k]], 0, comm);
     }
     rg_free(buffer);
 }
 
 static void receive_part(rg_part *own, MPI_Comm comm) {
-    for (rg_gid begin = 0; begin < own->elements; begin += piece) {
-        rg_gid count = lesser(piece, own->elements - begin);
-        MPI_Recv(own->element + begin, (int)((size_t)count * sizeof *own->element), MPI_BYTE, 0, 0, comm,
-                 MPI_STATUS_IGNORE);
+    rg_element *to = own->element;
+    for (rg_lid t = 0; t < own->tiles; t++) {
+        rg_lid count = rg_tile_size(own, own->tile_id[t]);
+        MPI_Recv(to, (int)((size_t)count * sizeof *to), MPI_BYTE, 0, 0, comm, MPI_STATUS_IGNORE);
+        to += count;
     }
 }
 
-/* Tells each rank how many elements it gets and how many of them share a face with another rank; `s` on rank
- * 0. */
-static void share_counts(const struct source *s, rg_part *own, int rank, int ranks, MPI_Comm comm) {
-    int32_t *count = NULL, mine[2];
+static void pack_own(const struct source *s, rg_part *own) {
+    rg_lid at = 0;
+    for (rg_lid t = 0; t < own->tiles; t++) {
+        at += pack_tile(s, own->tile_id[t], own->element + at);
+    }
+}
+
+/* Tells each rank which tiles it gets; `s` on rank 0. */
+static void share_tiles(const struct source *s, rg_part *own, int rank, int ranks, MPI_Comm comm) {
+    rg_lid *count = NULL, mine[2];
+    int *size = NULL, *at = NULL;
     if (rank == 0) {
-        count = RG_NEW(int32_t, 2 * (size_t)ranks);
+        count = RG_NEW(rg_lid, 2 * (size_t)ranks);
+        size = RG_NEW(int, (size_t)ranks);
+        at = RG_NEW(int, (size_t)ranks);
         for (int r = 0; r < ranks; r++) {
-            rg_gid p = s->start[r];
-            while (p < s->start[r + 1] && (s->place[p].key & inner_bit) == 0) {
-                p++;
-            }
-            count[2 * r] = (int32_t)(s->start[r + 1] - s->start[r]);
-            count[2 * r + 1] = (int32_t)(p - s->start[r]);
+            at[r] = (int)s->start[r];
+            size[r] = (int)(s->start[r + 1] - s->start[r]);
+            count[2 * r] = size[r];
+            count[2 * r + 1] = s->shared[r];
         }
     }
     MPI_Scatter(count, 2, MPI_INT32_T, mine, 2, MPI_INT32_T, 0, comm);
-    rg_free(count);
-    own->elements = mine[0];
+    own->tiles = mine[0];
     own->boundary = mine[1];
+    own->tile_id = RG_NEW(rg_gid, (size_t)own->tiles);
+    MPI_Scatterv(rank == 0 ? s->list : NULL, size, at, MPI_INT64_T, own->tile_id, own->tiles, MPI_INT64_T, 0,
+                 comm);
+    rg_free(count);
+    rg_free(size);
+    rg_free(at);
+    for (rg_lid t = 0; t < own->tiles; t++) {
+        own->elements += rg_tile_size(own, own->tile_id[t]);
+    }
 }
 
 static void share_names(const rg_mesh *mesh, rg_part *own, int rank, MPI_Comm comm) {
@@ -222,7 +200,7 @@ static void share_names(const rg_mesh *mesh, rg_part *own, int rank, MPI_Comm co
     }
 }
 
-rg_part *rg_part_distribute(const rg_mesh *mesh, MPI_Comm comm) {
+rg_part *rg_part_distribute(const rg_mesh *mesh, int tile, MPI_Comm comm) {
     int rank, ranks;
     MPI_Comm_rank(comm, &rank);
     MPI_Comm_size(comm, &ranks);
@@ -232,20 +210,22 @@ rg_part *rg_part_distribute(const rg_mesh *mesh, MPI_Comm comm) {
         own->total = mesh->elements;
         own->interfaces = count_interfaces(mesh);
         own->sets = mesh->sets;
-        find_box(mesh, own->box);
-        s = prepare(mesh, ranks, own->box);
+        own->tile = tile;
+        rg_mesh_box_around(mesh, own->box);
+        s = prepare(mesh, tile, ranks);
     }
     MPI_Bcast(&own->total, 1, MPI_INT64_T, 0, comm);
     MPI_Bcast(&own->interfaces, 1, MPI_INT64_T, 0, comm);
+    MPI_Bcast(&own->tile, 1, MPI_INT, 0, comm);
     MPI_Bcast(own->box, 6, MPI_DOUBLE, 0, comm);
     share_names(mesh, own, rank, comm);
-    share_counts(&s, own, rank, ranks, comm);
+    share_tiles(&s, own, rank, ranks, comm);
     if (rank == 0) {
         send_parts(&s, ranks, comm);
     }
     own->element = RG_NEW(rg_element, (size_t)own->elements);
     if (rank == 0) {
-        pack(&s, 0, own->elements, own->element);
+        pack_own(&s, own);
         release(&s);
     } else {
         receive_part(own, comm);
@@ -260,6 +240,8 @@ void rg_part_free(rg_part *part) {
     for (int s = 0; s < part->sets; s++) {
         rg_free(part->set_name[s]);
     }
+    rg_free(part->tile_id);
+    rg_free(part->original);
     rg_free(part->element);
     rg_free(part);
 }

@@ -11,6 +11,7 @@
 #include "files.h"
 #include "mem.h"
 #include "quadrature.h"
+#include "tile.h"
 
 enum { VALUES = 12, CAPACITY = 256 }; /* per probe and sample; samples between two flushes */
 
@@ -61,7 +62,48 @@ static void write_header(rg_probes *p, const rg_case *c, const char *dir) {
     fputc('\n', p->file);
 }
 
-rg_probes *rg_probes_open(const rg_solver *s, const char *dir) {
+/* Stress at barycentric point l: linear through the four Gauss points. */
+static void stress_at(const rg_solver *s, const rg_workspace *w, size_t slot, const double l[4],
+                      double out[6]) {
+    _Alignas(64) double cauchy[RG_GAUSS * 6 * RG_LANES];
+    const rg_tile *t = rg_tile_of(s->domain, slot);
+    size_t block = slot / RG_LANES - t->begin;
+    rg_bulk_args bulk = rg_tile_bulk(s, t, w);
+    rg_bulk_state_args args = {.bulk = &bulk, .cauchy = cauchy};
+    s->kernels->bulk_state(&args, block, block + 1);
+    for (size_t k = 0; k < 6; k++) {
+        out[k] = 0;
+        for (size_t g = 0; g < RG_GAUSS; g++) { /* sum_i l_i e_ig, e_ig = (delta_ig - a)/(b - a) */
+            out[k] += (l[g] - RG_GAUSS_A) / RG_GAUSS_BA * cauchy[(g * 6 + k) * RG_LANES + slot % RG_LANES];
+        }
+    }
+}
+
+static void sample(const rg_solver *s, const rg_workspace *w, size_t slot, const double l[4],
+                   double out[VALUES]) {
+    double N[RG_NODES];
+    rg_shape(l, N);
+    for (int c = 0; c < 3; c++) {
+        out[c] = out[3 + c] = 0;
+        for (int n = 0; n < RG_NODES; n++) {
+            out[c] += N[n] * s->u[rg_node_index(slot, n, c)];
+            out[3 + c] += N[n] * s->now[rg_node_index(slot, n, c)];
+        }
+    }
+    stress_at(s, w, slot, l, out + 6);
+}
+
+/* Tiles are watched by several threads at once, each with its own probes. */
+static void watch(void *context, rg_solver *s, size_t tile, const rg_workspace *w) {
+    rg_probes *p = context;
+    for (int i = 0; i < p->probes; i++) {
+        if (p->slot[i] >= 0 && (size_t)p->slot[i] / RG_LANES / s->domain->tile_blocks == tile) {
+            sample(s, w, (size_t)p->slot[i], p->at[i], p->value + (p->samples * p->probes + i) * VALUES);
+        }
+    }
+}
+
+rg_probes *rg_probes_open(rg_solver *s, const char *dir) {
     const rg_case *c = s->input;
     rg_probes *p = RG_NEW(rg_probes, 1);
     size_t n = (size_t)c->output.probes, size = CAPACITY * n * VALUES + 1;
@@ -73,51 +115,23 @@ rg_probes *rg_probes_open(const rg_solver *s, const char *dir) {
     p->total = RG_NEW(double, size);
     for (size_t i = 0; i < n; i++) {
         p->slot[i] = locate(s, c->output.probe[i].at, p->at[i]);
+        if (p->slot[i] >= 0) {
+            s->watched[(size_t)p->slot[i] / RG_LANES / s->domain->tile_blocks] = 1;
+        }
     }
+    s->watch = watch;
+    s->watch_context = p;
     if (p->rank == 0 && n > 0) {
         write_header(p, c, dir);
     }
     return p;
 }
 
-/* Stress at barycentric point l: linear through the four Gauss points. */
-static void stress_at(const rg_solver *s, size_t slot, const double l[4], double out[6]) {
-    _Alignas(64) double cauchy[RG_GAUSS * 6 * RG_LANES];
-    size_t block = slot / RG_LANES;
-    rg_bulk_state_args args = {.bulk = &s->bulk, .cauchy = cauchy};
-    s->kernels->bulk_state(&args, block, block + 1);
-    for (size_t k = 0; k < 6; k++) {
-        out[k] = 0;
-        for (size_t g = 0; g < RG_GAUSS; g++) { /* sum_i l_i e_ig, e_ig = (delta_ig - a)/(b - a) */
-            out[k] += (l[g] - RG_GAUSS_A) / RG_GAUSS_BA * cauchy[(g * 6 + k) * RG_LANES + slot % RG_LANES];
-        }
-    }
-}
-
-static void sample(rg_solver *s, size_t slot, const double l[4], double out[VALUES]) {
-    double N[RG_NODES];
-    rg_shape(l, N);
-    rg_solver_block_velocity_now(s, slot / RG_LANES);
-    for (int c = 0; c < 3; c++) {
-        out[c] = out[3 + c] = 0;
-        for (int n = 0; n < RG_NODES; n++) {
-            out[c] += N[n] * s->u[rg_node_index(slot, n, c)];
-            out[3 + c] += N[n] * s->scratch[rg_node_index(slot, n, c)];
-        }
-    }
-    stress_at(s, slot, l, out + 6);
-}
-
-void rg_probes_sample(rg_probes *p, rg_solver *s) {
+void rg_probes_next(rg_probes *p, double time) {
     if (p->probes == 0) {
         return;
     }
-    p->time[p->samples] = s->time;
-    for (int i = 0; i < p->probes; i++) {
-        if (p->slot[i] >= 0) {
-            sample(s, (size_t)p->slot[i], p->at[i], p->value + (p->samples * p->probes + i) * VALUES);
-        }
-    }
+    p->time[p->samples] = time;
     if (++p->samples == CAPACITY) {
         rg_probes_flush(p);
     }

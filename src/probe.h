@@ -7,11 +7,12 @@
 typedef struct rg_probes rg_probes;
 
 /* Finds the elements that hold the probes (of several, the one with the lowest number) and, on rank 0,
- * creates dir/history.csv if there are any. Collective. */
-rg_probes *rg_probes_open(const rg_solver *s, const char *dir);
+ * creates dir/history.csv if there are any. From then on the solver's kicks record what they see there.
+ * Collective. */
+rg_probes *rg_probes_open(rg_solver *s, const char *dir);
 
-/* Records the current state. Collective only when the buffer is full. */
-void rg_probes_sample(rg_probes *p, rg_solver *s);
+/* Closes the record of a kick at `time` (s). Collective only when the buffer is full. */
+void rg_probes_next(rg_probes *p, double time);
 
 /* Writes what is buffered. Collective. */
 void rg_probes_flush(rg_probes *p);

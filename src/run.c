@@ -42,11 +42,11 @@ static double step_size(const run *r, double stiffening) {
         dt /= sqrt(exp2(ceil(4 * log2(stiffening)) / 4));
     }
     double left = r->input->time.end - r->solver->time;
-    return left < dt * (1 + 1e-9) ? left : dt;
+    return left > 0 && left < dt * (1 + 1e-9) ? left : dt;
 }
 
 /* The element whose state is not finite, or the lowest-numbered of several. */
-static void locate_failure(run *r) {
+static void locate_failure(run *r, int64_t step, double time) {
     const rg_solver *s = r->solver;
     rg_gid id = INT64_MAX, first;
     double x[3] = {0, 0, 0};
@@ -68,7 +68,7 @@ static void locate_failure(run *r) {
              "the state is not finite (or an element is inside out) at step %" PRId64
              ", time %.6g s, dt %.4g s: element %" PRId64
              " at (%.4g, %.4g, %.4g) m; last good output at %.6g s",
-             s->step, s->time, s->dt, first, x[0], x[1], x[2], r->good_time);
+             step, time, s->dt, first, x[0], x[1], x[2], r->good_time);
 }
 
 static bool output_due(run *r) {
@@ -93,16 +93,15 @@ static bool done(const run *r) {
 static void output(run *r) {
     const rg_energy *e = rg_ledger_take(&r->ledger, r->solver);
     rg_csv_energy(r->energy, e);
-    if (!isfinite(r->solver->stiffening_anywhere)) {
-        locate_failure(r);
-    } else if (!(r->ledger.worst <= r->input->output.energy_limit)) {
+    if (r->failure[0] == '\0' && !(r->ledger.worst <= r->input->output.energy_limit)) {
         snprintf(r->failure, sizeof r->failure,
                  "the energy error %.3g passed the limit %.3g (output.energy_limit) at step %" PRId64
                  ", time %.6g s; the time step is set by element %" PRId64
                  "; last good output at %.6g s; a smaller time.safety may help",
                  e->error, r->input->output.energy_limit, e->step, e->time, r->solver->limiting,
                  r->good_time);
-    } else {
+    }
+    if (r->failure[0] == '\0') {
         r->good_time = e->time;
     }
     rg_probes_flush(r->probes);
@@ -110,35 +109,46 @@ static void output(run *r) {
     rg_progress_show(&r->progress, r->solver, e);
 }
 
-static void time_loop(run *r) {
+/* Forces of the current state and, where it is to be output, that; then the step to the next one. The time
+ * step follows the stiffening of the state before, which all ranks know by now: one step is no time for it to
+ * change by more than any sensible safety. Returns whether to go on. */
+static bool advance(run *r, double *other) {
     rg_solver *s = r->solver;
-    bool fresh = true; /* the current state has been output */
-    output(r);
-    rg_probes_sample(r->probes, s);
+    double dt = step_size(r, s->stiffening_anywhere), time = s->time;
+    int64_t step = s->step;
+    bool last = done(r), fresh = output_due(r) || last;
+    if (fresh) {
+        rg_solver_kick(s, dt);
+    } else {
+        rg_solver_step(s, dt);
+    }
+    rg_probes_next(r->probes, time);
+    if (!isfinite(s->stiffening_anywhere)) {
+        locate_failure(r, step, time);
+    }
+    if (fresh) {
+        double begin = MPI_Wtime();
+        output(r);
+        *other += MPI_Wtime() - begin;
+    }
+    if (r->failure[0] != '\0' || last) {
+        return false;
+    }
+    if (fresh) {
+        rg_solver_drift(s);
+    }
+    if (s->step == 1) {
+        r->summary.dt_first = s->dt;
+    }
+    return true;
+}
+
+static void time_loop(run *r) {
     double started = MPI_Wtime(), other = 0;
-    while (!done(r) && r->failure[0] == '\0') {
-        double stiffening = s->stiffening_anywhere;
-        if (!isfinite(stiffening)) {
-            locate_failure(r);
-            break;
-        }
-        rg_solver_step(s, step_size(r, stiffening));
-        if (s->step == 1) {
-            r->summary.dt_first = s->dt;
-        }
-        fresh = output_due(r);
-        rg_probes_sample(r->probes, s);
-        if (fresh) {
-            double begin = MPI_Wtime();
-            output(r);
-            other += MPI_Wtime() - begin;
-        }
+    while (advance(r, &other)) {
     }
     r->summary.loop_seconds = MPI_Wtime() - started - other;
     r->summary.output_seconds = other;
-    if (!fresh && r->failure[0] == '\0') {
-        output(r);
-    }
 }
 
 static void open_outputs(run *r) {

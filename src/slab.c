@@ -98,6 +98,19 @@ void rg_slab_send(const rg_slab *s, int values, const double *in, double *out) {
     MPI_Type_free(&record);
 }
 
+size_t rg_slab_row(const rg_slab *s, const rg_domain *d, rg_gid id) {
+    size_t low = 0, high = s->own;
+    while (low < high) {
+        size_t middle = low + (high - low) / 2;
+        if (d->id[s->slot[middle]] < id) {
+            low = middle + 1;
+        } else {
+            high = middle;
+        }
+    }
+    return low;
+}
+
 void rg_slab_free(rg_slab *s) {
     if (s == NULL) {
         return;

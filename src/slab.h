@@ -21,6 +21,9 @@ rg_slab *rg_slab_make(const rg_domain *d, rg_gid total, MPI_Comm comm);
 /* Collective: in[own][values], in the order of `slot`, becomes out[count][values] in global order. */
 void rg_slab_send(const rg_slab *s, int values, const double *in, double *out);
 
+/* Row of own element `id` in the order of `slot`. */
+size_t rg_slab_row(const rg_slab *s, const rg_domain *d, rg_gid id);
+
 void rg_slab_free(rg_slab *s);
 
 #endif

@@ -1,9 +1,12 @@
 #include "snapshot.h"
 
+#include <omp.h>
+
 #include "crack_surface.h"
 #include "element.h"
 #include "mem.h"
 #include "principal.h"
+#include "tile.h"
 
 enum { NODAL = 3 * RG_NODES }; /* values of the largest record */
 
@@ -68,20 +71,31 @@ static void write_nodal(rg_snapshots *w, const rg_solver *s, const char *name, c
     rg_writer_volume(w->writer, name, unit, RG_CENTER_NODE, 3, w->sorted);
 }
 
-/* Mean Cauchy stress, mean stress and principal stresses of an element: ten values. */
-static void element_stress(rg_solver *s, size_t slot, double out[10]) {
-    _Alignas(64) double cauchy[RG_GAUSS * 6 * RG_LANES];
-    size_t block = slot / RG_LANES, lane = slot % RG_LANES;
-    rg_bulk_state_args args = {.bulk = &s->bulk, .cauchy = cauchy};
-    s->kernels->bulk_state(&args, block, block + 1);
+/* Mean Cauchy stress, mean stress and principal stresses of an element, from the stresses at its Gauss
+ * points: ten values. */
+static void element_stress(const double *cauchy, double out[10]) {
     for (size_t k = 0; k < 6; k++) {
         out[k] = 0;
         for (size_t g = 0; g < RG_GAUSS; g++) {
-            out[k] += cauchy[(g * 6 + k) * RG_LANES + lane] / RG_GAUSS;
+            out[k] += cauchy[(g * 6 + k) * RG_LANES] / RG_GAUSS;
         }
     }
     out[6] = (out[0] + out[1] + out[2]) / 3;
     rg_principal(out, out + 7);
+}
+
+/* Stresses of tile t, to its consecutive records. */
+static void tile_stresses(rg_snapshots *w, const rg_solver *s, const rg_tile *t, double *cauchy) {
+    const rg_workspace *work = &s->work[omp_get_thread_num()];
+    size_t row = rg_slab_row(w->slab, s->domain, t->first), at = t->begin * RG_LANES;
+    rg_bulk_args bulk = rg_tile_bulk(s, t, work);
+    rg_bulk_state_args args = {.bulk = &bulk, .cauchy = cauchy};
+    rg_tile_receive(s, t, work);
+    s->kernels->bulk_state(&args, 0, rg_tile_eblocks(t));
+    for (size_t i = 0; at + i < t->end * RG_LANES && s->domain->id[at + i] >= 0; i++) {
+        element_stress(cauchy + i / RG_LANES * RG_GAUSS * 6 * RG_LANES + i % RG_LANES,
+                       w->record + 10 * (row + i));
+    }
 }
 
 static void write_part(rg_snapshots *w, const char *name, int components, int from, double *part) {
@@ -94,9 +108,15 @@ static void write_part(rg_snapshots *w, const char *name, int components, int fr
 }
 
 static void write_stresses(rg_snapshots *w, rg_solver *s) {
-#pragma omp parallel for schedule(static)
-    for (size_t i = 0; i < w->slab->own; i++) {
-        element_stress(s, (size_t)w->slab->slot[i], w->record + 10 * i);
+    const rg_domain *d = s->domain;
+#pragma omp parallel
+    {
+        double *cauchy = RG_NEW(double, d->tile_blocks *RG_GAUSS * 6 * RG_LANES);
+#pragma omp for schedule(static)
+        for (size_t t = 0; t < d->tiles; t++) {
+            tile_stresses(w, s, &d->tile[t], cauchy);
+        }
+        rg_free(cauchy);
     }
     send(w, 10);
     double *part = w->sorted + 10 * w->slab->count; /* behind the ten values each */
@@ -140,9 +160,7 @@ void rg_snapshots_write(rg_snapshots *w, rg_solver *s) {
         write_nodal(w, s, "displacement", "m", s->u);
     }
     if (w->fields & RG_FIELD_VELOCITY) {
-        rg_exact_sum unused = {0};
-        rg_solver_velocity_now(s, &unused);
-        write_nodal(w, s, "velocity", "m/s", s->scratch);
+        write_nodal(w, s, "velocity", "m/s", s->now);
     }
     if (w->fields & (RG_FIELD_STRESS | RG_FIELD_MEAN | RG_FIELD_PRINCIPAL)) {
         write_stresses(w, s);

@@ -17,7 +17,7 @@ typedef struct {
  * Collective. */
 rg_snapshots *rg_snapshots_open(const rg_solver *s);
 
-/* Writes the current state. Collective. */
+/* Writes the current state, between its kick and its drift. Collective. */
 void rg_snapshots_write(rg_snapshots *w, rg_solver *s);
 
 void rg_snapshots_close(rg_snapshots *w);

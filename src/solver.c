@@ -8,60 +8,50 @@
 #include "error.h"
 #include "mem.h"
 #include "mesh_case.h"
-
-/* Elements of a tile: about 0.5 MB of fields, so that the interfaces inside find their tractions in the
- * cache. */
-enum { TILE_ELEMENTS = 256 };
+#include "patch.h"
+#include "tile.h"
 
 /* ---- Set-up ---- */
 
-static size_t displacement_index(int32_t link, int k) {
-    return rg_node_index((size_t)link / RG_FACES, rg_face_node[link % RG_FACES][k / 3], k % 3);
-}
-
-static size_t traction_index(int32_t link, int k) {
-    return rg_traction_index((size_t)link / RG_FACES, link % RG_FACES, k / 3, k % 3);
-}
-
-static void lame(const rg_case *c, double *lambda, double *mu) {
-    double e = c->material.young, nu = c->material.poisson;
-    *lambda = e * nu / ((1 + nu) * (1 - 2 * nu));
-    *mu = e / (2 * (1 + nu));
-}
-
 static void allocate_fields(rg_solver *s) {
     const rg_domain *d = s->domain;
-    size_t all = d->blocks + d->ghost_blocks, faces = d->iblocks + 1;
-    s->u = RG_NEW(double, all *RG_NODE_BLOCK);
-    s->velocity = RG_NEW(double, d->blocks *RG_NODE_BLOCK);
-    s->scratch = RG_NEW(double, d->blocks *RG_NODE_BLOCK);
-    s->force = RG_NEW(double, d->blocks *RG_NODE_BLOCK);
-    s->traction = RG_NEW(double, all *RG_TRACTION_BLOCK);
-    s->stiffening = RG_NEW(double, d->blocks *RG_LANES);
-    s->tile_stiffening = RG_NEW(double, d->tiles + 1);
-    s->iforce = RG_NEW(double, faces *RG_IFORCE_BLOCK);
-    s->crack = RG_NEW(double, faces *RG_CRACK_BLOCK);
-    s->cracked = RG_NEW(uint8_t, d->blocks + 1);
-    s->broken = RG_NEW(uint8_t, faces * RG_LANES);
-    s->unlinked = RG_NEW(uint8_t, faces * RG_LANES);
-    s->active = RG_NEW(uint8_t, faces);
+    size_t blocks = d->blocks, rows = d->own_rows + d->shared;
+    s->u = RG_NEW(double, blocks *RG_NODE_BLOCK);
+    s->velocity = RG_NEW(double, blocks *RG_NODE_BLOCK);
+    s->now = RG_NEW(double, blocks *RG_NODE_BLOCK);
+    s->stiffening = RG_NEW(double, blocks *RG_LANES);
+    s->tile_stiffening = RG_NEW(double, d->tiles);
+    s->crack = rg_alloc_sparse(d->iblocks * RG_CRACK_BLOCK, sizeof(double));
+    s->crack_stride = RG_CRACK_BLOCK;
+    s->cracked = RG_NEW(uint8_t, blocks);
+    s->broken = RG_NEW(uint8_t, d->iblocks * RG_LANES);
+    s->unlinked = RG_NEW(uint8_t, d->iblocks * RG_LANES);
+    s->active = RG_NEW(uint8_t, d->iblocks);
+    s->rows[0] = RG_NEW(double, rows *RG_TRACE_ROW);
+    s->rows[1] = RG_NEW(double, rows *RG_TRACE_ROW);
+    s->tractions = RG_NEW(double, rows *RG_SEAM_ROW);
+    s->watched = RG_NEW(uint8_t, d->tiles);
+    s->work = RG_NEW(rg_workspace, (size_t)s->threads);
 }
 
-static void place_tile(rg_solver *s, const rg_tile *tile) {
-    size_t b = tile->begin, n = tile->end - b, i = tile->ibegin, m = tile->iend - i;
-    memset(s->u + b * RG_NODE_BLOCK, 0, n * RG_NODE_BLOCK * sizeof(double));
-    memset(s->velocity + b * RG_NODE_BLOCK, 0, n * RG_NODE_BLOCK * sizeof(double));
-    memset(s->scratch + b * RG_NODE_BLOCK, 0, n * RG_NODE_BLOCK * sizeof(double));
-    memset(s->force + b * RG_NODE_BLOCK, 0, n * RG_NODE_BLOCK * sizeof(double));
-    memset(s->traction + b * RG_TRACTION_BLOCK, 0, n * RG_TRACTION_BLOCK * sizeof(double));
-    memset(s->iforce + i * RG_IFORCE_BLOCK, 0, m * RG_IFORCE_BLOCK * sizeof(double));
+static void place_tile(rg_solver *s, const rg_tile *t) {
+    size_t at = t->begin * RG_NODE_BLOCK, bytes = rg_tile_eblocks(t) * RG_NODE_BLOCK * sizeof(double);
+    size_t seams = rg_tile_seams(t) * RG_LANES * sizeof(double);
+    memset(s->u + at, 0, bytes);
+    memset(s->velocity + at, 0, bytes);
+    memset(s->tractions + t->row * RG_SEAM_ROW, 0, seams * RG_SEAM_ROW);
+    for (int k = 0; k < 2; k++) {
+        memset(s->rows[k] + t->row * RG_TRACE_ROW, 0, seams * RG_TRACE_ROW);
+    }
 }
 
-/* First touch: the pages go to the thread that will sweep the tile, in the loops of `pass`. */
+/* First touch: the pages go to the thread that will sweep the tile, in the loops of `evaluate`; the
+ * workspaces to their threads. */
 static void place_fields(rg_solver *s) {
     const rg_domain *d = s->domain;
 #pragma omp parallel
     {
+        s->work[omp_get_thread_num()] = rg_workspace_make(d);
 #pragma omp for schedule(static)
         for (size_t t = 0; t < d->boundary_tiles; t++) {
             place_tile(s, &d->tile[t]);
@@ -73,118 +63,121 @@ static void place_fields(rg_solver *s) {
     }
 }
 
-static void bind_kernels(rg_solver *s) {
-    const rg_case *c = s->input;
-    const rg_domain *d = s->domain;
+static rg_material make_material(const rg_case *c) {
+    double e = c->material.young, nu = c->material.poisson;
+    return (rg_material){.lambda = e * nu / ((1 + nu) * (1 - 2 * nu)),
+                         .mu = e / (2 * (1 + nu)),
+                         .density = c->material.density};
+}
+
+static rg_cohesive make_law(const rg_case *c) {
     bool breaks = c->interface.law != RG_LAW_NONE;
-    double lambda, mu;
-    lame(c, &lambda, &mu);
-    s->bulk = (rg_bulk_args){.material = {lambda, mu, c->material.density},
-                             .lift = c->interface.form == RG_FORM_VARIATIONAL,
-                             .u = s->u,
-                             .geom = d->geom,
-                             .neighbour = d->neighbour,
-                             .interface = d->interface,
-                             .cracked = s->cracked,
-                             .unlinked = s->unlinked,
-                             .force = s->force,
-                             .traction = s->traction,
-                             .stiffening = s->stiffening};
-    s->interface =
-        (rg_interface_args){.law = {.strength = breaks ? c->interface.strength : INFINITY,
-                                    .opening = breaks ? 2 * c->interface.energy / c->interface.strength : 1,
-                                    .beta = c->interface.beta,
-                                    .total = c->interface.activation == RG_ACTIVATION_TOTAL,
-                                    .flux = c->interface.contact == RG_CONTACT_FLUX},
-                            .u = s->u,
-                            .traction = s->traction,
-                            .side = {d->side[0], d->side[1]},
-                            .geom = d->igeom,
-                            .broken = s->broken,
-                            .unlinked = s->unlinked,
-                            .active = s->active,
-                            .crack = s->crack,
-                            .crack_stride = RG_CRACK_BLOCK,
-                            .force = s->iforce};
-    s->update = (rg_update_args){.density = c->material.density,
-                                 .lumped = c->mass == RG_MASS_LUMPED,
-                                 .geom = d->geom,
-                                 .force = s->force,
-                                 .iforce = s->iforce,
-                                 .interface = d->interface,
-                                 .velocity = s->velocity,
-                                 .u = s->u};
+    return (rg_cohesive){.strength = breaks ? c->interface.strength : INFINITY,
+                         .opening = breaks ? 2 * c->interface.energy / c->interface.strength : 1,
+                         .beta = c->interface.beta,
+                         .total = c->interface.activation == RG_ACTIVATION_TOTAL,
+                         .flux = c->interface.contact == RG_CONTACT_FLUX};
 }
 
 static rg_part *make_part(const rg_case *c, int rank, MPI_Comm comm) {
     rg_mesh *mesh = NULL;
+    int tile = 0;
     if (rank == 0) {
         mesh = rg_mesh_of_case(c);
+        tile = rg_tile_elements(mesh->elements);
     }
-    rg_part *part = rg_part_distribute(mesh, comm);
+    rg_part *part = rg_part_distribute(mesh, tile, comm);
     rg_mesh_free(mesh);
     return part;
 }
 
-rg_solver *rg_solver_make(const rg_case *input, MPI_Comm comm) {
-    rg_solver *s = RG_NEW(rg_solver, 1);
-    *s = (rg_solver){.input = input, .comm = comm, .threads = omp_get_max_threads(), .limiting = -1};
-    MPI_Comm_rank(comm, &s->rank);
-    MPI_Comm_size(comm, &s->ranks);
+static void select_kernels(rg_solver *s) {
     s->kernels = rg_kernels_select();
     if (s->kernels == NULL && s->rank > 0) {
-        MPI_Barrier(comm); /* rank 0 speaks and ends the job */
+        MPI_Barrier(s->comm); /* rank 0 speaks and ends the job */
     }
     if (s->kernels == NULL) {
         rg_fatal(RG_USAGE, "RHEGMA_ISA names an instruction set that this machine does not have; there are "
                            "x86-64-v2, -v3, -v4");
     }
-    s->part = make_part(input, s->rank, comm);
-    double lambda, mu;
-    lame(input, &lambda, &mu);
-    rg_interface_material m = {lambda, mu, input->interface.beta_s, input->interface.penalty};
-    s->domain = rg_domain_build(s->part, s->rank, &m, TILE_ELEMENTS);
+}
+
+rg_solver *rg_solver_make_from_part(const rg_case *input, rg_part *part, MPI_Comm comm) {
+    rg_solver *s = RG_NEW(rg_solver, 1);
+    *s = (rg_solver){.input = input,
+                     .comm = comm,
+                     .threads = omp_get_max_threads(),
+                     .part = part,
+                     .limiting = -1,
+                     .material = make_material(input),
+                     .law = make_law(input),
+                     .lift = input->interface.form == RG_FORM_VARIATIONAL,
+                     .lumped = input->mass == RG_MASS_LUMPED};
+    MPI_Comm_rank(comm, &s->rank);
+    MPI_Comm_size(comm, &s->ranks);
+    select_kernels(s);
+    rg_interface_material m = {s->material.lambda, s->material.mu, input->interface.beta_s,
+                               input->interface.penalty};
+    s->domain = rg_domain_build(s->part, s->rank, &m);
     rg_free(s->part->element);
     s->part->element = NULL;
-    s->halo_u = rg_halo_make(s->domain, 3 * RG_FNODES, displacement_index, 1, comm);
-    s->halo_t = rg_halo_make(s->domain, 3 * RG_FCORNERS, traction_index, 2, comm);
     s->constraints = rg_constraints_make(input, s->domain, s->part);
     allocate_fields(s);
     place_fields(s);
-    bind_kernels(s);
+    for (int k = 0; k < 2; k++) {
+        s->halo_u[k] = rg_halo_make(s->domain, RG_TRACE_ROW, s->rows[k], 1 + k, comm);
+    }
+    s->halo_t = rg_halo_make(s->domain, RG_SEAM_ROW, s->tractions, 3, comm);
     return s;
 }
 
-/* ---- Passes (inside a parallel region) ---- */
+rg_solver *rg_solver_make(const rg_case *input, MPI_Comm comm) {
+    int rank;
+    MPI_Comm_rank(comm, &rank);
+    rg_part *part = make_part(input, rank, comm);
+    rg_part *patch = rg_patch_gather(part, comm);
+    rg_solver *s = rg_solver_make_from_part(input, part, comm);
+    s->patch = patch;
+    return s;
+}
+
+/* ---- One tile ---- */
+
+/* Where the forces go: velocity += dt M^-1 f. */
+typedef struct {
+    double *velocity, dt;
+    bool move;    /* the step goes on: drift and publish at once */
+    bool observe; /* `now` is wanted everywhere */
+    bool constrain;
+} impulse;
 
 /* Tells the elements beside broken points, so that the lift leaves those points out. */
-static void mark_cracked(rg_solver *s, size_t begin, size_t end) {
+static void mark_cracked(rg_solver *s, const rg_tile *t, size_t begin, size_t end) {
     for (size_t b = begin; b < end; b++) {
         for (size_t i = b * RG_LANES; s->active[b] && i < (b + 1) * RG_LANES; i++) {
-            for (int k = 0; s->broken[i] && k < 2; k++) {
-                size_t block = (size_t)s->domain->side[k][i] / (RG_FACES * RG_LANES);
-                if (block < s->domain->blocks) {
-#pragma omp atomic write
-                    s->cracked[block] = 1;
-                }
+            for (int k = 0; s->broken[i] && k < (b < t->sbegin ? 2 : 1); k++) {
+                s->cracked[t->begin + (size_t)s->domain->side[k][i] / (RG_FACES * RG_LANES)] = 1;
             }
         }
     }
 }
 
-static void interface_blocks(rg_solver *s, size_t begin, size_t end) {
-    s->kernels->interface(&s->interface, begin, end);
-    mark_cracked(s, begin, end);
-}
-
-static void update_tiles(rg_solver *s, size_t begin, size_t end) {
-#pragma omp for schedule(static)
-    for (size_t t = begin; t < end; t++) {
-        s->kernels->update(&s->update, s->domain->tile[t].begin, s->domain->tile[t].end);
-        if (s->constraints != NULL) {
-            rg_constraints_apply(s->constraints, t, s->velocity, s->u, s->update.dt_displacement);
-        }
-    }
+static void kick(rg_solver *s, size_t tile, const rg_workspace *w, const impulse *p, bool seams) {
+    const rg_tile *t = &s->domain->tile[tile];
+    size_t at = t->begin * RG_NODE_BLOCK;
+    bool now = p->observe || s->watched[tile];
+    rg_kick_args args = {.density = s->material.density,
+                         .lumped = s->lumped,
+                         .seams = seams,
+                         .dt = p->dt,
+                         .geom = s->domain->geom + t->begin * RG_GEOM_BLOCK,
+                         .force = w->force,
+                         .iforce = w->iforce,
+                         .interface = s->domain->interface + t->begin * RG_LINK_BLOCK,
+                         .velocity = p->velocity + at,
+                         .now = now ? s->now + at : NULL,
+                         .dt_now = 0.5 * s->dt};
+    s->kernels->kick(&args, 0, rg_tile_eblocks(t));
 }
 
 /* Largest value; not a number if one is not (a maximum forgets it). */
@@ -197,26 +190,61 @@ static double largest(const double *x, size_t count) {
     return m + bad;
 }
 
-/* Bulk of a tile, then the interfaces inside it while its tractions are in the cache. */
-static void sweep_tiles(rg_solver *s, size_t begin, size_t end, rg_halo *under) {
-#pragma omp for schedule(static)
-    for (size_t t = begin; t < end; t++) {
-        const rg_tile *tile = &s->domain->tile[t];
-        s->kernels->bulk(&s->bulk, tile->begin, tile->end);
-        interface_blocks(s, tile->ibegin, tile->iend);
-        s->tile_stiffening[t] =
-            largest(s->stiffening + tile->begin * RG_LANES, (tile->end - tile->begin) * RG_LANES);
-        if (under != NULL && omp_get_thread_num() == 0) {
-            rg_halo_poll(under);
-        }
+/* Elements and the interfaces inside: what they compute stays in the cache. */
+static void inside(rg_solver *s, size_t tile, const rg_workspace *w, const impulse *p) {
+    const rg_tile *t = &s->domain->tile[tile];
+    size_t blocks = rg_tile_eblocks(t);
+    rg_bulk_args bulk = rg_tile_bulk(s, t, w);
+    rg_interface_args interface = rg_tile_interfaces(s, t, w);
+    rg_trace_args traces = rg_tile_traces(s, t, w, false);
+    s->kernels->receive(&traces, 0, rg_tile_seams(t));
+    s->kernels->bulk(&bulk, 0, blocks);
+    s->kernels->send_tractions(&traces, 0, rg_tile_seams(t));
+    s->kernels->interface(&interface, 0, rg_tile_inside(t));
+    mark_cracked(s, t, t->ibegin, t->sbegin);
+    kick(s, tile, w, p, false);
+    s->tile_stiffening[tile] = largest(bulk.stiffening, blocks * RG_LANES);
+}
+
+static void drift(rg_solver *s, size_t tile, const rg_workspace *w) {
+    const rg_tile *t = &s->domain->tile[tile];
+    size_t at = t->begin * RG_NODE_BLOCK;
+    rg_drift_args args = {s->dt_next, s->velocity + at, s->u + at};
+    s->kernels->drift(&args, 0, rg_tile_eblocks(t));
+    rg_constraints_place(s->constraints, tile, s->u);
+    rg_trace_args traces = rg_tile_traces(s, t, w, true);
+    s->kernels->send(&traces, 0, rg_tile_seams(t));
+}
+
+/* Seams, once the tractions of all tiles are known; then the tile's velocities are complete. */
+static void across(rg_solver *s, size_t tile, const rg_workspace *w, const impulse *p) {
+    const rg_tile *t = &s->domain->tile[tile];
+    rg_interface_args interface = rg_tile_interfaces(s, t, w);
+    rg_tile_receive(s, t, w);
+    s->kernels->interface(&interface, rg_tile_inside(t), rg_tile_iblocks(t));
+    mark_cracked(s, t, t->sbegin, t->iend);
+    kick(s, tile, w, p, true);
+    if (p->constrain) {
+        rg_constraints_kick(s->constraints, tile, p->velocity,
+                            p->observe || s->watched[tile] ? s->now : NULL);
+    }
+    if (s->watched[tile] && p->constrain) {
+        s->watch(s->watch_context, s, tile, w);
+    }
+    if (p->move) {
+        drift(s, tile, w);
     }
 }
 
-static void sweep_interfaces(rg_solver *s, size_t begin, size_t end, rg_halo *under) {
-    enum { CHUNK = 32 };
+/* ---- Sweeps (inside a parallel region) ---- */
+
+typedef void tile_work(rg_solver *s, size_t tile, const rg_workspace *w, const impulse *p);
+
+static void sweep(rg_solver *s, tile_work *work, const impulse *p, size_t begin, size_t end, rg_halo *under) {
+    const rg_workspace *w = &s->work[omp_get_thread_num()];
 #pragma omp for schedule(static)
-    for (size_t b = begin; b < end; b += CHUNK) {
-        interface_blocks(s, b, b + CHUNK < end ? b + CHUNK : end);
+    for (size_t t = begin; t < end; t++) {
+        work(s, t, w, p);
         if (under != NULL && omp_get_thread_num() == 0) {
             rg_halo_poll(under);
         }
@@ -224,18 +252,18 @@ static void sweep_interfaces(rg_solver *s, size_t begin, size_t end, rg_halo *un
 }
 
 static void start(rg_halo *h) {
+    rg_halo_pack(h);
 #pragma omp master
     rg_halo_start(h);
 }
 
-static void finish(rg_halo *h, double *field) {
+static void finish(rg_halo *h) {
 #pragma omp master
     rg_halo_finish(h);
 #pragma omp barrier
-    rg_halo_unpack(h, field);
 }
 
-/* The largest stiffening of all ranks, for the next time step: known when the pass is over. */
+/* The largest stiffening of all ranks, for a time step to come: known when the sweeps are over. */
 static void start_stiffening(rg_solver *s) {
 #pragma omp master
     {
@@ -246,36 +274,46 @@ static void start_stiffening(rg_solver *s) {
     }
 }
 
-/* One evaluation of all forces, preceded by the update of velocities and displacements if `update`. The first
- * message (traces of the displacement) runs under the interior elements, the second (tractions) under the
- * interfaces between tiles. */
-static void pass(rg_solver *s, bool update) {
-    const rg_domain *d = s->domain;
+/* All forces. The traces of the displacement, sent at the end of the last drift, arrive under the first sweep
+ * of the tiles that touch no other rank; the tractions under the second. */
+static void evaluate(rg_solver *s, const impulse *p) {
+    size_t outer = s->domain->boundary_tiles, all = s->domain->tiles;
+    rg_halo *traces = s->halo_u[s->current], *next = s->halo_u[1 - s->current];
 #pragma omp parallel
     {
-        if (update) {
-            update_tiles(s, 0, d->boundary_tiles);
-        }
-        rg_halo_pack(s->halo_u, s->u);
-        start(s->halo_u);
-        if (update) {
-            update_tiles(s, d->boundary_tiles, d->tiles);
-        }
-        sweep_tiles(s, d->boundary_tiles, d->tiles, s->halo_u);
-        finish(s->halo_u, s->u);
-        sweep_tiles(s, 0, d->boundary_tiles, NULL);
-        rg_halo_pack(s->halo_t, s->traction);
+        sweep(s, inside, p, outer, all, traces);
+        finish(traces);
+        sweep(s, inside, p, 0, outer, NULL);
         start(s->halo_t);
         start_stiffening(s);
-        sweep_interfaces(s, d->between_begin, d->shared_begin, s->halo_t);
-        finish(s->halo_t, s->traction);
-        sweep_interfaces(s, d->shared_begin, d->iblocks, NULL);
+        sweep(s, across, p, outer, all, s->halo_t);
+        finish(s->halo_t);
+        sweep(s, across, p, 0, outer, NULL);
+        if (p->move) {
+            start(next);
+        }
     }
     MPI_Wait(&s->stiffening_request, MPI_STATUS_IGNORE);
 }
 
-void rg_solver_forces(rg_solver *s) {
-    pass(s, false);
+/* Sends the traces of the current displacement. */
+static void publish(rg_solver *s) {
+    const rg_domain *d = s->domain;
+#pragma omp parallel
+    {
+        const rg_workspace *w = &s->work[omp_get_thread_num()];
+#pragma omp for schedule(static)
+        for (size_t t = 0; t < d->tiles; t++) {
+            rg_trace_args traces = rg_tile_traces(s, &d->tile[t], w, false);
+            s->kernels->send(&traces, 0, rg_tile_seams(&d->tile[t]));
+        }
+        start(s->halo_u[s->current]);
+    }
+}
+
+void rg_solver_impulse(rg_solver *s, double *velocity, double dt) {
+    publish(s);
+    evaluate(s, &(impulse){.velocity = velocity, .dt = dt});
 }
 
 /* ---- Time ---- */
@@ -306,70 +344,81 @@ static void set_initial(rg_solver *s) {
     }
 }
 
+/* The stiffening of the initial state, with faces that cannot break yet. */
+static void measure(rg_solver *s) {
+    rg_cohesive law = s->law;
+    s->law.strength = INFINITY;
+    rg_solver_impulse(s, s->now, 0);
+    s->law = law;
+}
+
 void rg_solver_start(rg_solver *s) {
     set_initial(s);
     rg_constraints_start(s->constraints, s->u, s->velocity);
-    s->interface.time = 0;
-    rg_solver_forces(s);
+    measure(s);
+}
+
+/* What a kick with a step `dt` ahead of it does. */
+static impulse prepare(rg_solver *s, double dt) {
+    s->dt_next = dt;
+    rg_constraints_set(s->constraints, s->time, dt, s->step > 0);
+    return (impulse){.velocity = s->velocity, .dt = 0.5 * (s->dt + dt), .constrain = true};
+}
+
+/* The displacement has moved. */
+static void advance(rg_solver *s) {
+    s->current = 1 - s->current;
+    s->time += s->dt_next;
+    s->dt = s->dt_next;
+    s->step++;
+}
+
+void rg_solver_kick(rg_solver *s, double dt) {
+    impulse p = prepare(s, dt);
+    p.observe = true;
+    evaluate(s, &p);
+}
+
+void rg_solver_drift(rg_solver *s) {
+    const rg_domain *d = s->domain;
+#pragma omp parallel
+    {
+        const rg_workspace *w = &s->work[omp_get_thread_num()];
+#pragma omp for schedule(static)
+        for (size_t t = 0; t < d->tiles; t++) {
+            drift(s, t, w);
+        }
+        start(s->halo_u[1 - s->current]);
+    }
+    advance(s);
 }
 
 void rg_solver_step(rg_solver *s, double dt) {
-    bool first = s->step == 0;
-    s->update.dt_velocity = first ? 0.5 * dt : 0.5 * (s->dt + dt);
-    s->update.dt_displacement = dt;
-    rg_constraints_set(s->constraints, s->time + 0.5 * dt, s->time + dt, dt);
-    s->dt = dt;
-    s->time += dt;
-    s->step++;
-    s->interface.time = s->time;
-    pass(s, true);
-}
-
-/* Half a step's worth of force on top of the velocities of blocks [begin, end), in `scratch`. */
-static void half_update(rg_solver *s, size_t begin, size_t end) {
-    rg_update_args now = s->update;
-    now.velocity = s->scratch;
-    now.u = NULL;
-    now.dt_velocity = s->step == 0 ? 0 : 0.5 * s->dt;
-    size_t at = begin * RG_NODE_BLOCK;
-    memcpy(s->scratch + at, s->velocity + at, (end - begin) * RG_NODE_BLOCK * sizeof(double));
-    s->kernels->update(&now, begin, end);
-}
-
-static void half_constraints(rg_solver *s, size_t begin, size_t end, rg_exact_sum *work) {
-    if (s->step > 0) { /* at the start the velocities are the initial ones */
-        rg_constraints_peek(s->constraints, begin * RG_LANES, end * RG_LANES, s->time, s->scratch, work);
-    }
-}
-
-void rg_solver_velocity_now(rg_solver *s, rg_exact_sum *work) {
-    const rg_domain *d = s->domain;
-#pragma omp parallel for schedule(static)
-    for (size_t t = 0; t < d->tiles; t++) {
-        half_update(s, d->tile[t].begin, d->tile[t].end);
-    }
-    half_constraints(s, 0, d->blocks, work);
-}
-
-void rg_solver_block_velocity_now(rg_solver *s, size_t block) {
-    half_update(s, block, block + 1);
-    half_constraints(s, block, block + 1, NULL);
+    impulse p = prepare(s, dt);
+    p.move = true;
+    evaluate(s, &p);
+    advance(s);
 }
 
 void rg_solver_free(rg_solver *s) {
     if (s == NULL) {
         return;
     }
-    void *blocks[] = {s->u,      s->velocity, s->scratch,    s->force,           s->traction,
-                      s->iforce, s->crack,    s->stiffening, s->tile_stiffening, s->cracked,
-                      s->broken, s->unlinked, s->active};
+    for (int t = 0; t < s->threads; t++) {
+        rg_workspace_free(&s->work[t]);
+    }
+    void *blocks[] = {s->u,         s->velocity, s->now,      s->crack,  s->stiffening, s->tile_stiffening,
+                      s->cracked,   s->broken,   s->unlinked, s->active, s->rows[0],    s->rows[1],
+                      s->tractions, s->watched,  s->work};
+    rg_constraints_free(s->constraints);
+    rg_halo_free(s->halo_u[0]);
+    rg_halo_free(s->halo_u[1]);
+    rg_halo_free(s->halo_t);
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) {
         rg_free(blocks[i]);
     }
-    rg_constraints_free(s->constraints);
-    rg_halo_free(s->halo_u);
-    rg_halo_free(s->halo_t);
     rg_domain_free(s->domain);
     rg_part_free(s->part);
+    rg_part_free(s->patch);
     rg_free(s);
 }

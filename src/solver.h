@@ -1,4 +1,9 @@
-/* The state of a run on one rank and the passes over it: the physics, with the messages hidden under it. */
+/* The state of a run on one rank and the passes over it: the physics, with the messages hidden under it.
+ *
+ * A step from state n to n + 1 is a kick and a drift. The kick evaluates the forces of u(n) in two sweeps
+ * over the tiles: elements and the interfaces inside them, whose results never leave the cache; then, when
+ * the tractions of all tiles are known, the seams. The drift moves u and publishes the traces of the seams.
+ */
 #ifndef RG_SOLVER_H
 #define RG_SOLVER_H
 
@@ -11,55 +16,78 @@
 #include "halo.h"
 #include "kernels.h"
 
+/* What one thread needs to work on a tile. */
 typedef struct {
+    double *force, *traction, *iforce, *ghost; /* layout.h */
+} rg_workspace;
+
+typedef struct rg_solver rg_solver;
+
+/* Called for a tile between its kick and its drift, with `now` up to date there and the ghosts received. */
+typedef void rg_watcher(void *context, rg_solver *s, size_t tile, const rg_workspace *work);
+
+struct rg_solver {
     const rg_case *input;
     MPI_Comm comm;
     int rank, ranks, threads;
     const rg_kernels *kernels;
-    rg_part *part; /* sets and totals; its element list is gone once the domain stands */
+    rg_part *part;  /* sets and totals; its element list is gone once the domain stands */
+    rg_part *patch; /* rank 0, until rg_spectrum: the elements that limit the time step (patch.h) */
     rg_domain *domain;
-    rg_halo *halo_u, *halo_t;
 
-    double *u, *velocity, *scratch; /* [own blocks; u also ghosts], layout.h */
-    double *force, *traction, *iforce, *crack;
-    double *stiffening; /* [own blocks][lane] */
+    double *u, *velocity, *now; /* layout.h; now: velocity at the time of u, where it was asked for */
+    double *crack;
+    size_t crack_stride;
+    double *stiffening; /* [blocks][lane] */
     double *tile_stiffening;
     double stiffening_here,
         stiffening_anywhere; /* largest on this rank, on all ranks; infinite if not finite */
     MPI_Request stiffening_request;
     uint8_t *cracked, *broken, *unlinked, *active;
+    double *rows[2], *tractions; /* trace rows, of the current state and of the next; traction rows */
+    int current;                 /* which of `rows` */
+    rg_halo *halo_u[2], *halo_t;
+    rg_workspace *work; /* [threads] */
     rg_constraints *constraints;
+    rg_watcher *watch;
+    void *watch_context;
+    uint8_t *watched; /* [tiles] */
 
-    rg_bulk_args bulk;
-    rg_interface_args interface;
-    rg_update_args update;
+    rg_material material;
+    rg_cohesive law;
+    bool lift, lumped;
 
     double omega2;   /* largest squared frequency, faces intact or closed (1/s^2) */
     rg_gid limiting; /* element that sets it */
     const char *limiting_state;
     double pass_seconds; /* of one evaluation of all forces, as measured at set-up */
     double time, dt;     /* of the current state (s); dt is the step that led to it */
+    double dt_next;      /* step that leads on, once kicked */
     int64_t step;
-} rg_solver;
+};
 
 /* Builds everything for a case: mesh, partition, domain, fields at rest. Collective. */
 rg_solver *rg_solver_make(const rg_case *input, MPI_Comm comm);
 
-/* Initial displacement and velocity, constraints; forces at t = 0. Collective. */
+/* The same on a mesh that is there, without a patch. Takes over `part`; keeps a reference to `input`.
+ * Collective. */
+rg_solver *rg_solver_make_from_part(const rg_case *input, rg_part *part, MPI_Comm comm);
+
+/* Initial displacement and velocity, constraints, stiffening at t = 0. Collective. */
 void rg_solver_start(rg_solver *s);
 
-/* One central-difference step. Collective. Allocates nothing. */
+/* Forces of the current displacement; velocities go on to the middle of a step `dt`, and `now` becomes the
+ * velocity at the current time everywhere, with the constraints. Collective. */
+void rg_solver_kick(rg_solver *s, double dt);
+
+/* The rest of the step. Collective. */
+void rg_solver_drift(rg_solver *s);
+
+/* Kick and drift at once, tile by tile; `now` is only known to the watcher. Collective. Allocates nothing. */
 void rg_solver_step(rg_solver *s, double dt);
 
-/* All forces of the current displacement: halo, bulk, interfaces. Collective. */
-void rg_solver_forces(rg_solver *s);
-
-/* Velocity at the time of the displacements into `scratch` (they are half a step apart), with the
- * constraints; returns the work they do in this half step (J), as an exact sum of this rank. */
-void rg_solver_velocity_now(rg_solver *s, rg_exact_sum *work);
-
-/* The same for one block of elements, without the work. Not collective. */
-void rg_solver_block_velocity_now(rg_solver *s, size_t block);
+/* velocity += dt M^-1 (all forces of u), without constraints. For the spectrum. Collective. */
+void rg_solver_impulse(rg_solver *s, double *velocity, double dt);
 
 void rg_solver_free(rg_solver *s);
 

@@ -5,16 +5,21 @@
 #include "solver.h"
 
 /* Fills omega2, limiting, limiting_state and pass_seconds of a solver at rest, and leaves its fields at rest.
+ * Rank 0 applies rg_spectrum_whole to the patch alone: the vector of the largest frequency
+ * decays within a few elements, so that a patch around the worst elements has it too. The patch's frequency
+ * is a lower bound of the whole mesh's, below it by less than the margin (figures in spectrum.c). The result
+ * has the same bits on any ranks and threads. Collective. */
+void rg_spectrum(rg_solver *s);
+
+/* The same from the solver's whole mesh, except for pass_seconds.
  *
  * The operator is M^-1 times the derivative of the forces at rest, applied by the production kernels to a
  * tiny displacement; so it holds for every form, mass and penalty. Its largest eigenvalue is found by the
  * Lanczos iteration in the inner product of M (the incomplete form, not symmetric, by power iteration). The
  * states tried are those a face can take: all faces intact; all broken and closed (contact on both sides of
- * zero, hence linear). A point that
- * just broke unloads along a much steeper line (its opening is still tiny), which no step of use could
- * follow: that is what time.safety is for. Sums are exact, so the result has the same bits on any ranks and
- * threads. Collective.
- */
-void rg_spectrum(rg_solver *s);
+ * zero, hence linear). A point that just broke unloads along a much steeper line (its opening is still tiny),
+ * which no step of use could follow: that is what time.safety is for. Sums are exact, so the result has the
+ * same bits on any ranks and threads. Collective. */
+void rg_spectrum_whole(rg_solver *s);
 
 #endif

@@ -15,14 +15,15 @@ static uint64_t element_hash(const rg_solver *s, size_t slot) {
     uint64_t h = rg_hash(1, (uint64_t)s->domain->id[slot]);
     for (int k = 0; k < 3 * RG_NODES; k++) {
         size_t at = rg_node_index(slot, k / 3, k % 3);
-        h = chain(chain(h, s->u[at]), s->velocity[at]);
+        h = chain(chain(h, s->u[at]), s->now[at]);
     }
     return h;
 }
 
-static uint64_t interface_hash(const rg_solver *s, size_t i) {
-    int32_t minus = s->domain->side[0][i];
-    uint64_t h = rg_hash(2, (uint64_t)(RG_FACES * s->domain->id[minus / RG_FACES] + minus % RG_FACES));
+static uint64_t interface_hash(const rg_solver *s, const rg_tile *t, size_t i) {
+    int32_t link = s->domain->side[0][i];
+    rg_gid element = s->domain->id[t->begin * RG_LANES + (size_t)link / RG_FACES];
+    uint64_t h = rg_hash(2, (uint64_t)(RG_FACES * element + link % RG_FACES));
     for (int q = 0; q < RG_POINTS; q++) {
         h = chain(h, rg_damage(s, i, q));
     }
@@ -30,12 +31,15 @@ static uint64_t interface_hash(const rg_solver *s, size_t i) {
 }
 
 uint64_t rg_state_hash(const rg_solver *s) {
+    const rg_domain *d = s->domain;
     uint64_t sum = 0;
-    for (size_t slot = 0; slot < s->domain->blocks * RG_LANES; slot++) {
-        sum += s->domain->id[slot] >= 0 ? element_hash(s, slot) : 0;
+    for (size_t slot = 0; slot < d->blocks * RG_LANES; slot++) {
+        sum += d->id[slot] >= 0 ? element_hash(s, slot) : 0;
     }
-    for (size_t i = 0; i < s->domain->iblocks * RG_LANES; i++) {
-        sum += s->broken[i] && s->domain->counted[i] ? interface_hash(s, i) : 0;
+    for (size_t t = 0; t < d->tiles; t++) {
+        for (size_t i = d->tile[t].ibegin * RG_LANES; i < d->tile[t].iend * RG_LANES; i++) {
+            sum += s->broken[i] && d->counted[i] ? interface_hash(s, &d->tile[t], i) : 0;
+        }
     }
     MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPI_UINT64_T, MPI_SUM, s->comm);
     return sum;

@@ -85,7 +85,8 @@ static void write_physics(FILE *f, const rg_summary *m, const rg_ledger *l) {
 void rg_summary_write(rg_summary *m, rg_solver *s, const rg_ledger *l, const rg_estimate *e) {
     uint64_t hash = rg_state_hash(s);
     m->first_fracture = rg_first_fracture(s);
-    m->halo_wait_seconds = rg_halo_waited(s->halo_u) + rg_halo_waited(s->halo_t);
+    m->halo_wait_seconds =
+        rg_halo_waited(s->halo_u[0]) + rg_halo_waited(s->halo_u[1]) + rg_halo_waited(s->halo_t);
     MPI_Allreduce(MPI_IN_PLACE, &m->halo_wait_seconds, 1, MPI_DOUBLE, MPI_MAX, s->comm);
     double work = (double)e->elements * (double)s->step;
     m->us_per_tet_step = work > 0 ? 1e6 * m->loop_seconds * s->ranks * s->threads / work : 0;

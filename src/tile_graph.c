@@ -1,8 +1,9 @@
 /* The graph of tiles: what a partition cuts. */
+#include "tile_graph.h"
+
 #include <stdlib.h>
 
 #include "mem.h"
-#include "mesh_file.h"
 
 struct list {
     int64_t *tile; /* a tile across each face that leaves the current one */
@@ -14,8 +15,8 @@ static int ascending(const void *a, const void *b) {
     return (p > q) - (p < q);
 }
 
-static void collect(const rg_mesh *mesh, int64_t t, struct list *l) {
-    rg_gid tile = rg_tile_elements(mesh->elements), begin = t * tile, end = begin + tile;
+static void collect(const rg_mesh *mesh, int tile, int64_t t, struct list *l) {
+    rg_gid begin = t * tile, end = begin + tile;
     end = end < mesh->elements ? end : mesh->elements;
     l->count = 0;
     for (rg_gid slot = 4 * begin; slot < 4 * end; slot++) {
@@ -45,15 +46,16 @@ static void append(rg_tile_graph *g, int64_t t, const struct list *l, size_t *ro
     g->start[t + 1] = n;
 }
 
-rg_tile_graph *rg_tile_graph_make(const rg_mesh *mesh) {
+rg_tile_graph *rg_tile_graph_make(const rg_mesh *mesh, int tile) {
     rg_tile_graph *g = RG_NEW(rg_tile_graph, 1);
     size_t room = 0;
-    struct list list = {.tile = RG_NEW(int64_t, 4 * RG_TILE)};
-    rg_gid tile = rg_tile_elements(mesh->elements);
+    struct list list = {.tile = RG_NEW(int64_t, 4 * (size_t)tile)};
+    g->elements = mesh->elements;
+    g->tile = tile;
     g->tiles = (mesh->elements + tile - 1) / tile;
     g->start = RG_NEW(int64_t, (size_t)g->tiles + 1);
     for (int64_t t = 0; t < g->tiles; t++) {
-        collect(mesh, t, &list);
+        collect(mesh, tile, t, &list);
         append(g, t, &list, &room);
     }
     rg_free(list.tile);

@@ -99,48 +99,46 @@ static bool same_face(const mesh *m, size_t e, int f, size_t d, int g) {
     return true;
 }
 
-/* Geometry of the interface in slot s, minus side face f of element e, plus side element d. */
-static void interface_geometry(input *in, const mesh *m, size_t s, size_t e, int f, size_t d) {
-    double edge[2][3], cross[3], outward = 0;
+/* Geometry of the interface in slot s at face f of element e, across from element d. Returns whether e is on
+ * the minus side: the edges of the face decide, not the numbers of the elements. */
+static bool interface_geometry(input *in, const mesh *m, size_t s, size_t e, int f, size_t d) {
+    double area_vector[3], outward = 0;
     for (int k = 0; k < 2; k++)
-        for (int c = 0; c < 3; c++) {
-            edge[k][c] = in->x[e][rg_face_node[f][k + 1]][c] - in->x[e][rg_face_node[f][0]][c];
-            in->igeom[rg_igeom_index(s, RG_IGEOM_EDGE + 3 * k + c)] = edge[k][c];
-        }
-    rg_reference_cross(edge[0], edge[1], cross);
-    double length = sqrt(rg_reference_dot(cross, cross)), area = length / 2;
+        for (int c = 0; c < 3; c++)
+            in->igeom[rg_igeom_index(s, RG_IGEOM_EDGE + 3 * k + c)] =
+                in->x[e][rg_face_node[f][k + 1]][c] - in->x[e][rg_face_node[f][0]][c];
+    double area = input_area(in, s, area_vector);
     for (int c = 0; c < 3; c++)
-        outward += cross[c] * (in->x[e][rg_face_node[f][0]][c] - in->x[e][f][c]);
-    for (int c = 0; c < 3; c++)
-        in->igeom[rg_igeom_index(s, RG_IGEOM_NORMAL + c)] = (outward > 0 ? 1 : -1) * cross[c] / length;
+        outward += area_vector[c] * (in->x[e][rg_face_node[f][0]][c] - in->x[e][f][c]);
     double height = 3 * fmin(m->volume[e], m->volume[d]) / area, penalty = area * 4 / height;
-    in->igeom[rg_igeom_index(s, RG_IGEOM_AREA)] = area;
     in->igeom[rg_igeom_index(s, RG_IGEOM_PEN_ISO)] = penalty * in->material.mu;
-    in->igeom[rg_igeom_index(s, RG_IGEOM_PEN_NORM)] = penalty * (in->material.lambda + in->material.mu);
+    in->igeom[rg_igeom_index(s, RG_IGEOM_PEN_NORM)] =
+        penalty * (in->material.lambda + in->material.mu) / (area * area);
+    return outward > 0;
 }
 
 static void link_side(input *in, size_t s, int side, size_t e, int f, size_t d, int g) {
-    in->side[side][s] = rg_link((int32_t)in->element[e], f, 4);
-    in->interface[rg_link_index(in->element[e], f)] = rg_link((int32_t)s, side, 2);
-    in->neighbour[rg_link_index(in->element[e], f)] = rg_link((int32_t)in->element[d], g, 4);
+    in->side[side][s] = rg_side_link(in->element[e], f);
+    in->interface[rg_link_index(in->element[e], f)] = rg_link(s, side, 4);
+    in->neighbour[rg_link_index(in->element[e], f)] = rg_neighbour_link(in->element[d], g);
 }
 
-/* Finds the interior faces; everything not linked links to itself and to the zero interface. */
+/* Finds the interior faces; everything not linked is surface. */
 static void connect(input *in, const mesh *m) {
     size_t i = 0;
     for (size_t s = 0; s < INPUT_ESLOTS; s++)
         for (int f = 0; f < RG_FACES; f++) {
-            in->neighbour[rg_link_index(s, f)] = rg_link((int32_t)s, f, 4);
-            in->interface[rg_link_index(s, f)] = rg_link(INPUT_ISLOTS, 0, 2);
+            in->neighbour[rg_link_index(s, f)] = rg_neighbour_link(s, f);
+            in->interface[rg_link_index(s, f)] = RG_NO_INTERFACE;
         }
     for (size_t e = 0; e < INPUT_ELEMENTS; e++)
         for (size_t d = e + 1; d < INPUT_ELEMENTS; d++)
             for (int k = 0; k < 16; k++)
                 if (same_face(m, e, k / 4, d, k % 4)) {
                     size_t s = in->slot[i++];
-                    link_side(in, s, 0, e, k / 4, d, k % 4);
-                    link_side(in, s, 1, d, k % 4, e, k / 4);
-                    interface_geometry(in, m, s, e, k / 4, d);
+                    int plus = interface_geometry(in, m, s, e, k / 4, d) ? 0 : 1; /* side of e */
+                    link_side(in, s, plus, e, k / 4, d, k % 4);
+                    link_side(in, s, 1 - plus, d, k % 4, e, k / 4);
                 }
     if (i != INPUT_INTERFACES)
         abort();
@@ -180,25 +178,31 @@ static void fill_nodes(input *in, input_kind kind) {
             in->ipull[rg_iforce_index(in->slot[i], k / 3, k % 3)] = 20 * noise(in, KEY_PULL, ~i, (uint64_t)k);
 }
 
+double input_area(const input *in, size_t s, double vector[3]) {
+    double edge[2][3];
+    for (int k = 0; k < 6; k++)
+        edge[k / 3][k % 3] = in->igeom[rg_igeom_index(s, RG_IGEOM_EDGE + k)];
+    rg_reference_cross(edge[0], edge[1], vector);
+    for (int c = 0; c < 3; c++)
+        vector[c] /= 2;
+    return sqrt(rg_reference_dot(vector, vector));
+}
+
 /* Unit normal, one unit tangent and relative area of the interface under the smooth deformation. */
 static double current_frame(const input *in, size_t i, double n[3], double m[3]) {
-    double edge[2][3] = {{0}}, cross[3], outward[3] = {0}, sign = 0;
+    double edge[2][3] = {{0}}, cross[3], reference[3];
     for (int c = 0; c < 3; c++)
-        for (int d = 0; d < 3; d++) {
-            double normal = in->igeom[rg_igeom_index(in->slot[i], RG_IGEOM_NORMAL + d)];
-            outward[c] += in->gradient[c][d] * normal;
+        for (int d = 0; d < 3; d++)
             for (int k = 0; k < 2; k++)
                 edge[k][c] +=
                     in->gradient[c][d] * in->igeom[rg_igeom_index(in->slot[i], RG_IGEOM_EDGE + 3 * k + d)];
-        }
     rg_reference_cross(edge[0], edge[1], cross);
     double length = sqrt(rg_reference_dot(cross, cross)), side = sqrt(rg_reference_dot(edge[0], edge[0]));
-    sign = rg_reference_dot(cross, outward) > 0 ? 1 : -1;
     for (int c = 0; c < 3; c++) {
-        n[c] = sign * cross[c] / length;
+        n[c] = cross[c] / length;
         m[c] = edge[0][c] / side;
     }
-    return length / 2 / in->igeom[rg_igeom_index(in->slot[i], RG_IGEOM_AREA)];
+    return length / 2 / input_area(in, in->slot[i], reference);
 }
 
 input_pull input_pull_of(const input *in, size_t i) {
@@ -215,8 +219,8 @@ static void fill_interface_traction(input *in, size_t i) {
     const double pull[PULLS][2] = {{0.2, 0.1}, {0.6, 0.2}, {1.5, 0.3}, {0.3, 1.5}, {-0.5, 1.5}};
     const double beta = in->law.beta > 0 ? in->law.beta : 1;
     const size_t s = in->slot[i];
-    double n[3], m[3];
-    double force = current_frame(in, i, n, m) * in->igeom[rg_igeom_index(s, RG_IGEOM_AREA)];
+    double n[3], m[3], reference[3];
+    double force = current_frame(in, i, n, m) * input_area(in, s, reference);
     force *= isfinite(in->law.strength) ? in->law.strength : 4e8;
     const double *level = pull[input_pull_of(in, i)];
     /* the first opening of a compressed point has no normal part: closed or not would be rounding's choice */
@@ -277,12 +281,17 @@ void input_break(input *in, double probability) {
     input_flags(in);
 }
 
+uint8_t input_unlinked(const input *in, size_t s, int f) {
+    int32_t link = in->interface[rg_link_index(s, f)];
+    return link == RG_NO_INTERFACE ? 0 : in->unlinked[link / 4];
+}
+
 void input_flags(input *in) {
     memset(in->cracked, 0, INPUT_EBLOCKS);
     memset(in->active, 0, INPUT_IBLOCKS);
     for (size_t s = 0; s < INPUT_ESLOTS; s++)
         for (int f = 0; f < RG_FACES; f++)
-            if (in->unlinked[in->interface[rg_link_index(s, f)] >> 1])
+            if (input_unlinked(in, s, f))
                 in->cracked[s / RG_LANES] = 1;
     for (size_t s = 0; s < INPUT_ISLOTS; s++)
         if (in->broken[s])
@@ -308,14 +317,14 @@ static void allocate(input *in) {
     in->geom = doubles(INPUT_EBLOCKS, RG_GEOM_BLOCK);
     in->traction = doubles(INPUT_EBLOCKS, RG_TRACTION_BLOCK);
     in->igeom = doubles(INPUT_IBLOCKS, RG_IGEOM_BLOCK);
-    in->ipull = doubles(INPUT_IBLOCKS + 1, RG_IFORCE_BLOCK); /* with the zero block */
+    in->ipull = doubles(INPUT_IBLOCKS, RG_IFORCE_BLOCK);
     in->crack = doubles(INPUT_IBLOCKS, RG_CRACK_BLOCK);
     in->neighbour = input_alloc(INPUT_ESLOTS * RG_FACES * sizeof(int32_t));
     in->interface = input_alloc(INPUT_ESLOTS * RG_FACES * sizeof(int32_t));
     for (int side = 0; side < 2; side++)
         in->side[side] = input_alloc(INPUT_ISLOTS * sizeof(int32_t));
-    in->broken = input_alloc(INPUT_ISLOTS + RG_LANES);
-    in->unlinked = input_alloc(INPUT_ISLOTS + RG_LANES);
+    in->broken = input_alloc(INPUT_ISLOTS);
+    in->unlinked = input_alloc(INPUT_ISLOTS);
     in->active = input_alloc(INPUT_IBLOCKS);
     in->cracked = input_alloc(INPUT_EBLOCKS);
 }
@@ -381,6 +390,42 @@ rg_bulk_args input_bulk_args(const input *in, double *force, double *traction, d
         .traction = traction,
         .stiffening = stiffening,
     };
+}
+
+rg_interface_args input_interface_args(const input *in, uint8_t *broken, uint8_t *unlinked, uint8_t *active,
+                                       double *crack, double *force) {
+    return (rg_interface_args){
+        .law = in->law,
+        .time = 3e-7,
+        .u = in->u,
+        .traction = in->traction,
+        .first_seam = INPUT_IBLOCKS,
+        .side = {in->side[0], in->side[1]},
+        .geom = in->igeom,
+        .broken = broken,
+        .unlinked = unlinked,
+        .active = active,
+        .crack = crack,
+        .crack_stride = RG_CRACK_BLOCK,
+        .force = force,
+    };
+}
+
+/* strength, opening, beta, contact_below, total, flux */
+const rg_cohesive input_laws[INPUT_LAWS] = {
+    {4e8, 1.7e-7, 1, 0, false, false},  {4e8, 1.7e-7, 0, 0, false, false},
+    {4e8, 1.7e-7, 2, 0, true, false},   {4e8, 1.7e-7, 0.5, 0, false, true},
+    {4e8, 1.7e-7, 0, 0, true, true},    {4e8, 1.7e-7, 2, 0, true, true},
+    {4e8, 1.7e-7, 1.5, 0, false, true}, {4e8, 1.7e-7, 1, INFINITY, false, false},
+};
+
+void input_for_each_case(void (*test)(const rg_kernels *set, input_kind kind, rg_cohesive law)) {
+    const rg_kernels *sets[INPUT_SETS];
+    int n = input_sets(sets, INPUT_SETS);
+    for (int k = 0; k < n; k++)
+        for (int kind = 0; kind < 2; kind++)
+            for (int law = 0; law < INPUT_LAWS; law++)
+                test(sets[k], (input_kind)kind, input_laws[law]);
 }
 
 int input_sets(const rg_kernels *sets[], int capacity) {

@@ -1,6 +1,7 @@
 /* Random but valid input for the kernels: a jittered box of tetrahedra, deformed with a discontinuity at
- * every face, and interfaces with tractions and crack states of every regime. The physics is a function of
- * (kind, seed) alone; `order` shuffles which slot (block and lane) each element and interface sits in. */
+ * every face, and interfaces with tractions and crack states of every regime. The whole mesh is one tile
+ * without seams. The physics is a function of (kind, seed) alone; `order` shuffles which slot (block and
+ * lane) each element and interface sits in. */
 #ifndef RG_KERNEL_INPUT_H
 #define RG_KERNEL_INPUT_H
 
@@ -14,6 +15,8 @@ enum {
     INPUT_IBLOCKS = 22, /* with padding */
     INPUT_ESLOTS = INPUT_EBLOCKS * RG_LANES,
     INPUT_ISLOTS = INPUT_IBLOCKS * RG_LANES,
+    INPUT_SETS = 8, /* room for all sets of kernels */
+    INPUT_LAWS = 8,
 };
 
 #define INPUT_SIZE 1e-4 /* edge of a cube of the mesh (m) */
@@ -60,16 +63,31 @@ input_crack input_crack_of(const input *in, size_t i, int q);
 /* Jump u+ - u- at point q of the interface in slot s (m). */
 void input_jump(const input *in, size_t s, int q, double jump[3]);
 
+/* Area vector of the interface in slot s (m^2); returns its length. */
+double input_area(const input *in, size_t s, double vector[3]);
+
+/* Points of face f of the element in slot s that have left the lift. */
+uint8_t input_unlinked(const input *in, size_t s, int f);
+
 /* Sets `cracked` and `active` from `unlinked` and `broken`. */
 void input_flags(input *in);
 
 /* Kernel arguments that read the input and write to the given arrays (which may be NULL if not used). */
 rg_bulk_args input_bulk_args(const input *in, double *force, double *traction, double *stiffening);
 
+rg_interface_args input_interface_args(const input *in, uint8_t *broken, uint8_t *unlinked, uint8_t *active,
+                                       double *crack, double *force);
+
 /* Zeroed, 64-byte aligned. */
 void *input_alloc(size_t bytes);
 
 /* All sets to test: the available ones and the reference; returns their number. */
 int input_sets(const rg_kernels *sets[], int capacity);
+
+/* Laws of every combination: criterion, activation, contact. */
+extern const rg_cohesive input_laws[INPUT_LAWS];
+
+/* Runs `test` for every set, deformation and law. */
+void input_for_each_case(void (*test)(const rg_kernels *set, input_kind kind, rg_cohesive law));
 
 #endif

@@ -239,11 +239,11 @@ def test_energy_limit_stops_the_run(attempt, ranks):
     assert summary["energy_error_rel"] > 1e-9
 
 
-NOT_FINITE = r"^rhegma: stopped: (.*not finite.* at step (\d+), time .*: element \d+ at \(\S+, \S+, (\S+)\) m; .*)$"
+NOT_FINITE = r"^rhegma: stopped: (.*not finite.* at step (\d+), time .*: element \d+ at \(.*, (.*)\) m; .*)$"
 
 
 def stops_as_not_finite(attempt, sets, ranks):
-    """Step, and z of the element, that the run names."""
+    """Step, and height of the element, that the run names."""
     out, said = attempt(FRAGMENTS, {"output.interval": 10, **sets}, expect=1, ranks=ranks)
     message = re.search(NOT_FINITE, said, re.M)
     assert message, said
@@ -255,7 +255,7 @@ def stops_as_not_finite(attempt, sets, ranks):
 def test_inverted_elements_stop_the_run(attempt, ranks):
     sets = {"initial": {"displacement": {"z": "z > 1.45e-3 ? -2*z : 0"}}}
     step, z = stops_as_not_finite(attempt, sets, ranks)
-    assert step == 0 and z >= 1.2e-3  # the last two layers of cubes
+    assert step == 0 and z > 1.3e-3  # the last layers of cubes
 
 
 @pytest.mark.parametrize("ranks", [1, 2])
@@ -265,7 +265,7 @@ def test_blow_up_between_two_outputs_is_found(attempt, interval, ranks):
     sets = {"boundary": [{"set": "z+", "component": "z", "velocity": "t < 1e-8 ? 0 : -1e6"}],
             "output.interval": interval, "output.energy_limit": 1e300}
     step, z = stops_as_not_finite(attempt, sets, ranks)
-    assert step > 1 and z >= 1.4e-3  # the last layer
+    assert step > 1 and z > 1.3e-3
 
 
 @pytest.mark.parametrize("ranks", [1, 2])

@@ -1,5 +1,5 @@
-/* Each regime of the interface by hand: one flat face, uniform tractions and jumps, on every set of kernels.
- */
+/* Each regime of the interface by hand: one flat face, uniform tractions and jumps, on every set of kernels,
+ * inside a tile and as a seam seen from either side. */
 #include <stdarg.h>
 #include <stddef.h>
 #include <setjmp.h>
@@ -9,7 +9,7 @@
 #include <string.h>
 #include "kernel_input.h"
 
-enum { MAX_SETS = 8, ALL = 63, MINUS_FACE = 3, PLUS_FACE = 1 };
+enum { ALL = 63, MINUS_FACE = 3, PLUS_FACE = 1 };
 
 #define SIDE  2e-4              /* legs of the face (m) */
 #define AREA  (SIDE * SIDE / 2) /* m^2 */
@@ -258,34 +258,53 @@ static const scenario scenarios[] = {
      .energy = {0, SECANT(1e-7) * 25e-16 / 2, 0, GC * 1e-7 / DELTA}},
 };
 
-/* One block of interfaces, all between face MINUS_FACE of element 0 and face PLUS_FACE of element 1. */
+/* How the kernel sees the face. */
+typedef enum { INSIDE, FROM_MINUS, FROM_PLUS, VIEWS } view;
+
+/* One block of interfaces, all between face MINUS_FACE of element 0 and face PLUS_FACE of element 1. As seams
+ * they have the first rows of tractions, the other side the last ones. */
 typedef struct {
+    view view;
     _Alignas(64) double u[RG_NODE_BLOCK], traction[RG_TRACTION_BLOCK], geom[RG_IGEOM_BLOCK];
     _Alignas(64) double crack[RG_CRACK_BLOCK], force[RG_IFORCE_BLOCK], energy[RG_E_INTERFACE * RG_LANES];
+    _Alignas(64) double ghost[RG_GHOST_BLOCK], rows[2 * RG_LANES * RG_SEAM_ROW];
     _Alignas(64) int32_t side[2][RG_LANES];
     _Alignas(64) uint8_t broken[RG_LANES], unlinked[RG_LANES];
     uint8_t active;
     rg_interface_args args;
 } bench;
 
-/* The face lies in the xy plane; `up` is the z component of its normal. */
-static void bench_make(bench *b, rg_cohesive law, double up) {
+/* Row of the other side of seam i. */
+static size_t other_row(size_t i) {
+    return RG_LANES + (i + 3) % RG_LANES;
+}
+
+static void bench_link(bench *b, size_t i) {
+    const int32_t minus = rg_side_link(0, MINUS_FACE), plus = rg_side_link(1, PLUS_FACE);
+    b->side[0][i] = b->view == FROM_PLUS ? plus : minus;
+    b->side[1][i] = b->view == INSIDE ? plus : rg_link(other_row(i), b->view == FROM_PLUS, 2);
+}
+
+/* The face lies in the xy plane; `up` is the direction of its normal along z. */
+static void bench_make(bench *b, rg_cohesive law, double up, view v) {
     memset(b, 0, sizeof *b);
+    b->view = v;
     for (size_t i = 0; i < RG_LANES; i++) {
-        b->side[0][i] = rg_link(0, MINUS_FACE, 4);
-        b->side[1][i] = rg_link(1, PLUS_FACE, 4);
-        b->geom[rg_igeom_index(i, RG_IGEOM_NORMAL + 2)] = up;
-        b->geom[rg_igeom_index(i, RG_IGEOM_AREA)] = AREA;
+        bench_link(b, i);
         b->geom[rg_igeom_index(i, RG_IGEOM_PEN_ISO)] = AREA * ISO;
-        b->geom[rg_igeom_index(i, RG_IGEOM_PEN_NORM)] = AREA * NORM;
-        b->geom[rg_igeom_index(i, RG_IGEOM_EDGE)] = SIDE;
-        b->geom[rg_igeom_index(i, RG_IGEOM_EDGE + 4)] = SIDE;
+        b->geom[rg_igeom_index(i, RG_IGEOM_PEN_NORM)] = NORM / AREA;
+        b->geom[rg_igeom_index(i, RG_IGEOM_EDGE + (up > 0 ? 0 : 1))] = SIDE;
+        b->geom[rg_igeom_index(i, RG_IGEOM_EDGE + (up > 0 ? 4 : 3))] = SIDE;
     }
     b->args = (rg_interface_args){
         .law = law,
         .time = TIME,
         .u = b->u,
         .traction = b->traction,
+        .first_seam = v == INSIDE ? 1 : 0,
+        .ghost = b->ghost,
+        .own_tractions = b->rows,
+        .tractions = b->rows,
         .side = {b->side[0], b->side[1]},
         .geom = b->geom,
         .broken = b->broken,
@@ -319,7 +338,31 @@ static void bench_deform(bench *b, const double g[3][3]) {
     }
 }
 
+/* What a seam knows of both sides. The kernel must take all of it from here: the other side's own fields are
+ * spoiled. */
+static void bench_exchange(bench *b) {
+    const size_t own = b->view == FROM_PLUS, other = 1 - own;
+    const int face[2] = {MINUS_FACE, PLUS_FACE};
+    double *trace = &b->u[rg_node_index(other, 0, 0)], u[RG_FNODES][3];
+    for (int k = 0; k < RG_FNODES * 3; k++)
+        u[k / 3][k % 3] = b->u[rg_node_index(other, rg_face_node[face[other]][k / 3], k % 3)];
+    for (int k = 0; k < RG_NODES * 3; k++)
+        trace[k * RG_LANES] = NAN;
+    for (size_t i = 0; i < RG_LANES; i++) {
+        for (int k = 0; k < RG_FNODES * 3; k++)
+            b->ghost[rg_iforce_index(i, k / 3, k % 3)] = u[k / 3][k % 3];
+        memcpy(b->rows + i * RG_SEAM_ROW, &b->traction[rg_traction_index(own, face[own], 0, 0)],
+               RG_SEAM_ROW * sizeof(double));
+        memcpy(b->rows + other_row(i) * RG_SEAM_ROW,
+               &b->traction[rg_traction_index(other, face[other], 0, 0)], RG_SEAM_ROW * sizeof(double));
+    }
+    for (int k = 0; k < RG_TRACTION_BLOCK; k++)
+        b->traction[k] = NAN;
+}
+
 static void bench_run(bench *b, const rg_kernels *set) {
+    if (b->view != INSIDE)
+        bench_exchange(b);
     set->interface(&b->args, 0, 1);
     set->interface_state(&(rg_interface_state_args){&b->args, b->energy}, 0, 1);
 }
@@ -352,13 +395,13 @@ static void expect_point(const rg_kernels *set, const scenario *s, const bench *
         expect(set, s->name, "origin", crack[(RG_CRACK_ORIGIN + c) * RG_LANES], origin[c], 1e-11 * DELTA);
 }
 
-static void check_scenario(const rg_kernels *set, const scenario *s, double up) {
+static void check_scenario(const rg_kernels *set, const scenario *s, double up, view v) {
     const rg_cohesive law = {s->strong ? INFINITY : SIGMA, DELTA,    s->beta,
                              s->linear ? INFINITY : 0,     s->total, s->flux};
     const double pull[3] = {s->pull[1], 0, up * s->pull[0]}, jump[3] = {s->jump[1], 0, up * s->jump[0]};
     const double traction[3] = {s->traction[1], 0, up * s->traction[0]};
     bench b;
-    bench_make(&b, law, up);
+    bench_make(&b, law, up, v);
     bench_load(&b, pull, jump);
     memset(b.broken, s->broken ? ALL : 0, RG_LANES);
     memset(b.unlinked, s->unlinked ? ALL : 0, RG_LANES);
@@ -383,29 +426,36 @@ static void check_scenario(const rg_kernels *set, const scenario *s, double up) 
     }
 }
 
-/* All scenarios, with the normal along and against the cross product of the edges. */
+/* All scenarios, with the normal along and against z. */
 static void test_scenarios(void **state) {
-    const rg_kernels *sets[MAX_SETS];
-    int n = input_sets(sets, MAX_SETS);
+    const rg_kernels *sets[INPUT_SETS];
+    int n = input_sets(sets, INPUT_SETS);
     (void)state;
     for (int k = 0; k < n; k++)
-        for (size_t s = 0; s < sizeof scenarios / sizeof scenarios[0]; s++) {
-            check_scenario(sets[k], &scenarios[s], 1);
-            check_scenario(sets[k], &scenarios[s], -1);
-        }
+        for (size_t s = 0; s < sizeof scenarios / sizeof scenarios[0]; s++)
+            for (int v = 0; v < VIEWS; v++) {
+                check_scenario(sets[k], &scenarios[s], 1, (view)v);
+                check_scenario(sets[k], &scenarios[s], -1, (view)v);
+            }
 }
 
-/* Whether a traction (per reference area) breaks the face after a deformation of the mid-surface. */
+/* Whether a traction (per reference area) breaks the face after a deformation of the mid-surface: the same
+ * answer in every view. */
 static bool breaks(const rg_kernels *set, double beta, const double g[3][3], const double pull[3]) {
     static const double no_jump[3] = {0};
-    bench b;
-    bench_make(&b, (rg_cohesive){SIGMA, DELTA, beta, 0, false, false}, 1);
-    bench_deform(&b, g);
-    bench_load(&b, pull, no_jump);
-    bench_run(&b, set);
-    for (size_t i = 0; i < RG_LANES; i++)
-        assert_true(b.broken[i] == (b.active ? ALL : 0));
-    return b.active;
+    int broken = 0;
+    for (int v = 0; v < VIEWS; v++) {
+        bench b;
+        bench_make(&b, (rg_cohesive){SIGMA, DELTA, beta, 0, false, false}, 1, (view)v);
+        bench_deform(&b, g);
+        bench_load(&b, pull, no_jump);
+        bench_run(&b, set);
+        for (size_t i = 0; i < RG_LANES; i++)
+            assert_true(b.broken[i] == (b.active ? ALL : 0));
+        broken += b.active;
+    }
+    assert_true(broken == 0 || broken == VIEWS);
+    return broken > 0;
 }
 
 static bool breaks_stretched(const rg_kernels *set, double area_ratio, double pull) {
@@ -416,8 +466,8 @@ static bool breaks_stretched(const rg_kernels *set, double area_ratio, double pu
 /* The criterion takes the Cauchy stress: a stretched face needs more force, a shrunk one less, but never less
  * than half the strength on its reference area. */
 static void test_current_area(void **state) {
-    const rg_kernels *sets[MAX_SETS];
-    int n = input_sets(sets, MAX_SETS);
+    const rg_kernels *sets[INPUT_SETS];
+    int n = input_sets(sets, INPUT_SETS);
     (void)state;
     for (int k = 0; k < n; k++) {
         assert_false(breaks_stretched(sets[k], 2, 1.99));
@@ -434,8 +484,8 @@ static void test_current_normal(void **state) {
     static const double g[3][3] = {{0, 0, 1}, {0, 1, 0}, {-1, 0, 0}};
     static const double along[3] = {1.01 * SIGMA, 0, 0}, against[3] = {-9 * SIGMA, 0, 0};
     static const double across[3] = {0, 0, 9 * SIGMA};
-    const rg_kernels *sets[MAX_SETS];
-    int n = input_sets(sets, MAX_SETS);
+    const rg_kernels *sets[INPUT_SETS];
+    int n = input_sets(sets, INPUT_SETS);
     (void)state;
     for (int k = 0; k < n; k++) {
         assert_true(breaks(sets[k], 0, g, along));

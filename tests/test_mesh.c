@@ -77,21 +77,27 @@ static void test_counts(void **state) {
     }
 }
 
+/* Six elements in each cell, each a walk from its lowest to its highest vertex; vertices in grid order. */
 static void test_numbering(void **state) {
     (void)state;
     const int64_t n[3] = {3, 2, 4};
     const double origin[3] = {10, 20, 30}, size[3] = {3, 4, 2};
     rg_mesh *m = rg_mesh_box(n, origin, size, 0, 0);
+    const rg_gid row = n[0] + 1, layer = row * (n[1] + 1), diagonal = 1 + row + layer;
+    int count[24] = {0};
     for (rg_gid e = 0; e < m->elements; e++) {
-        rg_gid cell = e / 6, at[3] = {cell % n[0], cell / n[0] % n[1], cell / (n[0] * n[1])};
-        rg_gid low = at[0] + (n[0] + 1) * (at[1] + (n[1] + 1) * at[2]);
-        rg_gid diagonal = 1 + (n[0] + 1) * (1 + (n[1] + 1));
         const rg_gid *c = m->corner + 4 * e;
-        assert_true(c[0] == low && c[0] < c[1] && c[1] < c[2] && c[2] < c[3] && c[3] == low + diagonal);
+        rg_gid at[3] = {c[0] % row, c[0] / row % (n[1] + 1), c[0] / layer};
+        assert_true(at[0] < n[0] && at[1] < n[1] && at[2] < n[2]);
+        assert_true(c[0] < c[1] && c[1] < c[2] && c[2] < c[3] && c[3] == c[0] + diagonal);
+        count[at[0] + n[0] * (at[1] + n[1] * at[2])]++;
         for (int i = 0; i < 3; i++) {
             assert_true(fabs(vertex(m, e, 0)[i] - (origin[i] + (double)at[i] * size[i] / (double)n[i])) <
                         1e-13);
         }
+    }
+    for (int cell = 0; cell < 24; cell++) {
+        assert_int_equal(count[cell], 6);
     }
     rg_mesh_free(m);
 }
@@ -281,49 +287,144 @@ static void test_connect_unstructured(void **state) {
     rg_mesh_free(m);
 }
 
-/* Mean distance between the indices of neighbours when the elements are ordered along the curve. */
-struct item {
-    uint64_t key;
-    rg_gid id;
-};
-
-static int by_key(const void *a, const void *b) {
-    const struct item *p = a, *q = b;
-    return (p->key > q->key) - (p->key < q->key);
+/* Index of an element's centroid on the curve, where space counts in mean elements. */
+static uint64_t curve_key(const rg_mesh *m, const double low[3], const double extent[3], double edge,
+                          rg_gid e) {
+    static const double origin[3] = {0, 0, 0};
+    double x[3] = {0, 0, 0};
+    for (int i = 0; i < 3; i++) {
+        x[i] = 0.25 * ((vertex(m, e, 0)[i] + vertex(m, e, 1)[i]) + (vertex(m, e, 2)[i] + vertex(m, e, 3)[i]));
+        x[i] = (x[i] - low[i]) / extent[i];
+    }
+    return rg_hilbert_point(x, origin, edge);
 }
 
+/* Elements ascend along the curve. */
+static void test_order(void **state) {
+    (void)state;
+    for (int b = 0; b < BOXES; b++) {
+        rg_mesh *m = make(&boxes[b]);
+        double box[2][3], extent[3], edge = 0;
+        rg_mesh_box_around(m, box);
+        rg_mesh_mean_extent(m, (const double(*)[3])box, extent);
+        for (int i = 0; i < 3; i++) {
+            assert_true(box[0][i] == boxes[b].origin[i] && box[1][i] == box[0][i] + boxes[b].size[i]);
+            edge = fmax(edge, boxes[b].size[i] / extent[i]);
+        }
+        for (rg_gid e = 1; e < m->elements; e++) {
+            assert_true(curve_key(m, box[0], extent, edge, e - 1) < curve_key(m, box[0], extent, edge, e));
+        }
+        rg_mesh_free(m);
+    }
+}
+
+/* All elements of a cube of six are as wide as the cube; the sum has 30 bits. */
+static void test_mean_extent(void **state) {
+    (void)state;
+    const int64_t n[3] = {3, 4, 5};
+    const double origin[3] = {1, 2, 3}, size[3] = {0.3, 4, 50};
+    rg_mesh *m = rg_mesh_box(n, origin, size, 0, 0);
+    double box[2][3], extent[3];
+    rg_mesh_box_around(m, box);
+    rg_mesh_mean_extent(m, (const double(*)[3])box, extent);
+    for (int i = 0; i < 3; i++) {
+        double cube = size[i] / (double)n[i];
+        assert_true(fabs(extent[i] - cube) < 1e-8 * cube);
+    }
+    rg_mesh_free(m);
+}
+
+/* Neighbours are near each other in the mesh's order. */
 static void test_hilbert_locality(void **state) {
     (void)state;
     const int64_t n[3] = {12, 10, 14};
     const double low[3] = {0, 0, 0}, size[3] = {1.2, 1.0, 1.4};
     rg_mesh *m = rg_mesh_box(n, low, size, 0, 0);
-    struct item *item = RG_NEW(struct item, (size_t)m->elements);
-    rg_gid *rank = RG_NEW(rg_gid, (size_t)m->elements);
-    for (rg_gid e = 0; e < m->elements; e++) {
-        double x[3] = {0, 0, 0};
-        for (int i = 0; i < 12; i++) {
-            x[i % 3] += vertex(m, e, i / 3)[i % 3] / 4;
-        }
-        item[e] = (struct item){rg_hilbert_point(x, low, 1.4), e};
-    }
-    qsort(item, (size_t)m->elements, sizeof *item, by_key);
-    for (rg_gid i = 0; i < m->elements; i++) {
-        assert_true(i == 0 || item[i].key > item[i - 1].key);
-        rank[item[i].id] = i;
-    }
     double sum = 0.0;
     rg_gid count = 0;
     for (rg_gid slot = 0; slot < 4 * m->elements; slot++) {
         if (m->neighbour[slot] >= 0) {
-            sum += fabs((double)(rank[m->neighbour[slot]] - rank[slot / 4]));
+            sum += fabs((double)(m->neighbour[slot] - slot / 4));
             count++;
         }
     }
     double mean = sum / (double)count, random = (double)m->elements / 3;
     assert_true(mean < 0.1 * random);
-    rg_free(item);
-    rg_free(rank);
     rg_mesh_free(m);
+}
+
+/* An element as vertices and sets, whatever its number. */
+struct record {
+    rg_gid corner[4];
+    int8_t set[4];
+};
+
+static int by_corners(const void *a, const void *b) {
+    const struct record *p = a, *q = b;
+    return memcmp(p->corner, q->corner, sizeof p->corner);
+}
+
+static struct record *records(const rg_mesh *m) {
+    struct record *list = RG_NEW(struct record, (size_t)m->elements);
+    for (rg_gid e = 0; e < m->elements; e++) {
+        memcpy(list[e].corner, m->corner + 4 * e, sizeof list[e].corner);
+        memcpy(list[e].set, m->set + 4 * e, sizeof list[e].set);
+    }
+    qsort(list, (size_t)m->elements, sizeof *list, by_corners);
+    return list;
+}
+
+/* Sorting keeps each element with its sets, and brings a shuffled mesh back to the same order. */
+static void test_sort(void **state) {
+    (void)state;
+    rg_mesh *m = make(&boxes[BOXES - 1]);
+    size_t faces = 4 * (size_t)m->elements, bytes = (size_t)m->elements * sizeof(struct record);
+    rg_gid *moved = RG_NEW(rg_gid, (size_t)m->elements), *corner = RG_NEW(rg_gid, faces);
+    int8_t *set = RG_NEW(int8_t, faces);
+    struct record *before = records(m);
+    memcpy(corner, m->corner, faces * sizeof *corner);
+    memcpy(set, m->set, faces);
+    shuffle(moved, m->elements, 2);
+    for (size_t slot = 0; slot < faces; slot++) {
+        m->corner[4 * moved[slot / 4] + (rg_gid)slot % 4] = corner[slot];
+        m->set[4 * moved[slot / 4] + (rg_gid)slot % 4] = set[slot];
+    }
+    assert_memory_not_equal(m->corner, corner, faces * sizeof *corner);
+    rg_mesh_sort(m);
+    struct record *after = records(m);
+    assert_memory_equal(after, before, bytes);
+    assert_memory_equal(m->corner, corner, faces * sizeof *corner);
+    assert_memory_equal(m->set, set, faces);
+    rg_free(before);
+    rg_free(after);
+    rg_free(moved);
+    rg_free(corner);
+    rg_free(set);
+    rg_mesh_free(m);
+}
+
+/* At least 64 tiles where the elements suffice, of whole blocks if that is possible, RG_TILE at most. */
+static void test_tile_elements(void **state) {
+    (void)state;
+    static const struct {
+        rg_gid elements;
+        int tile;
+    } known[] = {{1, 1},           {6, 1},
+                 {63, 1},          {127, 1},
+                 {128, 2},         {511, 7},
+                 {512, 8},         {1023, 15},
+                 {1024, 16},       {64 * 255, 240},
+                 {16383, 240},     {16384, RG_TILE},
+                 {16385, RG_TILE}, {INT64_C(1) << 40, RG_TILE}};
+    for (size_t k = 0; k < sizeof known / sizeof known[0]; k++) {
+        assert_int_equal(rg_tile_elements(known[k].elements), known[k].tile);
+    }
+    for (rg_gid elements = 1; elements < 40000; elements++) {
+        int tile = rg_tile_elements(elements);
+        rg_gid tiles = (elements + tile - 1) / tile;
+        assert_true(tile >= 1 && tile <= RG_TILE && (tile < 16 || tile % 16 == 0));
+        assert_true(tiles >= 64 || tiles == elements);
+    }
 }
 
 /* The 512 cells nearest the origin are the curve's first 512, each a face neighbour of the one before. */
@@ -361,12 +462,13 @@ static void test_hilbert_point(void **state) {
     assert_true(rg_hilbert_cell(corners[1]) == (UINT64_C(1) << 63) - 1);
 }
 
-/* Sizes of the smallest and the largest part. */
-static void part_sizes(const rg_mesh *m, int parts, const int32_t *part, rg_gid *least, rg_gid *most) {
+/* Sizes of the smallest and the largest part, in elements. */
+static void part_sizes(const rg_mesh *m, int tile, int parts, const int32_t *part, rg_gid *least,
+                       rg_gid *most) {
     rg_gid *size = RG_NEW(rg_gid, (size_t)parts);
     for (rg_gid e = 0; e < m->elements; e++) {
-        assert_true(part[e] >= 0 && part[e] < parts);
-        size[part[e]]++;
+        assert_true(part[e / tile] >= 0 && part[e / tile] < parts);
+        size[part[e / tile]]++;
     }
     *least = m->elements;
     *most = 0;
@@ -377,40 +479,54 @@ static void part_sizes(const rg_mesh *m, int parts, const int32_t *part, rg_gid 
     rg_free(size);
 }
 
+/* Partition of tiles: the same in every run, few faces cut, and balanced within 10 % or what whole tiles
+ * allow: the largest part, for which all wait, within a tile of even, the smallest within two. */
+static void check_partition(const rg_mesh *m, int tile, int parts) {
+    size_t tiles = (size_t)((m->elements + tile - 1) / tile);
+    int32_t *part = RG_NEW(int32_t, tiles), *again = RG_NEW(int32_t, tiles);
+    rg_gid least, most, cut = 0;
+    rg_mesh_partition(m, tile, parts, part);
+    rg_mesh_partition(m, tile, parts, again);
+    assert_memory_equal(part, again, tiles * sizeof *part);
+    part_sizes(m, tile, parts, part, &least, &most);
+    double even = (double)m->elements / parts;
+    assert_true((double)most < even + fmax(0.1 * even, tile));
+    assert_true((double)least > even - fmax(0.1 * even, tile > 1 ? 2 * tile : 0));
+    for (rg_gid slot = 0; slot < 4 * m->elements; slot++) {
+        cut += m->neighbour[slot] >= 0 && part[slot / 4 / tile] != part[m->neighbour[slot] / tile];
+    }
+    assert_true(cut < m->elements / 2); /* a random partition cuts most of the 4 sides per element */
+    rg_free(part);
+    rg_free(again);
+}
+
 static void test_partition_balance(void **state) {
     (void)state;
     const int64_t n[3] = {12, 14, 16};
     const double origin[3] = {0, 0, 0}, size[3] = {1, 1, 1};
     rg_mesh *m = rg_mesh_box(n, origin, size, 0, 0);
-    int32_t *part = RG_NEW(int32_t, (size_t)m->elements), *again = RG_NEW(int32_t, (size_t)m->elements);
-    for (int parts = 1; parts <= 16; parts++) {
-        rg_gid least, most, cut = 0;
-        rg_mesh_partition(m, parts, part);
-        rg_mesh_partition(m, parts, again);
-        assert_memory_equal(part, again, (size_t)m->elements * sizeof *part);
-        part_sizes(m, parts, part, &least, &most);
-        double even = (double)m->elements / parts;
-        assert_true((double)least > 0.9 * even && (double)most < 1.1 * even);
-        for (rg_gid slot = 0; slot < 4 * m->elements; slot++) {
-            cut += m->neighbour[slot] >= 0 && part[slot / 4] != part[m->neighbour[slot]];
+    const int tiles[] = {1, 8, 40, rg_tile_elements(m->elements)};
+    for (size_t k = 0; k < sizeof tiles / sizeof tiles[0]; k++) {
+        for (int parts = 1; parts <= 16; parts++) {
+            check_partition(m, tiles[k], parts);
         }
-        assert_true(cut < m->elements / 2); /* a random partition cuts most of the 4 sides per element */
     }
-    rg_free(part);
-    rg_free(again);
     rg_mesh_free(m);
 }
 
+/* No part is empty, down to one tile each. */
 static void test_partition_tiny(void **state) {
     (void)state;
     for (int b = 0; b < 2; b++) {
         rg_mesh *m = make(&boxes[b]);
         int32_t part[18];
-        for (int parts = 1; parts <= m->elements; parts++) {
-            rg_gid least, most;
-            rg_mesh_partition(m, parts, part);
-            part_sizes(m, parts, part, &least, &most);
-            assert_true(least >= 1);
+        for (int tile = 1; tile <= 7; tile++) {
+            for (int parts = 1; parts <= (m->elements + tile - 1) / tile; parts++) {
+                rg_gid least, most;
+                rg_mesh_partition(m, tile, parts, part);
+                part_sizes(m, tile, parts, part, &least, &most);
+                assert_true(least >= 1);
+            }
         }
         rg_mesh_free(m);
     }
@@ -457,11 +573,11 @@ static void many_cells(void) {
     rg_mesh_free(make(&b));
 }
 
+static const rg_mesh *one_cell; /* made before the fork: a child has no threads to sort it */
+
 static void many_parts(void) {
-    rg_mesh *m = make(&boxes[0]);
-    int32_t part[6];
-    rg_mesh_partition(m, 7, part);
-    rg_mesh_free(m);
+    int32_t part[3];
+    rg_mesh_partition(one_cell, 2, 4, part);
 }
 
 static void shared_thrice(void) {
@@ -475,10 +591,13 @@ static void shared_thrice(void) {
 
 static void test_refusals(void **state) {
     (void)state;
+    rg_mesh *m = make(&boxes[0]);
+    one_cell = m;
     expect_refusal(wild_jitter, (const char *const[]){"mesh.jitter: 0.9", "element ", "cell (", NULL});
     expect_refusal(many_cells, (const char *const[]){"mesh.cells", "1000000 x 1000000 x 1000000", NULL});
-    expect_refusal(many_parts, (const char *const[]){"7 ranks", "6 elements", NULL});
+    expect_refusal(many_parts, (const char *const[]){"4 ranks", "6 elements", "3 tiles", NULL});
     expect_refusal(shared_thrice, (const char *const[]){"elements 0, 1 and 2", "vertices 0, 1 and 2", NULL});
+    rg_mesh_free(m);
 }
 
 int main(void) {
@@ -488,7 +607,9 @@ int main(void) {
         cmocka_unit_test(test_closed_elements),  cmocka_unit_test(test_sets),
         cmocka_unit_test(test_jitter),           cmocka_unit_test(test_connect_unstructured),
         cmocka_unit_test(test_hilbert_curve),    cmocka_unit_test(test_hilbert_point),
-        cmocka_unit_test(test_hilbert_locality), cmocka_unit_test(test_partition_balance),
+        cmocka_unit_test(test_hilbert_locality), cmocka_unit_test(test_order),
+        cmocka_unit_test(test_mean_extent),      cmocka_unit_test(test_sort),
+        cmocka_unit_test(test_tile_elements),    cmocka_unit_test(test_partition_balance),
         cmocka_unit_test(test_partition_tiny),   cmocka_unit_test(test_refusals),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

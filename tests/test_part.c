@@ -27,16 +27,15 @@ static const struct box {
     const char *name;
     int64_t cells[3];
     double origin[3], size[3], jitter;
+    int tile; /* elements */
 } boxes[] = {
-    {"one cell", {1, 1, 1}, {0, 0, 0}, {1, 1, 1}, 0},
-    {"bar", {3, 3, 30}, {-0.2e-3, -0.2e-3, -2e-3}, {0.4e-3, 0.4e-3, 4e-3}, 0.12},
-    {"block",
-     {16, 14, 18},
-     {1, 2, 3},
-     {1.6, 1.2, 2.0},
-     0.1}, /* more elements per rank than fit one message */
+    {"one cell", {1, 1, 1}, {0, 0, 0}, {1, 1, 1}, 0, 1},
+    {"three tiles, one ragged", {1, 1, 2}, {0, 0, 0}, {1, 1, 1}, 0, 5},
+    {"bar", {3, 3, 30}, {-0.2e-3, -0.2e-3, -2e-3}, {0.4e-3, 0.4e-3, 4e-3}, 0.12, 24},
+    {"bar in single elements", {2, 2, 20}, {0, 0, 0}, {0.1, 0.1, 1}, 0.1, 1},
+    {"block", {16, 14, 18}, {1, 2, 3}, {1.6, 1.2, 2.0}, 0.1, 256},
 };
-enum { BOXES = sizeof boxes / sizeof boxes[0], CHECKS = 11 };
+enum { BOXES = sizeof boxes / sizeof boxes[0], CHECKS = 12 };
 
 /* What all ranks know together. */
 struct whole {
@@ -74,7 +73,8 @@ static bool header_right(const struct whole *w, const struct box *b) {
     const rg_part *p = w->part;
     const int64_t *n = b->cells;
     rg_gid surface = 4 * (n[0] * n[1] + n[1] * n[2] + n[2] * n[0]);
-    bool good = p->total == w->mesh->elements && p->interfaces == (4 * p->total - surface) / 2;
+    bool good =
+        p->total == w->mesh->elements && p->interfaces == (4 * p->total - surface) / 2 && p->tile == b->tile;
     for (int i = 0; i < 3; i++) {
         good = good && p->box[0][i] == b->origin[i] && p->box[1][i] == b->origin[i] + b->size[i];
     }
@@ -97,10 +97,26 @@ static bool every_element_once(const struct whole *w) {
     return good;
 }
 
-/* No rank empty; within 10 % of even where there are enough elements. */
+/* No rank empty; within a tile, or 10 %, of even where there are enough elements. */
 static bool balanced(const struct whole *w) {
     double even = (double)w->mesh->elements / ranks, own = (double)w->part->elements;
-    return own >= 1 && (even < 500 || fabs(own - even) < 0.1 * even);
+    double slack = fmax(0.1 * even, w->part->tile);
+    return w->part->tiles >= 1 && own >= 1 && (even < 500 || fabs(own - even) <= slack);
+}
+
+/* Each tile on one rank, as a whole and in the order of its elements. */
+static bool whole_tiles(const struct whole *w) {
+    const rg_part *p = w->part;
+    bool good = true;
+    rg_lid at = 0;
+    for (rg_lid t = 0; good && t < p->tiles; t++) {
+        rg_gid first = p->tile_id[t] * p->tile, left = w->mesh->elements - first;
+        good = first >= 0 && left > 0 && rg_tile_size(p, p->tile_id[t]) == (left < p->tile ? left : p->tile);
+        for (rg_gid e = first; good && e < first + p->tile && e < w->mesh->elements; e++, at++) {
+            good = at < p->elements && p->element[at].id == e;
+        }
+    }
+    return good && at == p->elements;
 }
 
 static bool same_as_mesh(const struct whole *w, const rg_element *e) {
@@ -146,34 +162,61 @@ static bool all_elements(const struct whole *w, bool (*right)(const struct whole
     return good;
 }
 
+static bool touches_other_rank(const rg_element *e) {
+    bool shared = false;
+    for (int f = 0; f < 4; f++) {
+        shared = shared || (e->owner[f] >= 0 && e->owner[f] != rank);
+    }
+    return shared;
+}
+
+/* Tiles that touch another rank, then the others, each by ascending number. */
 static bool boundary_first(const struct whole *w) {
-    bool good = w->part->boundary <= w->part->elements && (w->part->boundary > 0) == (ranks > 1);
-    for (rg_lid i = 0; i < w->part->elements; i++) {
+    const rg_part *p = w->part;
+    bool good = p->boundary <= p->tiles && (p->boundary > 0) == (ranks > 1);
+    const rg_element *e = p->element;
+    for (rg_lid t = 0; t < p->tiles; t++) {
         bool shared = false;
-        for (int f = 0; f < 4; f++) {
-            int32_t owner = w->part->element[i].owner[f];
-            shared = shared || (owner >= 0 && owner != rank);
+        for (rg_lid i = 0; i < rg_tile_size(p, p->tile_id[t]); i++, e++) {
+            shared = shared || touches_other_rank(e);
         }
-        good = good && shared == (i < w->part->boundary);
+        good = good && shared == (t < p->boundary);
+        good = good && (t == 0 || t == p->boundary || p->tile_id[t - 1] < p->tile_id[t]);
     }
     return good;
 }
 
-static uint64_t key(const rg_part *p, const rg_element *e) {
-    double edge = 0.0, x[3];
+/* Places on the curve, in units of the mean element. */
+static void keys(const struct whole *w, uint64_t *key_of) {
+    const double(*box)[3] = (const double(*)[3])w->part->box, origin[3] = {0, 0, 0};
+    double extent[3], edge = 0.0, x[3];
+    rg_mesh_mean_extent(w->mesh, box, extent);
     for (int i = 0; i < 3; i++) {
-        edge = fmax(edge, p->box[1][i] - p->box[0][i]);
-        x[i] = 0.25 * ((e->x[0][i] + e->x[1][i]) + (e->x[2][i] + e->x[3][i]));
+        edge = fmax(edge, (box[1][i] - box[0][i]) / extent[i]);
     }
-    return rg_hilbert_point(x, p->box[0], edge);
+    for (rg_lid k = 0; k < w->part->elements; k++) {
+        const rg_element *e = &w->part->element[k];
+        for (int i = 0; i < 3; i++) {
+            x[i] = (0.25 * ((e->x[0][i] + e->x[1][i]) + (e->x[2][i] + e->x[3][i])) - box[0][i]) / extent[i];
+        }
+        key_of[k] = rg_hilbert_point(x, origin, edge);
+    }
 }
 
+/* All of the mesh's elements by ascending number: along the curve within each group of tiles. */
 static bool along_curve(const struct whole *w) {
+    const rg_part *p = w->part;
     bool good = true;
-    for (rg_lid i = 1; i < w->part->elements; i++) {
-        uint64_t before = key(w->part, w->part->element + i - 1), here = key(w->part, w->part->element + i);
-        good = good && (i == w->part->boundary || before < here);
+    rg_lid first_inner = 0;
+    for (rg_lid t = 0; t < p->boundary; t++) {
+        first_inner += rg_tile_size(p, p->tile_id[t]);
     }
+    uint64_t *key_of = RG_NEW(uint64_t, (size_t)p->elements);
+    keys(w, key_of);
+    for (rg_lid i = 1; i < p->elements; i++) {
+        good = good && (i == first_inner || key_of[i - 1] < key_of[i]);
+    }
+    rg_free(key_of);
     return good;
 }
 
@@ -181,7 +224,11 @@ static bool along_curve(const struct whole *w) {
  * number of elements in a section through a cube of `count`, which is what a curve that fills space can give.
  * A random order gives count / 3, well above that for the counts tried here. */
 static bool local(const struct whole *w) {
-    rg_lid begin = w->part->boundary, count = w->part->elements - begin;
+    rg_lid begin = 0;
+    for (rg_lid t = 0; t < w->part->boundary; t++) {
+        begin += rg_tile_size(w->part, w->part->tile_id[t]);
+    }
+    rg_lid count = w->part->elements - begin;
     if (count < 500) {
         return true;
     }
@@ -205,17 +252,18 @@ static bool local(const struct whole *w) {
 
 static void check_box(const struct box *b) {
     rg_mesh *mesh = rg_mesh_box(b->cells, b->origin, b->size, b->jitter, 5);
-    rg_part *part = rg_part_distribute(rank == 0 ? mesh : NULL, MPI_COMM_WORLD);
+    rg_part *part = rg_part_distribute(rank == 0 ? mesh : NULL, rank == 0 ? b->tile : 0, MPI_COMM_WORLD);
     struct whole w = gather(mesh, part);
     report(header_right(&w, b), b->name, "counts and box");
     report(names_right(&w), b->name, "names of the sets");
     report(every_element_once(&w), b->name, "every element on exactly one rank");
     report(balanced(&w), b->name, "ranks balanced");
+    report(whole_tiles(&w), b->name, "whole tiles");
     report(all_elements(&w, same_as_mesh), b->name, "elements as in the mesh");
     report(all_elements(&w, owners_right), b->name, "owners of neighbours");
     report(all_elements(&w, volume_right), b->name, "volumes");
     report(all_elements(&w, other_volumes_right), b->name, "neighbours' volumes bit for bit");
-    report(boundary_first(&w), b->name, "boundary elements first");
+    report(boundary_first(&w), b->name, "boundary tiles first, each group by number");
     report(along_curve(&w), b->name, "along the Hilbert curve");
     report(local(&w), b->name, "neighbours near in the order");
     release(&w);

@@ -9,7 +9,7 @@
 #include <string.h>
 #include "kernel_input.h"
 
-enum { MAX_SETS = 8, NODE_VALUES = INPUT_EBLOCKS * RG_NODE_BLOCK };
+enum { NODE_VALUES = INPUT_EBLOCKS * RG_NODE_BLOCK };
 
 static void assert_near(double got, double expected, double tolerance) {
     if (!(fabs(got - expected) <= tolerance))
@@ -18,8 +18,8 @@ static void assert_near(double got, double expected, double tolerance) {
 
 /* Runs `test` on every set. */
 static void for_each_set(void (*test)(const rg_kernels *set)) {
-    const rg_kernels *sets[MAX_SETS];
-    int n = input_sets(sets, MAX_SETS);
+    const rg_kernels *sets[INPUT_SETS];
+    int n = input_sets(sets, INPUT_SETS);
     for (int k = 0; k < n; k++)
         test(sets[k]);
 }
@@ -39,11 +39,11 @@ static body body_make(const rg_kernels *set, input *in) {
         .force = input_alloc(NODE_VALUES * sizeof(double)),
         .traction = input_alloc(INPUT_EBLOCKS * RG_TRACTION_BLOCK * sizeof(double)),
         .stiffening = input_alloc(INPUT_ESLOTS * sizeof(double)),
-        .iforce = input_alloc((INPUT_IBLOCKS + 1) * RG_IFORCE_BLOCK * sizeof(double)),
+        .iforce = input_alloc(INPUT_IBLOCKS * RG_IFORCE_BLOCK * sizeof(double)),
         .crack = input_alloc(INPUT_IBLOCKS * RG_CRACK_BLOCK * sizeof(double)),
         .energy = input_alloc(INPUT_ISLOTS * RG_E_INTERFACE * sizeof(double)),
-        .broken = input_alloc(INPUT_ISLOTS + RG_LANES),
-        .unlinked = input_alloc(INPUT_ISLOTS + RG_LANES),
+        .broken = input_alloc(INPUT_ISLOTS),
+        .unlinked = input_alloc(INPUT_ISLOTS),
     };
 }
 
@@ -64,22 +64,12 @@ static double evaluate(body *b) {
     input *in = b->in;
     double sum = 0;
     memcpy(b->crack, in->crack, INPUT_IBLOCKS * RG_CRACK_BLOCK * sizeof(double));
-    memcpy(b->broken, in->broken, INPUT_ISLOTS + RG_LANES);
-    memcpy(b->unlinked, in->unlinked, INPUT_ISLOTS + RG_LANES);
+    memcpy(b->broken, in->broken, INPUT_ISLOTS);
+    memcpy(b->unlinked, in->unlinked, INPUT_ISLOTS);
     rg_bulk_args bulk = input_bulk_args(in, b->force, b->traction, b->stiffening);
-    rg_interface_args interface = {
-        .law = in->law,
-        .u = in->u,
-        .traction = b->traction,
-        .side = {in->side[0], in->side[1]},
-        .geom = in->igeom,
-        .broken = b->broken,
-        .unlinked = b->unlinked,
-        .active = in->active,
-        .crack = b->crack,
-        .crack_stride = RG_CRACK_BLOCK,
-        .force = b->iforce,
-    };
+    rg_interface_args interface =
+        input_interface_args(in, b->broken, b->unlinked, in->active, b->crack, b->iforce);
+    interface.traction = b->traction;
     b->set->bulk(&bulk, 0, INPUT_EBLOCKS);
     b->set->interface(&interface, 0, INPUT_IBLOCKS);
     b->set->bulk_state(&(rg_bulk_state_args){&bulk, b->energy, NULL}, 0, INPUT_EBLOCKS);
@@ -98,8 +88,10 @@ static double node_force(const body *b, size_t s, int a, int c) {
         for (int k = 0; k < RG_FNODES; k++)
             if (rg_face_node[face][k] == a) {
                 int32_t link = b->in->interface[rg_link_index(s, face)];
-                double g = b->iforce[rg_iforce_index((size_t)link >> 1, k, c)];
-                f += link & 1 ? -g : g;
+                if (link == RG_NO_INTERFACE)
+                    continue;
+                double g = b->iforce[rg_iforce_index((size_t)link / 4, k, c)];
+                f += link % 4 == 1 ? -g : g;
             }
     return f;
 }
@@ -352,9 +344,9 @@ static void check_extension(const rg_kernels *set) {
             while (b.in->element[e] != (size_t)link / 4)
                 e++;
             const double *x = b.in->x[e][rg_face_node[link % 4][k / 3]];
-            double area = b.in->igeom[rg_igeom_index(s, RG_IGEOM_AREA)];
+            double vector[3], area = input_area(b.in, s, vector);
             double stress = curve * (b.in->material.lambda * (x[0] + x[1] + x[2]) + 2 * mu * x[k % 3]);
-            double expected = area * stress * b.in->igeom[rg_igeom_index(s, RG_IGEOM_NORMAL + k % 3)];
+            double expected = stress * vector[k % 3];
             double got = b.traction[rg_traction_index((size_t)link / 4, link % 4, k / 3, k % 3)];
             assert_near(got, expected, 1e-4 * area * mu * strain);
         }
@@ -439,54 +431,87 @@ static void check_balance(const body *b, size_t s, bool lumped, const double *a)
         }
 }
 
-static void check_update(const rg_kernels *set) {
+/* Kick of the whole body by the input's forces, from the input's velocities. */
+static void kick(const body *b, bool lumped, double *velocity, double *now) {
+    const rg_kick_args args = {.density = b->in->material.density,
+                               .lumped = lumped,
+                               .dt = 1e-9,
+                               .geom = b->in->geom,
+                               .force = b->force,
+                               .iforce = b->iforce,
+                               .interface = b->in->interface,
+                               .velocity = velocity,
+                               .now = now,
+                               .dt_now = 4e-10};
+    b->set->kick(&args, 0, INPUT_EBLOCKS);
+}
+
+static void check_kick(const rg_kernels *set) {
     body b = body_make(set, input_make(INPUT_SMALL, unbreakable, 3, 1));
     const size_t bytes = NODE_VALUES * sizeof(double);
-    double *velocity = input_alloc(bytes), *u = input_alloc(bytes), *a = input_alloc(bytes);
+    double *velocity = input_alloc(bytes), *now = input_alloc(bytes), *a = input_alloc(bytes);
     memcpy(b.force, b.in->pull, bytes);
-    memcpy(b.iforce, b.in->ipull, (INPUT_IBLOCKS + 1) * RG_IFORCE_BLOCK * sizeof(double));
+    memcpy(b.iforce, b.in->ipull, INPUT_IBLOCKS * RG_IFORCE_BLOCK * sizeof(double));
     for (int lumped = 0; lumped < 2; lumped++) {
-        rg_update_args args = {b.in->material.density, 1e-9,     3e-10, lumped, b.in->geom, b.force, b.iforce,
-                               b.in->interface,        velocity, u};
         memset(velocity, 0, bytes);
-        memcpy(u, b.in->u, bytes);
-        set->update(&args, 0, INPUT_EBLOCKS);
+        kick(&b, lumped, velocity, NULL);
         for (size_t k = 0; k < NODE_VALUES; k++)
             a[k] = velocity[k] / 1e-9;
         for (size_t e = 0; e < INPUT_ELEMENTS; e++)
             check_balance(&b, b.in->element[e], lumped, a);
         memcpy(velocity, b.in->velocity, bytes);
-        memcpy(u, b.in->u, bytes);
-        set->update(&args, 0, INPUT_EBLOCKS);
+        kick(&b, lumped, velocity, now);
         for (size_t k = 0; k < NODE_VALUES; k++) {
-            assert_near(velocity[k], b.in->velocity[k] + 1e-9 * a[k], 1e-12 * fabs(1e-9 * a[k]) + 1e-13);
-            assert_near(u[k], b.in->u[k] + 3e-10 * velocity[k], 1e-14 * fabs(3e-10 * velocity[k]) + 1e-21);
+            double v = b.in->velocity[k];
+            assert_near(velocity[k], v + 1e-9 * a[k], 1e-12 * fabs(1e-9 * a[k]) + 1e-13);
+            assert_near(now[k], v + 4e-10 * a[k], 1e-12 * fabs(4e-10 * a[k]) + 1e-13);
         }
         memcpy(a, velocity, bytes);
         memcpy(velocity, b.in->velocity, bytes);
-        args.u = NULL;
-        set->update(&args, 0, INPUT_EBLOCKS);
+        kick(&b, lumped, velocity, NULL);
         assert_memory_equal(velocity, a, bytes);
     }
     free(velocity);
-    free(u);
+    free(now);
     free(a);
     body_free(&b);
 }
 
-/* M a = f with the interface forces on both sides, v += dt a, u += dt v with the new v, where u is given. */
-static void test_update(void **state) {
+/* M a = f with the interface forces on both sides, v += dt a; where `now` is given, v + dt_now a there. */
+static void test_kick(void **state) {
     (void)state;
-    for_each_set(check_update);
+    for_each_set(check_kick);
+}
+
+static void check_drift(const rg_kernels *set) {
+    input *in = input_make(INPUT_SMALL, unbreakable, 3, 1);
+    double *u = input_alloc(NODE_VALUES * sizeof(double));
+    memcpy(u, in->u, NODE_VALUES * sizeof(double));
+    set->drift(&(rg_drift_args){3e-10, in->velocity, u}, 0, INPUT_EBLOCKS);
+    for (size_t k = 0; k < NODE_VALUES; k++)
+        assert_near(u[k], in->u[k] + 3e-10 * in->velocity[k], 1e-14 * fabs(3e-10 * in->velocity[k]) + 1e-21);
+    free(u);
+    input_free(in);
+}
+
+/* u += dt v. */
+static void test_drift(void **state) {
+    (void)state;
+    for_each_set(check_drift);
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_intact_gradient), cmocka_unit_test(test_broken_gradient),
-        cmocka_unit_test(test_rigid),           cmocka_unit_test(test_stress),
-        cmocka_unit_test(test_cauchy),          cmocka_unit_test(test_uniaxial),
-        cmocka_unit_test(test_extension),       cmocka_unit_test(test_mass),
-        cmocka_unit_test(test_update),
+        cmocka_unit_test(test_intact_gradient),
+        cmocka_unit_test(test_broken_gradient),
+        cmocka_unit_test(test_rigid),
+        cmocka_unit_test(test_stress),
+        cmocka_unit_test(test_cauchy),
+        cmocka_unit_test(test_uniaxial),
+        cmocka_unit_test(test_extension),
+        cmocka_unit_test(test_mass),
+        cmocka_unit_test(test_kick),
+        cmocka_unit_test(test_drift),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,85 @@
+#include "tile.h"
+
+#include "mem.h"
+
+rg_trace_args rg_tile_traces(const rg_solver *s, const rg_tile *t, const rg_workspace *w, bool next) {
+    const rg_domain *d = s->domain;
+    double *rows = s->rows[next ? 1 - s->current : s->current];
+    return (rg_trace_args){.u = s->u + t->begin * RG_NODE_BLOCK,
+                           .traction = w->traction,
+                           .side = d->side[0] + t->sbegin * RG_LANES,
+                           .other = d->side[1] + t->sbegin * RG_LANES,
+                           .rows = rows,
+                           .own_rows = rows + t->row * RG_TRACE_ROW,
+                           .own_tractions = s->tractions + t->row * RG_SEAM_ROW,
+                           .ghost = w->ghost};
+}
+
+rg_bulk_args rg_tile_bulk(const rg_solver *s, const rg_tile *t, const rg_workspace *w) {
+    const rg_domain *d = s->domain;
+    return (rg_bulk_args){.material = s->material,
+                          .lift = s->lift,
+                          .u = s->u + t->begin * RG_NODE_BLOCK,
+                          .ghost = w->ghost,
+                          .geom = d->geom + t->begin * RG_GEOM_BLOCK,
+                          .neighbour = d->neighbour + t->begin * RG_LINK_BLOCK,
+                          .interface = d->interface + t->begin * RG_LINK_BLOCK,
+                          .cracked = s->cracked + t->begin,
+                          .unlinked = s->unlinked + t->ibegin * RG_LANES,
+                          .force = w->force,
+                          .traction = w->traction,
+                          .stiffening = s->stiffening + t->begin * RG_LANES};
+}
+
+rg_interface_args rg_tile_interfaces(const rg_solver *s, const rg_tile *t, const rg_workspace *w) {
+    const rg_domain *d = s->domain;
+    size_t first = t->ibegin * RG_LANES;
+    return (rg_interface_args){.law = s->law,
+                               .time = s->time,
+                               .u = s->u + t->begin * RG_NODE_BLOCK,
+                               .traction = w->traction,
+                               .first_seam = rg_tile_inside(t),
+                               .ghost = w->ghost,
+                               .own_tractions = s->tractions + t->row * RG_SEAM_ROW,
+                               .tractions = s->tractions,
+                               .side = {d->side[0] + first, d->side[1] + first},
+                               .geom = d->igeom + t->ibegin * RG_IGEOM_BLOCK,
+                               .broken = s->broken + first,
+                               .unlinked = s->unlinked + first,
+                               .active = s->active + t->ibegin,
+                               .crack = s->crack + t->ibegin * s->crack_stride,
+                               .crack_stride = s->crack_stride,
+                               .force = w->iforce};
+}
+
+void rg_tile_receive(const rg_solver *s, const rg_tile *t, const rg_workspace *w) {
+    rg_trace_args traces = rg_tile_traces(s, t, w, false);
+    s->kernels->receive(&traces, 0, rg_tile_seams(t));
+}
+
+rg_workspace rg_workspace_make(const rg_domain *d) {
+    return (rg_workspace){.force = RG_NEW(double, d->tile_blocks *RG_NODE_BLOCK),
+                          .traction = RG_NEW(double, d->tile_blocks *RG_TRACTION_BLOCK),
+                          .iforce = RG_NEW(double, d->tile_iblocks *RG_IFORCE_BLOCK),
+                          .ghost = RG_NEW(double, d->tile_sblocks *RG_GHOST_BLOCK)};
+}
+
+void rg_workspace_free(rg_workspace *w) {
+    rg_free(w->force);
+    rg_free(w->traction);
+    rg_free(w->iforce);
+    rg_free(w->ghost);
+}
+
+double rg_tile_trace(const rg_solver *s, const rg_tile *t, size_t i, int k, int a, int c) {
+    int32_t link = s->domain->side[k][i];
+    if (i >= t->sbegin * RG_LANES) {
+        int32_t other = s->domain->side[1][i];
+        if (k != other % 2) { /* not the own side */
+            return s->rows[s->current][(size_t)(other / 2) * RG_TRACE_ROW + (size_t)(3 * a + c)];
+        }
+        link = s->domain->side[0][i];
+    }
+    size_t element = t->begin * RG_LANES + (size_t)link / RG_FACES;
+    return s->u[rg_node_index(element, rg_face_node[link % RG_FACES][a], c)];
+}

@@ -1,0 +1,39 @@
+/* A tile as the kernels see it: their arguments, with all pointers to the tile's first block. */
+#ifndef RG_TILE_H
+#define RG_TILE_H
+
+#include "solver.h"
+
+/* Blocks of a tile: elements, interfaces inside, seams. */
+static inline size_t rg_tile_eblocks(const rg_tile *t) {
+    return t->end - t->begin;
+}
+
+static inline size_t rg_tile_inside(const rg_tile *t) {
+    return t->sbegin - t->ibegin;
+}
+
+static inline size_t rg_tile_iblocks(const rg_tile *t) {
+    return t->iend - t->ibegin;
+}
+
+static inline size_t rg_tile_seams(const rg_tile *t) {
+    return t->iend - t->sbegin;
+}
+
+/* Trace rows go out to the current ones, or to those of the next state. */
+rg_trace_args rg_tile_traces(const rg_solver *s, const rg_tile *t, const rg_workspace *w, bool next);
+rg_bulk_args rg_tile_bulk(const rg_solver *s, const rg_tile *t, const rg_workspace *w);
+rg_interface_args rg_tile_interfaces(const rg_solver *s, const rg_tile *t, const rg_workspace *w);
+
+/* Collects the traces of the tile's other sides into the workspace. */
+void rg_tile_receive(const rg_solver *s, const rg_tile *t, const rg_workspace *w);
+
+/* Room for the largest tile of a domain. Free with rg_workspace_free. */
+rg_workspace rg_workspace_make(const rg_domain *d);
+void rg_workspace_free(rg_workspace *w);
+
+/* Displacement component c at node a of interface i (of tile t) on side k: 0 minus, 1 plus. */
+double rg_tile_trace(const rg_solver *s, const rg_tile *t, size_t i, int k, int a, int c);
+
+#endif

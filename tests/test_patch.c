@@ -1,0 +1,207 @@
+/* The largest frequency found on a patch against the whole mesh's, on any number of ranks. Prints TAP from
+ * rank 0. */
+#include <math.h>
+#include <mpi.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../src/mem.h"
+#include "../src/patch.h"
+#include "../src/spectrum.h"
+
+/* Relative to omega^2 of the whole mesh. The patch gives a lower bound; its error and that of both iterations
+ * (up to 0.3 % each) must leave the margin of 2 % its use. */
+#define BELOW 8e-3
+#define ABOVE 3e-3
+
+static int rank, number, failures;
+
+static void report(bool good, const char *mesh, const char *name) {
+    int mine = good, all;
+    MPI_Allreduce(&mine, &all, 1, MPI_INT, MPI_LAND, MPI_COMM_WORLD);
+    number++;
+    failures += !all;
+    if (rank == 0) {
+        printf("%s %d - %s: %s\n", all ? "ok" : "not ok", number, mesh, name);
+    }
+}
+
+/* ---- Cases ---- */
+
+static const struct box {
+    const char *name;
+    int64_t cells[3];
+    double size[3], jitter, grading; /* grading: how much farther apart planes are at the upper end */
+} boxes[] = {
+    {"regular", {10, 10, 10}, {10, 10, 10}, 0, 0},
+    {"slightly jittered", {10, 10, 10}, {10, 10, 10}, 0.01, 0},
+    {"jittered", {10, 10, 10}, {10, 10, 10}, 0.1, 0},
+    {"much jittered", {10, 10, 10}, {10, 10, 10}, 0.25, 0},
+    {"long cells", {10, 10, 10}, {10, 10, 50}, 0.05, 0},
+    {"flat cells", {10, 10, 10}, {10, 10, 2}, 0, 0},
+    {"graded", {10, 10, 10}, {10, 10, 10}, 0.1, 3},
+    {"bar", {3, 3, 100}, {3, 3, 100}, 0.1, 0},
+};
+
+static const struct physics {
+    rg_form form;
+    rg_penalty penalty;
+    rg_mass mass;
+    double beta_s;
+} kinds[] = {
+    {RG_FORM_VARIATIONAL, RG_PENALTY_ELASTIC, RG_MASS_CONSISTENT, 4},
+    {RG_FORM_VARIATIONAL, RG_PENALTY_ISOTROPIC, RG_MASS_LUMPED, 4},
+    {RG_FORM_INCOMPLETE, RG_PENALTY_ELASTIC, RG_MASS_LUMPED, 20},
+};
+enum { BOXES = sizeof boxes / sizeof *boxes, KINDS = sizeof kinds / sizeof *kinds };
+
+static rg_case make_case(const struct physics *p) {
+    rg_case c = {.material = {.young = 260e9, .poisson = 0.21, .density = 3690}, .mass = p->mass};
+    c.interface.form = p->form;
+    c.interface.penalty = p->penalty;
+    c.interface.beta_s = p->beta_s;
+    c.interface.law = RG_LAW_LINEAR;
+    c.interface.strength = 400e6;
+    c.interface.energy = 34;
+    c.interface.beta = 1;
+    return c;
+}
+
+static rg_part *make_part(const struct box *b, MPI_Comm comm) {
+    const double origin[3] = {0, 0, 0};
+    int here;
+    MPI_Comm_rank(comm, &here);
+    rg_mesh *mesh = here == 0 ? rg_mesh_box(b->cells, origin, b->size, b->jitter, 3) : NULL;
+    for (rg_gid k = 0; mesh != NULL && k < 3 * mesh->vertices; k++) {
+        double s = mesh->x[k] / b->size[k % 3];
+        mesh->x[k] *= 1 + b->grading * s;
+    }
+    rg_part *part = rg_part_distribute(mesh, mesh == NULL ? 0 : rg_tile_elements(mesh->elements), comm);
+    rg_mesh_free(mesh);
+    return part;
+}
+
+static rg_solver *make_solver(const rg_case *c, const struct box *b, MPI_Comm comm) {
+    rg_part *part = make_part(b, comm), *patch = rg_patch_gather(part, comm);
+    rg_solver *s = rg_solver_make_from_part(c, part, comm);
+    s->patch = patch;
+    return s;
+}
+
+/* ---- Checks ---- */
+
+static void check_frequency(const struct box *b, const struct physics *p) {
+    rg_case c = make_case(p);
+    rg_solver *s = make_solver(&c, b, MPI_COMM_WORLD), *alone = make_solver(&c, b, MPI_COMM_SELF);
+    rg_spectrum(s);
+    rg_spectrum(alone);
+    report(memcmp(&s->omega2, &alone->omega2, sizeof s->omega2) == 0 && s->limiting == alone->limiting &&
+               strcmp(s->limiting_state, alone->limiting_state) == 0,
+           b->name, "the same on one rank");
+    double patch = s->omega2;
+    rg_spectrum_whole(s);
+    double error = patch / s->omega2 - 1;
+    if (rank == 0) {
+        printf("# omega^2 of the patch %+.2e\n", error);
+    }
+    report(error > -BELOW && error < ABOVE, b->name, "close to the whole mesh");
+    rg_solver_free(s);
+    rg_solver_free(alone);
+}
+
+static int by_number(const void *a, const void *b) {
+    const rg_gid *p = a, *q = b;
+    return (*p > *q) - (*p < *q);
+}
+
+/* Number in the patch of element `original` of the mesh. */
+static rg_gid find(const rg_part *p, rg_gid original) {
+    const rg_gid *found = bsearch(&original, p->original, (size_t)p->elements, sizeof original, by_number);
+    return found == NULL ? -1 : found - p->original;
+}
+
+/* Numbered in the order of the mesh, in whole tiles; neighbours know each other; faces to elements outside,
+ * and no others, are cut. */
+static bool well_connected(const rg_part *patch, const rg_mesh *mesh) {
+    bool good = (rg_gid)patch->tiles * patch->tile >= patch->total && patch->boundary == 0;
+    for (rg_lid t = 0; t < patch->tiles; t++) {
+        good = good && patch->tile_id[t] == t;
+    }
+    for (rg_lid i = 0; i < patch->elements; i++) {
+        const rg_element *e = &patch->element[i];
+        rg_gid original = patch->original[i];
+        good = good && e->id == i && (i == 0 || patch->original[i - 1] < original);
+        for (int f = 0; f < 4; f++) {
+            rg_gid other = mesh->neighbour[4 * original + f], here = find(patch, other);
+            good = good && e->neighbour[f] == here && e->owner[f] == (here < 0 ? -1 : 0) &&
+                   e->face[f] == (here < 0 ? -1 : mesh->face[4 * original + f]) &&
+                   e->set[f] == (here < 0 && other >= 0 ? RG_PATCH_CUT : -1);
+        }
+    }
+    return good;
+}
+
+static void check_patch(void) {
+    const double origin[3] = {0, 0, 0};
+    static const struct box small = {"small", {3, 4, 5}, {3, 4, 5}, 0.1, 0};
+    const struct box *each[2] = {&small, &boxes[3]};
+    for (int k = 0; k < 2; k++) {
+        rg_mesh *mesh = rg_mesh_box(each[k]->cells, origin, each[k]->size, each[k]->jitter, 3);
+        rg_part *part = make_part(each[k], MPI_COMM_WORLD), *patch = rg_patch_gather(part, MPI_COMM_WORLD);
+        report((patch != NULL) == (rank == 0), each[k]->name, "a patch on rank 0");
+        report(patch == NULL || (k == 0 ? patch->elements == mesh->elements
+                                        : patch->elements > 1000 && patch->elements <= RG_PATCH_MOST),
+               each[k]->name, "size of the patch");
+        report(patch == NULL || well_connected(patch, mesh), each[k]->name, "links of the patch");
+        rg_part_free(part);
+        rg_part_free(patch);
+        rg_mesh_free(mesh);
+    }
+}
+
+/* An inner tetrahedron of a cube of edge 2: volume 8/6, two faces of area 2, two of area 2 sqrt 2. */
+static void check_rank(void) {
+    rg_element e = {.x = {{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {2, 2, 2}}, .volume = 8.0 / 6};
+    for (int f = 0; f < 4; f++) {
+        e.other_volume[f] = 8.0 / 6;
+    }
+    report(fabs(rg_patch_rank(&e) - 2 * 13.5) < 1e-12, "rank", "regular");
+    e.neighbour[1] = -1; /* area 2 sqrt 2 */
+    report(fabs(rg_patch_rank(&e) - 2 * 9) < 1e-12, "rank", "with a surface face");
+    e.neighbour[1] = 0;
+    e.other_volume[0] = 4.0 / 6; /* twice the penalty, three times the inverse mass of the pair over 2 */
+    report(fabs(rg_patch_rank(&e) - (2 * 11.25 + 2.25 * 2 * 3)) < 1e-12, "rank", "with a small neighbour");
+}
+
+/* Every combination on one rank; on several, and with sanitizers that slow everything down, each mesh once.
+ */
+static bool wanted(int b, int k) {
+#ifdef __SANITIZE_ADDRESS__
+    return b < KINDS && k == b;
+#else
+    int ranks;
+    MPI_Comm_size(MPI_COMM_WORLD, &ranks);
+    return ranks == 1 || k == b % KINDS;
+#endif
+}
+
+int main(int argc, char **argv) {
+    MPI_Init(&argc, &argv);
+    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+    check_rank();
+    check_patch();
+    for (int b = 0; b < BOXES; b++) {
+        for (int k = 0; k < KINDS; k++) {
+            if (wanted(b, k)) {
+                check_frequency(&boxes[b], &kinds[k]);
+            }
+        }
+    }
+    if (rank == 0) {
+        printf("1..%d\n", number); /* TAP allows the plan at the end */
+    }
+    MPI_Finalize();
+    return failures > 0;
+}
