@@ -76,6 +76,14 @@ typedef struct {
     int8_t set[4];          /* surface set, -1 for none */
 } rg_element;
 
+/* How good a partition is. */
+typedef struct {
+    double imbalance;       /* most elements on a rank over their mean */
+    rg_gid cut_faces;       /* interior faces between ranks */
+    int neighbours_max;     /* ranks that one shares faces with: most */
+    double neighbours_mean; /* ... and mean */
+} rg_partition_quality;
+
 /* The part of the mesh that a rank owns, tile by tile in the order in which it is swept: first the tiles that
  * share a face with another rank, then the others, each by ascending number. */
 typedef struct {
@@ -92,6 +100,7 @@ typedef struct {
         *original; /* [elements]: numbers in the mesh that this one was cut from; NULL if it is the whole */
     int sets;
     char *set_name[RG_MAX_SETS];
+    rg_partition_quality quality; /* of the partition of the whole mesh */
 } rg_part;
 
 /* Elements of global tile `id`. */
@@ -103,6 +112,13 @@ static inline rg_lid rg_tile_size(const rg_part *part, rg_gid id) {
 /* Collective. Rank 0 gives the mesh (others NULL), partitions it in tiles of `tile` elements for the ranks of
  * `comm` and sends each its part. The caller owns the result. */
 rg_part *rg_part_distribute(const rg_mesh *mesh, int tile, MPI_Comm comm);
+
+/* Collective. The same from the mesh file at `path`: rank 0 reads the graph of tiles and a partition for the
+ * ranks of `comm` (METIS makes one if the file has none for so many), each rank then reads its own tiles; no
+ * rank ever holds more than its part. The result has the same bits as that of rg_part_distribute of the whole
+ * mesh with the same partition. Ends the run (RG_USAGE) with a message if the file is damaged, an element has
+ * no volume, or elements on both sides of a face do not agree about it. The caller owns the result. */
+rg_part *rg_part_read(const char *path, MPI_Comm comm);
 
 void rg_part_free(rg_part *part);
 

@@ -435,12 +435,20 @@ bool rg_mesh_file_partition(rg_mesh_file *f, int parts, int32_t *owner) {
         return false;
     }
     int32_t *stored = take_whole(f, &(rg_rows){name, RG_ROWS_INT32, 1}, f->head.tiles);
+    bool *used = RG_NEW(bool, (size_t)parts);
     for (int64_t t = 0; t < f->head.tiles; t++) {
         if (stored[t] < 0 || stored[t] >= parts) {
             refuse(f, name, "tile %" PRId64 " belongs to rank %d of %d", t, stored[t], parts);
         }
         owner[t] = stored[t];
+        used[stored[t]] = true;
     }
+    for (int p = 0; p < parts; p++) {
+        if (!used[p]) {
+            refuse(f, name, "rank %d has no tile", p);
+        }
+    }
+    rg_free(used);
     rg_free(stored);
     return true;
 }

@@ -27,8 +27,9 @@ struct rg_probes {
     FILE *file;
 };
 
-/* The element with the lowest number that contains x. */
-static rg_lid locate(const rg_solver *s, const double x[3], double at[4]) {
+/* The element with the lowest number that contains probe i. */
+static rg_lid locate(const rg_solver *s, int i, double at[4]) {
+    const double *x = s->input->output.probe[i].at;
     const double inside = -1e-9;
     rg_lid found = -1;
     for (size_t slot = 0; slot < s->domain->blocks * RG_LANES; slot++) {
@@ -45,14 +46,19 @@ static rg_lid locate(const rg_solver *s, const double x[3], double at[4]) {
     }
     int64_t id = found >= 0 ? s->domain->id[found] : INT64_MAX, first;
     MPI_Allreduce(&id, &first, 1, MPI_INT64_T, MPI_MIN, s->comm);
+    if (first == INT64_MAX && s->rank > 0) {
+        MPI_Barrier(s->comm); /* rank 0 speaks and ends the job */
+    }
     if (first == INT64_MAX) {
-        rg_fatal(RG_USAGE, "output.probes: no element contains (%g, %g, %g)", x[0], x[1], x[2]);
+        const char *file = s->input->mesh.file;
+        rg_fatal(RG_USAGE, "%s: output.probes[%d].at: [%g, %g, %g]: no element of %s contains it",
+                 s->input->path, i, x[0], x[1], x[2], file != NULL ? file : "the mesh");
     }
     return id == first ? found : -1;
 }
 
-static void write_header(rg_probes *p, const rg_case *c, const char *dir) {
-    p->file = rg_open_in(dir, "history.csv");
+static void write_header(rg_probes *p, const rg_case *c) {
+    p->file = rg_open_in(c->output.dir, "history.csv");
     fprintf(p->file, "time");
     for (int i = 0; i < p->probes; i++) {
         for (int k = 0; k < VALUES; k++) {
@@ -103,28 +109,32 @@ static void watch(void *context, rg_solver *s, size_t tile, const rg_workspace *
     }
 }
 
-rg_probes *rg_probes_open(rg_solver *s, const char *dir) {
-    const rg_case *c = s->input;
+rg_probes *rg_probes_find(const rg_solver *s) {
     rg_probes *p = RG_NEW(rg_probes, 1);
-    size_t n = (size_t)c->output.probes, size = CAPACITY * n * VALUES + 1;
-    *p = (rg_probes){.comm = s->comm, .rank = s->rank, .probes = c->output.probes};
-    p->slot = RG_NEW(rg_lid, n + 1);
-    p->at = rg_alloc(n + 1, sizeof *p->at);
+    *p = (rg_probes){.comm = s->comm, .rank = s->rank, .probes = s->input->output.probes};
+    p->slot = RG_NEW(rg_lid, (size_t)p->probes + 1);
+    p->at = rg_alloc((size_t)p->probes + 1, sizeof *p->at);
+    for (int i = 0; i < p->probes; i++) {
+        p->slot[i] = locate(s, i, p->at[i]);
+    }
+    return p;
+}
+
+void rg_probes_open(rg_probes *p, rg_solver *s) {
+    size_t size = CAPACITY * (size_t)p->probes * VALUES + 1;
     p->time = RG_NEW(double, CAPACITY);
     p->value = RG_NEW(double, size);
     p->total = RG_NEW(double, size);
-    for (size_t i = 0; i < n; i++) {
-        p->slot[i] = locate(s, c->output.probe[i].at, p->at[i]);
+    for (int i = 0; i < p->probes; i++) {
         if (p->slot[i] >= 0) {
             s->watched[(size_t)p->slot[i] / RG_LANES / s->domain->tile_blocks] = 1;
         }
     }
     s->watch = watch;
     s->watch_context = p;
-    if (p->rank == 0 && n > 0) {
-        write_header(p, c, dir);
+    if (p->rank == 0 && p->probes > 0) {
+        write_header(p, s->input);
     }
-    return p;
 }
 
 void rg_probes_next(rg_probes *p, double time) {

@@ -6,10 +6,13 @@
 
 typedef struct rg_probes rg_probes;
 
-/* Finds the elements that hold the probes (of several, the one with the lowest number) and, on rank 0,
- * creates dir/history.csv if there are any. From then on the solver's kicks record what they see there.
- * Collective. */
-rg_probes *rg_probes_open(rg_solver *s, const char *dir);
+/* Finds the elements that hold the probes: of several, the one with the lowest number. Ends the run with a
+ * message if a probe is in none, which of a mesh file nobody knew before. Collective. */
+rg_probes *rg_probes_find(const rg_solver *s);
+
+/* Creates history.csv in the output directory, on rank 0 and if there are any. From then on the solver's
+ * kicks record what they see there. */
+void rg_probes_open(rg_probes *p, rg_solver *s);
 
 /* Closes the record of a kick at `time` (s). Collective only when the buffer is full. */
 void rg_probes_next(rg_probes *p, double time);

@@ -158,7 +158,7 @@ static void open_outputs(run *r) {
     rg_echo_case(c, r->solver->rank);
     r->energy = rg_csv_open(c->output.dir, "energy.csv", r->solver->rank);
     rg_csv_energy_header(r->energy);
-    r->probes = rg_probes_open(r->solver, c->output.dir);
+    rg_probes_open(r->probes, r->solver);
     r->snapshots = rg_snapshots_open(r->solver);
 }
 
@@ -173,6 +173,7 @@ int rg_run(const rg_case *c, MPI_Comm comm, bool quiet) {
     r->input = c;
     double begin = MPI_Wtime();
     r->solver = rg_solver_make(c, comm);
+    r->probes = rg_probes_find(r->solver);
     rg_spectrum(r->solver);
     rg_estimate estimate = rg_estimate_run(r->solver);
     r->dt_reference = estimate.dt;
@@ -207,6 +208,7 @@ int rg_run(const rg_case *c, MPI_Comm comm, bool quiet) {
 
 int rg_check(const rg_case *c, MPI_Comm comm) {
     rg_solver *s = rg_solver_make(c, comm);
+    rg_probes_close(rg_probes_find(s));
     rg_spectrum(s);
     rg_estimate estimate = rg_estimate_run(s);
     if (s->rank == 0) {

@@ -79,18 +79,6 @@ static rg_cohesive make_law(const rg_case *c) {
                          .flux = c->interface.contact == RG_CONTACT_FLUX};
 }
 
-static rg_part *make_part(const rg_case *c, int rank, MPI_Comm comm) {
-    rg_mesh *mesh = NULL;
-    int tile = 0;
-    if (rank == 0) {
-        mesh = rg_mesh_of_case(c);
-        tile = rg_tile_elements(mesh->elements);
-    }
-    rg_part *part = rg_part_distribute(mesh, tile, comm);
-    rg_mesh_free(mesh);
-    return part;
-}
-
 static void select_kernels(rg_solver *s) {
     s->kernels = rg_kernels_select();
     if (s->kernels == NULL && s->rank > 0) {
@@ -132,9 +120,7 @@ rg_solver *rg_solver_make_from_part(const rg_case *input, rg_part *part, MPI_Com
 }
 
 rg_solver *rg_solver_make(const rg_case *input, MPI_Comm comm) {
-    int rank;
-    MPI_Comm_rank(comm, &rank);
-    rg_part *part = make_part(input, rank, comm);
+    rg_part *part = rg_part_of_case(input, comm);
     rg_part *patch = rg_patch_gather(part, comm);
     rg_solver *s = rg_solver_make_from_part(input, part, comm);
     s->patch = patch;

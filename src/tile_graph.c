@@ -70,3 +70,53 @@ void rg_tile_graph_free(rg_tile_graph *g) {
         rg_free(g);
     }
 }
+
+/* ---- quality of a partition ---- */
+
+static double imbalance(const rg_tile_graph *g, int parts, const int32_t *part) {
+    rg_gid *size = RG_NEW(rg_gid, (size_t)parts), most = 0;
+    for (int64_t t = 0; t < g->tiles; t++) {
+        rg_gid left = g->elements - t * g->tile;
+        size[part[t]] += left < g->tile ? left : g->tile;
+    }
+    for (int p = 0; p < parts; p++) {
+        most = size[p] > most ? size[p] : most;
+    }
+    rg_free(size);
+    return (double)most * parts / (double)g->elements;
+}
+
+/* Counts the different pairs of parts that share faces, in order: a part's neighbours stand together. */
+static void count_neighbours(rg_partition_quality *q, int parts, int64_t *pair, size_t count) {
+    int64_t all = 0, here = 0;
+    qsort(pair, count, sizeof *pair, ascending);
+    for (size_t i = 0; i < count; i++) {
+        if (i == 0 || pair[i] / parts != pair[i - 1] / parts) {
+            here = 0;
+        }
+        if (i == 0 || pair[i] != pair[i - 1]) {
+            all++;
+            here++;
+        }
+        q->neighbours_max = here > q->neighbours_max ? (int)here : q->neighbours_max;
+    }
+    q->neighbours_mean = (double)all / parts;
+}
+
+rg_partition_quality rg_tile_graph_quality(const rg_tile_graph *g, int parts, const int32_t *part) {
+    rg_partition_quality q = {.imbalance = imbalance(g, parts, part)};
+    int64_t *pair = RG_NEW(int64_t, (size_t)g->start[g->tiles] + 1);
+    size_t count = 0;
+    for (int64_t t = 0; t < g->tiles; t++) {
+        for (int64_t i = g->start[t]; i < g->start[t + 1]; i++) {
+            int32_t other = part[g->neighbour[i]];
+            if (other != part[t]) {
+                q.cut_faces += t < g->neighbour[i] ? g->faces[i] : 0; /* once for both sides */
+                pair[count++] = (int64_t)part[t] * parts + other;
+            }
+        }
+    }
+    count_neighbours(&q, parts, pair, count);
+    rg_free(pair);
+    return q;
+}

@@ -23,4 +23,7 @@ void rg_tile_graph_free(rg_tile_graph *g);
  */
 void rg_tile_graph_partition(const rg_tile_graph *g, int parts, int32_t *part);
 
+/* Of a partition in `parts` parts. */
+rg_partition_quality rg_tile_graph_quality(const rg_tile_graph *g, int parts, const int32_t *part);
+
 #endif
