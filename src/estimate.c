@@ -5,6 +5,7 @@
 
 #include "error.h"
 #include "mem.h"
+#include "mesh_info.h"
 
 #define MOST_STEPS 1e15
 
@@ -74,21 +75,13 @@ rg_estimate rg_estimate_run(const rg_solver *s) {
     return e;
 }
 
-static void print_partition(const rg_solver *s, FILE *out) {
-    const rg_partition_quality *q = &s->part->quality;
-    fprintf(out,
-            "partition      imbalance %.3f, %" PRId64
-            " faces between ranks (%.2g %%), neighbours of a rank: at most %d, %.2g in the mean\n",
-            q->imbalance, q->cut_faces, 100 * (double)q->cut_faces / (double)s->part->interfaces,
-            q->neighbours_max, q->neighbours_mean);
-}
-
 void rg_estimate_print(const rg_solver *s, const rg_estimate *e, FILE *out) {
     const rg_case *c = s->input;
     fprintf(out, "elements       %" PRId64 " (%" PRId64 " degrees of freedom), %" PRId64 " interfaces\n",
             e->elements, e->dofs, e->interfaces);
     if (s->ranks > 1) {
-        print_partition(s, out);
+        fprintf(out, "partition      ");
+        rg_quality_print(&s->part->quality, e->interfaces, out);
     }
     fprintf(out, "wave speeds    dilatational %.1f m/s, shear %.1f m/s\n", e->c_dilatational, e->c_shear);
     fprintf(out,

@@ -14,8 +14,8 @@ int main(int argc, char **argv) {
         return RG_OK;
     }
     rg_mesh_arguments a = rg_mesh_arguments_read(argc, argv, 1);
-    if (a.info) {
-        rg_fatal(RG_USAGE, "mesh: --info is a matter of rhegma mesh");
+    if (a.info || a.partition != NULL) {
+        rg_fatal(RG_USAGE, "mesh: --info and --partition are a matter of rhegma mesh");
     }
     rg_mesh *mesh = rg_gmsh_read(a.input, a.scale);
     rg_mesh_finish(mesh, a.input, a.output);

@@ -24,7 +24,8 @@ static const char usage[] =
     "IN\n"
     "       rhegma mesh CASE.yaml -o OUT.h5 [--set a.b=value]   a mesh file from the mesh of a case\n"
     "       rhegma mesh --info MESH.h5 [--case CASE.yaml]   what a mesh file holds; its time steps with the\n"
-    "                                               material of a case, else for waves of 1 m/s\n";
+    "                                               material of a case, else for waves of 1 m/s\n"
+    "       rhegma mesh --partition N[,M...] MESH.h5   store partitions for N, M ... ranks in a mesh file\n";
 
 /* ---- arguments ---- */
 
@@ -49,6 +50,8 @@ static void read_option(rg_mesh_arguments *a, const char *option, const char *va
         a->output = value;
     } else if (strcmp(option, "--scale") == 0) {
         a->scale = read_scale(value);
+    } else if (strcmp(option, "--partition") == 0) {
+        a->partition = value;
     } else if (strcmp(option, "--case") == 0) {
         a->material = value;
     } else if (strcmp(option, "--set") == 0) {
@@ -62,7 +65,11 @@ static void check_together(const rg_mesh_arguments *a) {
     if (a->input == NULL) {
         complain("nothing to read", "");
     }
-    if (!a->info && a->output == NULL) {
+    if (a->partition != NULL && (a->info || a->output != NULL)) {
+        complain("--partition changes the file that it is given; not understood with it",
+                 a->info ? "--info" : "-o");
+    }
+    if (!a->info && a->partition == NULL && a->output == NULL) {
         complain("where to? -o OUT.h5 is missing", "");
     }
     if (a->info && a->output != NULL) {
@@ -184,6 +191,56 @@ static int show(const rg_mesh_arguments *a) {
     rg_mesh *mesh = rg_mesh_file_read(a->input);
     rg_mesh_info(mesh, speed, stdout);
     rg_mesh_free(mesh);
+    rg_mesh_file *f = rg_mesh_file_open(a->input);
+    rg_mesh_info_partitions(f, stdout);
+    rg_mesh_file_close(f);
+    return RG_OK;
+}
+
+/* ---- partitions ---- */
+
+/* The numbers of a list like "2,4,8", each from 2 to the number of tiles; returns how many there are. */
+static int read_parts(const char *list, const rg_mesh_header *h, int *parts) {
+    int count = 0;
+    const char *at = list;
+    char *end;
+    do {
+        long value = strtol(at, &end, 10);
+        if (end == at || (*end != ',' && *end != '\0') || value < 2 || value > h->tiles ||
+            value > INT32_MAX) {
+            rg_fatal(RG_USAGE,
+                     "mesh: --partition %s: numbers of ranks, separated by commas, each from 2 to %" PRId64
+                     ", the number of tiles",
+                     list, h->tiles);
+        }
+        parts[count++] = (int)value;
+        at = end + 1;
+    } while (*end != '\0');
+    return count;
+}
+
+static int store_partitions(const rg_mesh_arguments *a) {
+    rg_mesh_file *f = rg_mesh_file_open(a->input);
+    rg_tile_graph *g = rg_mesh_file_graph(f);
+    int *parts = RG_NEW(int, strlen(a->partition) + 1);
+    int count = read_parts(a->partition, rg_mesh_file_header(f), parts);
+    rg_tile_partition *partition = RG_NEW(rg_tile_partition, (size_t)count);
+    for (int p = 0; p < count; p++) {
+        int32_t *owner = RG_NEW(int32_t, (size_t)g->tiles);
+        rg_tile_graph_partition(g, parts[p], owner);
+        partition[p] = (rg_tile_partition){parts[p], owner};
+    }
+    rg_mesh_file_close(f);
+    rg_mesh_file_add_partitions(a->input, count, partition);
+    f = rg_mesh_file_open(a->input);
+    rg_mesh_info_partitions(f, stdout);
+    rg_mesh_file_close(f);
+    for (int p = 0; p < count; p++) {
+        rg_free((void *)(uintptr_t)partition[p].owner);
+    }
+    rg_free(partition);
+    rg_free(parts);
+    rg_tile_graph_free(g);
     return RG_OK;
 }
 
@@ -192,6 +249,8 @@ int rg_mesh_command(int argc, char **argv) {
     int status;
     if (a.info) {
         status = show(&a);
+    } else if (a.partition != NULL) {
+        status = store_partitions(&a);
     } else if (ends_with(a.input, ".yaml") || ends_with(a.input, ".yml")) {
         status = from_case(&a);
     } else if (ends_with(a.input, ".h5")) {

@@ -453,6 +453,25 @@ bool rg_mesh_file_partition(rg_mesh_file *f, int parts, int32_t *owner) {
     return true;
 }
 
+static int ascending(const void *a, const void *b) {
+    int p = *(const int *)a, q = *(const int *)b;
+    return (p > q) - (p < q);
+}
+
+int rg_mesh_file_partitions(rg_mesh_file *f, int **parts) {
+    H5G_info_t all = {0};
+    int count = 0;
+    H5Gget_info(f->file, &all);
+    *parts = RG_NEW(int, (size_t)all.nlinks + 1);
+    for (hsize_t i = 0; i < all.nlinks; i++) {
+        char name[32] = "", rest;
+        H5Lget_name_by_idx(f->file, ".", H5_INDEX_NAME, H5_ITER_NATIVE, i, name, sizeof name, H5P_DEFAULT);
+        count += sscanf(name, "partition_%d%c", &(*parts)[count], &rest) == 1;
+    }
+    qsort(*parts, (size_t)count, sizeof **parts, ascending);
+    return count;
+}
+
 /* ---- the whole ---- */
 
 /* The slab's arrays become the mesh's. */

@@ -91,6 +91,10 @@ rg_tile_graph *rg_mesh_file_graph(rg_mesh_file *f);
 /* Fills owner[tiles]; false if the file has no partition for so many ranks. */
 bool rg_mesh_file_partition(rg_mesh_file *f, int parts, int32_t *owner);
 
+/* For how many ranks the file has partitions, ascending; returns how many such numbers there are. Caller
+ * frees *parts with rg_free. */
+int rg_mesh_file_partitions(rg_mesh_file *f, int **parts);
+
 void rg_mesh_file_close(rg_mesh_file *f);
 
 /* Opens, reads and checks (rg_mesh_check) the whole mesh. Caller frees with rg_mesh_free. */
@@ -100,5 +104,9 @@ rg_mesh *rg_mesh_file_read(const char *path);
  * renamed, so that `path` is never half a file. */
 void rg_mesh_file_write(const char *path, const rg_mesh *mesh, int partitions,
                         const rg_tile_partition *partition);
+
+/* Adds partitions to the file at `path`, in place of those for as many ranks: to a copy, which then takes the
+ * name. Reads and checks nothing else of the file. */
+void rg_mesh_file_add_partitions(const char *path, int partitions, const rg_tile_partition *partition);
 
 #endif

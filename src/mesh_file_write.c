@@ -47,17 +47,24 @@ static hid_t stored_type(const rg_rows *r, hid_t type, const void *data, int64_t
     return narrow ? H5T_NATIVE_INT32 : type;
 }
 
-static bool write_dataset(hid_t place, const char *name, hid_t stored, hid_t type, int columns, int64_t rows,
-                          const void *data) {
+static hid_t create_dataset(hid_t place, const char *name, hid_t stored, int columns, int64_t rows) {
     hid_t space = H5Screate_simple(columns > 1 ? 2 : 1, (hsize_t[]){(hsize_t)rows, (hsize_t)columns}, NULL);
     hid_t plan = H5Pcreate(H5P_DATASET_CREATE);
     H5Pset_obj_track_times(plan, false);
     hid_t dataset = H5Dcreate2(place, name, stored, space, H5P_DEFAULT, plan, H5P_DEFAULT);
-    bool ok = dataset >= 0 && H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) >= 0;
-    ok = H5Dclose(dataset) >= 0 && ok;
     H5Pclose(plan);
     H5Sclose(space);
-    return ok;
+    return dataset;
+}
+
+/* Only a partition can be there already, and then it has the same size and type. */
+static bool write_dataset(hid_t place, const char *name, hid_t stored, hid_t type, int columns, int64_t rows,
+                          const void *data) {
+    hid_t dataset = H5Lexists(place, name, H5P_DEFAULT) > 0
+                        ? H5Dopen2(place, name, H5P_DEFAULT)
+                        : create_dataset(place, name, stored, columns, rows);
+    bool ok = dataset >= 0 && H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) >= 0;
+    return dataset >= 0 && H5Dclose(dataset) >= 0 && ok;
 }
 
 /* Writes dataset `r` and its checksums, one for each of `blocks` blocks of rows that begin at start[block].
@@ -225,14 +232,19 @@ static void put_partition(const target *w, const rg_tile_partition *p) {
 
 /* ---- file ---- */
 
-static void create(target *w) {
+/* An empty file with the temporary name. */
+static FILE *open_temporary(target *w) {
     w->temporary = RG_NEW(char, strlen(w->path) + 8);
     sprintf(w->temporary, "%s.part", w->path);
     FILE *f = fopen(w->temporary, "wb"); /* for the reason, which HDF5 does not tell */
     if (f == NULL) {
         rg_fatal(RG_FAILURE, "%s: cannot be written: %s", w->path, strerror(errno));
     }
-    fclose(f);
+    return f;
+}
+
+static void create(target *w) {
+    fclose(open_temporary(w));
     rg_h5_listen(w->reason);
     hid_t access = H5Pcreate(H5P_FILE_ACCESS), plan = H5Pcreate(H5P_FILE_CREATE);
     H5Pset_libver_bounds(access, H5F_LIBVER_V18, H5F_LIBVER_V18); /* the format that has checksums */
@@ -248,6 +260,40 @@ static void create(target *w) {
     require(w, w->sums >= 0, "checksum");
 }
 
+static void copy(target *w) {
+    enum { CHUNK = 1 << 20 };
+    FILE *from = fopen(w->path, "rb");
+    if (from == NULL) {
+        rg_fatal(RG_USAGE, "%s: cannot be read: %s", w->path, strerror(errno));
+    }
+    FILE *to = open_temporary(w);
+    char *chunk = RG_NEW(char, CHUNK);
+    size_t n;
+    bool ok = true;
+    while (ok && (n = fread(chunk, 1, CHUNK, from)) > 0) {
+        ok = fwrite(chunk, 1, n, to) == n;
+    }
+    ok = ok && !ferror(from);
+    if (fclose(to) != 0 || !ok) {
+        fail(w, "a copy", strerror(errno));
+    }
+    fclose(from);
+    rg_free(chunk);
+}
+
+/* A copy of the file under the temporary name, open to be changed. */
+static void reopen(target *w) {
+    copy(w);
+    rg_h5_listen(w->reason);
+    hid_t access = H5Pcreate(H5P_FILE_ACCESS);
+    H5Pset_libver_bounds(access, H5F_LIBVER_V18, H5F_LIBVER_V18);
+    w->file = H5Fopen(w->temporary, H5F_ACC_RDWR, access);
+    H5Pclose(access);
+    require(w, w->file >= 0, "the file");
+    w->sums = H5Gopen2(w->file, "checksum", H5P_DEFAULT);
+    require(w, w->sums >= 0, "checksum");
+}
+
 static void finish(target *w) {
     bool ok = H5Gclose(w->sums) >= 0;
     ok = H5Fclose(w->file) >= 0 && ok;
@@ -260,6 +306,17 @@ static void finish(target *w) {
     rg_free(w->element_start);
     rg_free(w->vertex_start);
     rg_free(w->vertex);
+}
+
+void rg_mesh_file_add_partitions(const char *path, int partitions, const rg_tile_partition *partition) {
+    rg_mesh_file *f = rg_mesh_file_open(path);
+    target w = {.path = path, .tiles = rg_mesh_file_header(f)->tiles};
+    rg_mesh_file_close(f);
+    reopen(&w);
+    for (int p = 0; p < partitions; p++) {
+        put_partition(&w, &partition[p]);
+    }
+    finish(&w);
 }
 
 void rg_mesh_file_write(const char *path, const rg_mesh *mesh, int partitions,

@@ -6,7 +6,6 @@
 #include "../kernels/layout.h"
 #include "mem.h"
 #include "mesh_check.h"
-#include "mesh_file.h"
 #include "tet.h"
 
 enum { QUALITY_BINS = 10, ANGLE_BINS = 9, MOST_CLASSES = 32, SMALLEST = 5 };
@@ -253,4 +252,30 @@ void rg_mesh_info(const rg_mesh *mesh, double speed, FILE *out) {
     fprintf(out, "  from %.4g to %.4g degrees\n", t.low_angle, t.high_angle);
     print_smallest(mesh, &t, out);
     print_classes(&t, speed, out);
+}
+
+/* ---- partitions ---- */
+
+void rg_quality_print(const rg_partition_quality *q, rg_gid interfaces, FILE *out) {
+    fprintf(out,
+            "imbalance %.3f, %" PRId64
+            " faces between ranks (%.3g %% of all), neighbours of a rank: at most %d, mean %.3g\n",
+            q->imbalance, q->cut_faces, 100 * (double)q->cut_faces / (double)interfaces, q->neighbours_max,
+            q->neighbours_mean);
+}
+
+void rg_mesh_info_partitions(rg_mesh_file *f, FILE *out) {
+    int *parts, count = rg_mesh_file_partitions(f, &parts);
+    rg_tile_graph *g = rg_mesh_file_graph(f);
+    int32_t *owner = RG_NEW(int32_t, (size_t)g->tiles);
+    fprintf(out, "partitions     %s\n", count > 0 ? "for ranks" : "none stored: a run makes its own");
+    for (int p = 0; p < count; p++) {
+        rg_mesh_file_partition(f, parts[p], owner);
+        rg_partition_quality q = rg_tile_graph_quality(g, parts[p], owner);
+        fprintf(out, "  %-12d ", parts[p]);
+        rg_quality_print(&q, rg_mesh_file_header(f)->interfaces, out);
+    }
+    rg_free(owner);
+    rg_tile_graph_free(g);
+    rg_free(parts);
 }
