@@ -147,29 +147,37 @@ static void fill_inside(const reader *r) {
     }
 }
 
-/* A face that another rank shares; both know it by the lower of its two sides, 4 * element + face. */
+/* A face as seen from one side, which is 4 * element + face. */
 typedef struct {
     int64_t side;
-    double volume; /* of the sender's element */
+    double volume; /* of the element there */
 } message;
 
+/* A face that another rank shares. */
 typedef struct {
-    int64_t side;
-    int32_t owner;
+    int64_t lower; /* side: both ranks have the faces in this order */
+    int32_t owner; /* of the other side */
     rg_lid element;
     int8_t face;
 } border;
+
+static int64_t own_side(const rg_element *e, int f) {
+    return 4 * e->id + f;
+}
+
+static int64_t other_side(const rg_element *e, int f) {
+    return 4 * e->neighbour[f] + e->face[f];
+}
 
 static int by_owner(const void *a, const void *b) {
     const border *p = a, *q = b;
     if (p->owner != q->owner) {
         return p->owner < q->owner ? -1 : 1;
     }
-    return (p->side > q->side) - (p->side < q->side);
+    return (p->lower > q->lower) - (p->lower < q->lower);
 }
 
-/* The faces to other ranks, in the order in which these list them too. The graph must have known of them:
- * the order of the tiles follows from it. */
+/* The faces to other ranks, in the order in which these list them too. */
 static border *list_borders(const reader *r, size_t *count) {
     size_t room = 0;
     border *list = NULL;
@@ -185,7 +193,7 @@ static border *list_borders(const reader *r, size_t *count) {
                 room = 2 * room + 1024;
                 list = rg_realloc(list, room, sizeof *list);
             }
-            int64_t here = 4 * e->id + f, there = 4 * e->neighbour[f] + e->face[f];
+            int64_t here = own_side(e, f), there = other_side(e, f);
             list[(*count)++] = (border){here < there ? here : there, e->owner[f], i, f};
         }
     }
@@ -211,7 +219,7 @@ static void exchange(const reader *r, const border *list, const int *count, cons
     MPI_Type_free(&type);
     for (int i = 0; i < at[r->ranks]; i++) {
         rg_element *e = &r->own->element[list[i].element];
-        if (in[i].side != out[i].side) {
+        if (in[i].side != other_side(e, list[i].face)) {
             disagree(r, e, list[i].face);
         }
         e->other_volume[list[i].face] = in[i].volume;
@@ -225,7 +233,8 @@ static void fill_borders(const reader *r) {
     message *out = RG_NEW(message, n + 1), *in = RG_NEW(message, n + 1);
     int *count = RG_NEW(int, (size_t)r->ranks), *at = RG_NEW(int, (size_t)r->ranks + 1);
     for (size_t i = 0; i < n; i++) {
-        out[i] = (message){list[i].side, r->own->element[list[i].element].volume};
+        const rg_element *e = &r->own->element[list[i].element];
+        out[i] = (message){own_side(e, list[i].face), e->volume};
         count[list[i].owner]++;
     }
     for (int k = 0; k < r->ranks; k++) {
