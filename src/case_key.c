@@ -52,6 +52,7 @@ static const rg_key case_keys[] = {
     {.name = "mesh.origin", .unit = "m", REAL3, ANY, DEFAULT(0), BOX, CASE(mesh.origin)},
     {.name = "mesh.jitter", REAL, FROM_TO(0, 0.3), DEFAULT(0), BOX, CASE(mesh.jitter)},
     {.name = "mesh.seed", INTEGER, FROM(0), DEFAULT(1), BOX, CASE(mesh.seed)},
+    {.name = "mesh.weight", .type = RG_KEY_EXPR, OPTIONAL, .no_time = true, CASE(mesh.weight)},
 
     {.name = "material.model", CHOICE(models), REQUIRED, CASE(material.model)},
     {.name = "material.young", .unit = "Pa", REAL, ABOVE(0), REQUIRED, CASE(material.young)},

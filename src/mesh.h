@@ -79,6 +79,7 @@ typedef struct {
 /* How good a partition is. */
 typedef struct {
     double imbalance;       /* most elements on a rank over their mean */
+    double cost_imbalance;  /* the same of the costs that the partition was told; without any, of elements */
     rg_gid cut_faces;       /* interior faces between ranks */
     int neighbours_max;     /* ranks that one shares faces with: most */
     double neighbours_mean; /* ... and mean */
@@ -113,12 +114,17 @@ static inline rg_lid rg_tile_size(const rg_part *part, rg_gid id) {
  * `comm` and sends each its part. The caller owns the result. */
 rg_part *rg_part_distribute(const rg_mesh *mesh, int tile, MPI_Comm comm);
 
+/* The same, with the cost of each tile for the partition: weight[tiles] on rank 0, from rg_alloc, taken over;
+ * or NULL. */
+rg_part *rg_part_distribute_weighted(const rg_mesh *mesh, int tile, double *weight, MPI_Comm comm);
+
 /* Collective. The same from the mesh file at `path`: rank 0 reads the graph of tiles and a partition for the
- * ranks of `comm` (METIS makes one if the file has none for so many), each rank then reads its own tiles; no
- * rank ever holds more than its part. The result has the same bits as that of rg_part_distribute of the whole
- * mesh with the same partition. Ends the run (RG_USAGE) with a message if the file is damaged, an element has
- * no volume, or elements on both sides of a face do not agree about it. The caller owns the result. */
-rg_part *rg_part_read(const char *path, MPI_Comm comm);
+ * ranks of `comm` (METIS makes one if the file has none for so many, or there are weights), each rank then
+ * reads its own tiles; no rank ever holds more than its part. The result has the same bits as that of
+ * rg_part_distribute of the whole mesh with the same partition. Ends the run (RG_USAGE) with a message if the
+ * file is damaged, an element has no volume, or elements on both sides of a face do not agree about it. The
+ * caller owns the result. */
+rg_part *rg_part_read(const char *path, double *weight, MPI_Comm comm);
 
 void rg_part_free(rg_part *part);
 

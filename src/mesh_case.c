@@ -7,6 +7,7 @@
 #include "case_problem.h"
 #include "error.h"
 #include "mesh_file.h"
+#include "tile_weight.h"
 
 static const char *list_names(const rg_mesh_header *h, char *text, size_t size) {
     size_t used = 0;
@@ -49,20 +50,31 @@ rg_mesh *rg_mesh_of_case(const rg_case *c) {
     return rg_mesh_box(c->mesh.cells, c->mesh.origin, c->mesh.size, c->mesh.jitter, c->mesh.seed);
 }
 
-rg_part *rg_part_of_case(const rg_case *c, MPI_Comm comm) {
-    int rank, tile = 0;
-    MPI_Comm_rank(comm, &rank);
-    if (rank == 0 && c->mesh.file != NULL) {
+static rg_part *part_of_file(const rg_case *c, int rank, MPI_Comm comm) {
+    if (rank == 0) {
         check_sets(c);
     }
-    if (c->mesh.file != NULL) {
-        return rg_part_read(c->mesh.file, comm);
-    }
-    rg_mesh *mesh = rank == 0 ? rg_mesh_of_case(c) : NULL;
+    MPI_Barrier(comm); /* what is wrong with the file as such, rank 0 has told */
+    double *weight = c->mesh.weight != NULL ? rg_tile_weights_of_file(c, comm) : NULL;
+    return rg_part_read(c->mesh.file, weight, comm);
+}
+
+static rg_part *part_of_box(const rg_case *c, int rank, MPI_Comm comm) {
+    rg_mesh *mesh = NULL;
+    double *weight = NULL;
+    int tile = 0;
     if (rank == 0) {
+        mesh = rg_mesh_of_case(c);
         tile = rg_tile_elements(mesh->elements);
+        weight = c->mesh.weight != NULL ? rg_tile_weights_of_mesh(c, mesh, tile) : NULL;
     }
-    rg_part *part = rg_part_distribute(mesh, tile, comm);
+    rg_part *part = rg_part_distribute_weighted(mesh, tile, weight, comm);
     rg_mesh_free(mesh);
     return part;
+}
+
+rg_part *rg_part_of_case(const rg_case *c, MPI_Comm comm) {
+    int rank;
+    MPI_Comm_rank(comm, &rank);
+    return c->mesh.file != NULL ? part_of_file(c, rank, comm) : part_of_box(c, rank, comm);
 }

@@ -257,11 +257,14 @@ void rg_mesh_info(const rg_mesh *mesh, double speed, FILE *out) {
 /* ---- partitions ---- */
 
 void rg_quality_print(const rg_partition_quality *q, rg_gid interfaces, FILE *out) {
-    fprintf(out,
-            "imbalance %.3f, %" PRId64
-            " faces between ranks (%.3g %% of all), neighbours of a rank: at most %d, mean %.3g\n",
-            q->imbalance, q->cut_faces, 100 * (double)q->cut_faces / (double)interfaces, q->neighbours_max,
-            q->neighbours_mean);
+    fprintf(out, "imbalance %.3f", q->imbalance);
+    if (q->cost_imbalance < q->imbalance || q->cost_imbalance > q->imbalance) {
+        fprintf(out, " (%.3f of the cost)", q->cost_imbalance);
+    }
+    fprintf(
+        out,
+        ", %" PRId64 " faces between ranks (%.3g %% of all), neighbours of a rank: at most %d, mean %.3g\n",
+        q->cut_faces, 100 * (double)q->cut_faces / (double)interfaces, q->neighbours_max, q->neighbours_mean);
 }
 
 void rg_mesh_info_partitions(rg_mesh_file *f, FILE *out) {

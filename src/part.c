@@ -113,8 +113,9 @@ static void hand_out(const rg_mesh *mesh, const rg_deal *deal, rg_part *own, MPI
     rg_free(s.volume);
 }
 
-static rg_deal *deal_mesh(const rg_mesh *mesh, int tile, int ranks) {
+static rg_deal *deal_mesh(const rg_mesh *mesh, int tile, double *weight, int ranks) {
     rg_tile_graph *g = rg_tile_graph_make(mesh, tile);
+    g->weight = weight;
     int32_t *owner = RG_NEW(int32_t, (size_t)g->tiles);
     rg_tile_graph_partition(g, ranks, owner);
     rg_deal *deal = rg_deal_make(g, owner, ranks);
@@ -122,7 +123,7 @@ static rg_deal *deal_mesh(const rg_mesh *mesh, int tile, int ranks) {
     return deal;
 }
 
-rg_part *rg_part_distribute(const rg_mesh *mesh, int tile, MPI_Comm comm) {
+rg_part *rg_part_distribute_weighted(const rg_mesh *mesh, int tile, double *weight, MPI_Comm comm) {
     int rank, ranks;
     MPI_Comm_rank(comm, &rank);
     MPI_Comm_size(comm, &ranks);
@@ -132,7 +133,7 @@ rg_part *rg_part_distribute(const rg_mesh *mesh, int tile, MPI_Comm comm) {
         own->interfaces = count_interfaces(mesh);
         own->sets = mesh->sets;
         rg_mesh_box_around(mesh, own->box);
-        deal = deal_mesh(mesh, tile, ranks);
+        deal = deal_mesh(mesh, tile, weight, ranks);
     }
     rg_deal_share(deal, own, comm);
     MPI_Bcast(&own->interfaces, 1, MPI_INT64_T, 0, comm);
@@ -145,6 +146,10 @@ rg_part *rg_part_distribute(const rg_mesh *mesh, int tile, MPI_Comm comm) {
         receive_part(own, comm);
     }
     return own;
+}
+
+rg_part *rg_part_distribute(const rg_mesh *mesh, int tile, MPI_Comm comm) {
+    return rg_part_distribute_weighted(mesh, tile, NULL, comm);
 }
 
 void rg_part_free(rg_part *part) {

@@ -27,12 +27,13 @@ typedef struct {
 
 /* ---- who reads what ---- */
 
-/* The stored partition for so many ranks, or else METIS's. */
-static rg_deal *deal_out(const char *path, int ranks) {
+/* The stored partition for so many ranks, or else METIS's; that knew of no weights. */
+static rg_deal *deal_out(const char *path, double *weight, int ranks) {
     rg_mesh_file *f = rg_mesh_file_open(path);
     rg_tile_graph *g = rg_mesh_file_graph(f);
     int32_t *owner = RG_NEW(int32_t, (size_t)g->tiles);
-    if (!rg_mesh_file_partition(f, ranks, owner)) {
+    g->weight = weight;
+    if (weight != NULL || !rg_mesh_file_partition(f, ranks, owner)) {
         rg_tile_graph_partition(g, ranks, owner);
     }
     rg_deal *deal = rg_deal_make(g, owner, ranks);
@@ -265,11 +266,12 @@ static void check_graph(const reader *r) {
     }
 }
 
-rg_part *rg_part_read(const char *path, MPI_Comm comm) {
+rg_part *rg_part_read(const char *path, double *weight, MPI_Comm comm) {
     reader r = {.path = path, .comm = comm, .own = RG_NEW(rg_part, 1)};
     MPI_Comm_rank(comm, &r.rank);
     MPI_Comm_size(comm, &r.ranks);
-    rg_deal *deal = r.rank == 0 ? deal_out(path, r.ranks) : NULL; /* and tells what is wrong with the file */
+    rg_deal *deal =
+        r.rank == 0 ? deal_out(path, weight, r.ranks) : NULL; /* tells what is wrong with the file */
     rg_deal_share(deal, r.own, comm);
     share_owners(&r, deal);
     rg_deal_free(deal);

@@ -1,6 +1,7 @@
 /* Which tile goes to which rank. */
 #include "tile_graph.h"
 
+#include <math.h>
 #include <metis.h>
 #include <string.h>
 
@@ -17,14 +18,30 @@ struct graph {
     idx_t nodes, *start, *edge, *faces, *weight;
 };
 
+/* The cost of all tiles as integers, of which METIS sums up to all: elements as they are, other costs as
+ * fractions of the largest that such a sum allows. */
+static void set_weights(const rg_tile_graph *g, idx_t *weight) {
+    double most = 0, all = 0;
+    for (int64_t t = 0; t < g->tiles && g->weight != NULL; t++) {
+        most = g->weight[t] > most ? g->weight[t] : most;
+        all += g->weight[t];
+    }
+    for (int64_t t = 0; t < g->tiles; t++) {
+        rg_gid left = g->elements - t * g->tile;
+        weight[t] = (idx_t)(left < g->tile ? left : g->tile);
+        if (g->weight != NULL) {
+            weight[t] = 1 + (idx_t)fmin(1e6 * (g->weight[t] / most), 1e9 * (g->weight[t] / all));
+        }
+    }
+}
+
 static struct graph convert(const rg_tile_graph *g) {
     size_t n = (size_t)g->tiles, edges = (size_t)g->start[n];
     struct graph m = {(idx_t)n, RG_NEW(idx_t, n + 1), RG_NEW(idx_t, edges + 1), RG_NEW(idx_t, edges + 1),
                       RG_NEW(idx_t, n)};
+    set_weights(g, m.weight);
     for (size_t t = 0; t < n; t++) {
-        rg_gid left = g->elements - (rg_gid)t * g->tile;
         m.start[t + 1] = (idx_t)g->start[t + 1];
-        m.weight[t] = (idx_t)(left < g->tile ? left : g->tile);
     }
     for (size_t k = 0; k < edges; k++) {
         m.edge[k] = (idx_t)g->neighbour[k];
@@ -60,7 +77,7 @@ static idx_t run_metis(struct graph *g, metis_method *method, int parts, idx_t *
     return cut;
 }
 
-/* Elements of the largest part: what all ranks wait for. */
+/* Cost of the largest part: what all ranks wait for. */
 static rg_gid heaviest(const struct graph *g, int parts, const idx_t *result) {
     rg_gid *size = RG_NEW(rg_gid, (size_t)parts), most = 0;
     for (idx_t t = 0; t < g->nodes; t++) {

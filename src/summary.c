@@ -55,6 +55,7 @@ static void write_run(FILE *f, const rg_summary *m, const rg_solver *s, const rg
     integer(f, "ranks", s->ranks);
     integer(f, "threads", s->threads);
     number(f, "imbalance", s->part->quality.imbalance);
+    number(f, "cost_imbalance", s->part->quality.cost_imbalance);
     integer(f, "cut_faces", s->part->quality.cut_faces);
     integer(f, "neighbours_max", s->part->quality.neighbours_max);
     text(f, "instruction_set", s->kernels->name);

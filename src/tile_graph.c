@@ -1,6 +1,7 @@
 /* The graph of tiles: what a partition cuts. */
 #include "tile_graph.h"
 
+#include <stdbool.h>
 #include <stdlib.h>
 
 #include "mem.h"
@@ -67,23 +68,30 @@ void rg_tile_graph_free(rg_tile_graph *g) {
         rg_free(g->start);
         rg_free(g->neighbour);
         rg_free(g->faces);
+        rg_free(g->weight);
         rg_free(g);
     }
 }
 
 /* ---- quality of a partition ---- */
 
-static double imbalance(const rg_tile_graph *g, int parts, const int32_t *part) {
-    rg_gid *size = RG_NEW(rg_gid, (size_t)parts), most = 0;
+static double elements_of(const rg_tile_graph *g, int64_t t) {
+    rg_gid left = g->elements - t * g->tile;
+    return (double)(left < g->tile ? left : g->tile);
+}
+
+/* Largest part over the mean. */
+static double imbalance(const rg_tile_graph *g, int parts, const int32_t *part, bool cost) {
+    double *size = RG_NEW(double, (size_t)parts), most = 0, all = 0;
     for (int64_t t = 0; t < g->tiles; t++) {
-        rg_gid left = g->elements - t * g->tile;
-        size[part[t]] += left < g->tile ? left : g->tile;
+        size[part[t]] += cost && g->weight != NULL ? g->weight[t] : elements_of(g, t);
     }
     for (int p = 0; p < parts; p++) {
         most = size[p] > most ? size[p] : most;
+        all += size[p];
     }
     rg_free(size);
-    return (double)most * parts / (double)g->elements;
+    return most * parts / all;
 }
 
 /* Counts the different pairs of parts that share faces, in order: a part's neighbours stand together. */
@@ -104,7 +112,8 @@ static void count_neighbours(rg_partition_quality *q, int parts, int64_t *pair, 
 }
 
 rg_partition_quality rg_tile_graph_quality(const rg_tile_graph *g, int parts, const int32_t *part) {
-    rg_partition_quality q = {.imbalance = imbalance(g, parts, part)};
+    rg_partition_quality q = {.imbalance = imbalance(g, parts, part, false),
+                              .cost_imbalance = imbalance(g, parts, part, true)};
     int64_t *pair = RG_NEW(int64_t, (size_t)g->start[g->tiles] + 1);
     size_t count = 0;
     for (int64_t t = 0; t < g->tiles; t++) {

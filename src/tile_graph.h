@@ -12,15 +12,16 @@ typedef struct {
     int64_t *start;     /* [tiles + 1] */
     int64_t *neighbour; /* [start[tiles]] */
     int32_t *faces;     /* [start[tiles]] */
+    double *weight;     /* [tiles] cost of a tile; NULL: its elements */
 } rg_tile_graph;
 
 /* The graph of the tiles of a connected mesh, `tile` elements each. Free with rg_tile_graph_free. */
 rg_tile_graph *rg_tile_graph_make(const rg_mesh *mesh, int tile);
 void rg_tile_graph_free(rg_tile_graph *g);
 
-/* METIS partition, an edge weighing as many faces as two tiles share, a tile its elements; fixed seed:
- * part[tiles] in 0..parts-1, no part empty. Ends the run with a message if there are more parts than tiles.
- */
+/* METIS partition (the better of k-way and recursive bisection), an edge weighing as many faces as two tiles
+ * share, a tile its cost; fixed seed: part[tiles] in 0..parts-1, no part empty. Ends the run with a
+ * message if there are more parts than tiles. */
 void rg_tile_graph_partition(const rg_tile_graph *g, int parts, int32_t *part);
 
 /* Of a partition in `parts` parts. */

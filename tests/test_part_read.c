@@ -124,7 +124,7 @@ static void check_box(const struct box *b) {
         rg_mesh_file_write(path, mesh, 0, NULL);
     }
     rg_part *given = rg_part_distribute(rank == 0 ? mesh : NULL, tile, MPI_COMM_WORLD);
-    rg_part *read = rg_part_read(path, MPI_COMM_WORLD);
+    rg_part *read = rg_part_read(path, NULL, MPI_COMM_WORLD);
     report(same_counts(read, given), b->name, "counts, box and sets");
     report(same_part(read, given), b->name, "parts have the bits of those that rank 0 deals out");
     report(quality_right(read) && quality_right(given), b->name, "quality of the partition");
@@ -135,7 +135,7 @@ static void check_box(const struct box *b) {
         write_silly((mesh->elements + tile - 1) / tile);
     }
     MPI_Barrier(MPI_COMM_WORLD);
-    read = rg_part_read(path, MPI_COMM_WORLD);
+    read = rg_part_read(path, NULL, MPI_COMM_WORLD);
     report(silly_part_right(read, alone) && tiles_in_order(read), b->name, "parts of a stored partition");
     report(quality_right(read), b->name, "its quality");
     rg_part_free(read);

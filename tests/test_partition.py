@@ -169,6 +169,44 @@ def test_quality_is_told(box, tmp_path, command):
     assert "elements" in said and "partition" not in said
 
 
+# ---- mesh.weight ----
+
+HEAVY = "z > 0 ? 3 : 1"  # the middle of the cost is at a third of the upper half
+
+
+def cost_imbalance(said):
+    return float(re.search(r"imbalance 1\.\d+ \(([\d.]+) of the cost\)", said)[1])
+
+
+def test_weights_of_a_box_and_of_a_file(box):
+    """Costs are balanced, elements are not: the light part has 3 of 4 elements in the lower half and none above."""
+    sets = overrides({"mesh.weight": HEAVY})
+    file = launch("check", box, *sets, ranks=2).stdout
+    memory = launch("check", CASES / "fragments.yaml", "--set", "mesh.cells=[3, 3, 24]", *sets, ranks=2).stdout
+    lines = [re.search(r"^partition .*", said, re.M)[0] for said in (file, memory)]
+    assert lines[0] == lines[1]
+    assert cost_imbalance(file) < 1.05
+    assert float(re.search(r"imbalance (\d.\d+)", file)[1]) == pytest.approx(4 / 3, abs=0.05)
+
+
+def test_weights_do_not_change_results(run, box):
+    one = run(box, sets=SETS)
+    other = run(box, ranks=2, sets={**SETS, "mesh.weight": HEAVY})
+    assert other.summary["imbalance"] > 1.2 and other.summary["cost_imbalance"] < 1.05
+    assert other.summary["state_hash"] == one.summary["state_hash"]
+    assert re.search(r"weight: .z > 0 \? 3 : 1.", (other.dir / "case.yaml").read_text())
+
+
+@pytest.mark.parametrize("mesh", ["box", "file"])
+@pytest.mark.parametrize("weight", [0, -1, "z", "1/(z - z)"])
+def test_weight_that_is_refused(box, tmp_path, mesh, weight):
+    case = box if mesh == "file" else CASES / "fragments.yaml"
+    process = launch("run", case, "-q", "-o", tmp_path / "out", *overrides({"mesh.weight": weight}), ranks=2)
+    assert process.returncode == 2 and not (tmp_path / "out").exists()
+    assert process.stderr.count("rhegma: ") == 1
+    assert f"mesh.weight: {weight} is " in process.stderr and "allowed: numbers > 0" in process.stderr
+
+
 # ---- Files that are wrong although their checksums are right ----
 
 

@@ -1,0 +1,14 @@
+/* What tiles cost, by the key mesh.weight of a case: for the partition. */
+#ifndef RG_TILE_WEIGHT_H
+#define RG_TILE_WEIGHT_H
+
+#include "case.h"
+#include "mesh.h"
+
+/* [tiles]: the sum over a tile's elements of mesh.weight at their centroids. End the run (RG_USAGE) with a
+ * message if that is not positive and finite somewhere. Caller frees with rg_free. Of a mesh; or of the
+ * case's mesh file, of which each rank reads a share: collective, NULL on all ranks but 0. */
+double *rg_tile_weights_of_mesh(const rg_case *c, const rg_mesh *mesh, int tile);
+double *rg_tile_weights_of_file(const rg_case *c, MPI_Comm comm);
+
+#endif
