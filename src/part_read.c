@@ -198,7 +198,9 @@ static border *list_borders(const reader *r, size_t *count) {
             list[(*count)++] = (border){here < there ? here : there, e->owner[f], i, f};
         }
     }
-    qsort(list, *count, sizeof *list, by_owner);
+    if (*count > 0) {
+        qsort(list, *count, sizeof *list, by_owner);
+    }
     return list;
 }
 
