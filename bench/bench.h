@@ -115,9 +115,13 @@ const char *bench_step_name(int k);
  * failure where they differ. Local to the rank. */
 typedef struct {
     const char *name;
-    const double *got, *expected;
-    size_t count;
+    const void *got; /* reals or doubles */
+    const double *expected;
+    size_t count, size; /* values; bytes of one in `got` */
 } bench_field;
+
+/* Value i of an array of reals or doubles. */
+double bench_value(const void *values, size_t size, size_t i);
 
 void bench_compare(bench *b, const bench_row *row, const bench_field *f);
 

@@ -23,8 +23,8 @@ double RG_ISA_NAME(bench_peak)(long rounds, double factor) {
 }
 
 /* a = b + s c; `words` is a multiple of RG_LANES. */
-void RG_ISA_NAME(bench_triad)(double *a, const double *b, const double *c, double s, size_t words) {
+void RG_ISA_NAME(bench_triad)(rg_real *a, const rg_real *b, const rg_real *c, double s, size_t words) {
     for (size_t i = 0; i < words; i += RG_VLEN) {
-        rg_store(a + i, rg_load(b + i) + s * rg_load(c + i));
+        rg_store(a + i, rg_load(b + i) + rg_splat(s) * rg_load(c + i));
     }
 }

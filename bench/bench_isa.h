@@ -4,13 +4,15 @@
 
 #include <stddef.h>
 
+#include "layout.h"
+
 enum {
     BENCH_CHAINS = 12
 }; /* independent multiply-adds: two units of four to five cycles, registers for all */
 
 #define BENCH_ISA(isa)                                                                                       \
     double bench_peak_##isa(long rounds, double factor); /* returns flops; 2 per lane, chain and round */    \
-    void bench_triad_##isa(double *a, const double *b, const double *c, double s, size_t words)
+    void bench_triad_##isa(rg_real *a, const rg_real *b, const rg_real *c, double s, size_t words)
 
 BENCH_ISA(v4);
 BENCH_ISA(v3);

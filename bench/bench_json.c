@@ -61,7 +61,6 @@ static void put_machine(const bench *b, char (*affinity)[BENCH_TEXT], FILE *out)
 }
 
 static void put_build(FILE *out) {
-    const rg_bulk_args *args = NULL;
     fprintf(out, "  ");
     put_text(out, "revision", RG_REVISION);
     fprintf(out, ", ");
@@ -71,7 +70,7 @@ static void put_build(FILE *out) {
     fprintf(out, ", ");
     put_text(out, "flags", RG_COMPILER_FLAGS);
     fprintf(out, ",\n  ");
-    put_text(out, "precision", sizeof *args->force == sizeof(double) ? "double" : "single");
+    put_text(out, "precision", RG_PRECISION);
     fprintf(out, ",\n");
 }
 
@@ -86,7 +85,7 @@ static void put_roofs(const bench *b, FILE *out) {
                     "%s\n    {\"threads\": %d, \"level\": \"%s\", \"gbytes_3_words\": %.5g, "
                     "\"gbytes_with_write_allocate\": %.5g, \"bytes_per_rank\": %zu, ",
                     separator, r->threads, bench_size_name[s], bench_triad_rate(b, r, (bench_size)s, 3),
-                    bench_triad_rate(b, r, (bench_size)s, 4), 3 * sizeof(double) * r->words[s]);
+                    bench_triad_rate(b, r, (bench_size)s, 4), 3 * sizeof(rg_real) * r->words[s]);
             put_samples(out, "samples_s", &r->triad[s], 1);
             fputc('}', out);
             separator = ",";

@@ -159,32 +159,50 @@ static int outputs(const job *j, bench_field field[MOST_FIELDS]) {
     int n = 0;
     switch (j->what->kernel) {
     case RG_COST_BULK:
-        field[n++] = (bench_field){.name = "force", .got = p->force, .count = blocks * RG_NODE_BLOCK};
-        field[n++] =
-            (bench_field){.name = "traction", .got = p->traction, .count = blocks * RG_TRACTION_BLOCK};
-        field[n++] = (bench_field){.name = "stiffening", .got = p->stiffening, .count = blocks * RG_LANES};
+        field[n++] = (bench_field){
+            .name = "force", .got = p->force, .size = sizeof *p->force, .count = blocks * RG_NODE_BLOCK};
+        field[n++] = (bench_field){.name = "traction",
+                                   .got = p->traction,
+                                   .size = sizeof *p->traction,
+                                   .count = blocks * RG_TRACTION_BLOCK};
+        field[n++] = (bench_field){.name = "stiffening",
+                                   .got = p->stiffening,
+                                   .size = sizeof *p->stiffening,
+                                   .count = blocks * RG_LANES};
         break;
     case RG_COST_INTERFACE:
-        field[n++] = (bench_field){.name = "force", .got = p->iforce, .count = faces * RG_IFORCE_BLOCK};
-        field[n++] = (bench_field){.name = "crack", .got = p->crack, .count = faces * RG_CRACK_BLOCK};
+        field[n++] = (bench_field){
+            .name = "force", .got = p->iforce, .size = sizeof *p->iforce, .count = faces * RG_IFORCE_BLOCK};
+        field[n++] = (bench_field){
+            .name = "crack", .got = p->crack, .size = sizeof *p->crack, .count = faces * RG_CRACK_BLOCK};
         break;
     case RG_COST_KICK:
-        field[n++] = (bench_field){.name = "velocity", .got = p->velocity, .count = blocks * RG_NODE_BLOCK};
+        field[n++] = (bench_field){.name = "velocity",
+                                   .got = p->velocity,
+                                   .size = sizeof *p->velocity,
+                                   .count = blocks * RG_NODE_BLOCK};
         break;
     case RG_COST_DRIFT:
-        field[n++] = (bench_field){.name = "u", .got = p->u, .count = blocks * RG_NODE_BLOCK};
+        field[n++] =
+            (bench_field){.name = "u", .got = p->u, .size = sizeof *p->u, .count = blocks * RG_NODE_BLOCK};
         break;
     case RG_COST_BULK_STATE:
-        field[n++] = (bench_field){.name = "energy", .got = p->energy, .count = blocks * RG_LANES};
-        field[n++] =
-            (bench_field){.name = "cauchy", .got = p->cauchy, .count = blocks * RG_GAUSS * 6 * RG_LANES};
+        field[n++] = (bench_field){
+            .name = "energy", .got = p->energy, .size = sizeof *p->energy, .count = blocks * RG_LANES};
+        field[n++] = (bench_field){.name = "cauchy",
+                                   .got = p->cauchy,
+                                   .size = sizeof *p->cauchy,
+                                   .count = blocks * RG_GAUSS * 6 * RG_LANES};
         break;
     case RG_COST_KINETIC:
-        field[n++] = (bench_field){.name = "kinetic", .got = p->kinetic, .count = blocks * RG_LANES};
+        field[n++] = (bench_field){
+            .name = "kinetic", .got = p->kinetic, .size = sizeof *p->kinetic, .count = blocks * RG_LANES};
         break;
     default:
-        field[n++] =
-            (bench_field){.name = "energy", .got = p->ienergy, .count = faces * RG_E_INTERFACE * RG_LANES};
+        field[n++] = (bench_field){.name = "energy",
+                                   .got = p->ienergy,
+                                   .size = sizeof *p->ienergy,
+                                   .count = faces * RG_E_INTERFACE * RG_LANES};
         break;
     }
     return n;
@@ -205,7 +223,9 @@ static expectation expect(const job *j) {
     e.fields = outputs(j, e.field);
     for (int k = 0; k < e.fields; k++) {
         e.copy[k] = RG_NEW(double, e.field[k].count);
-        memcpy(e.copy[k], e.field[k].got, e.field[k].count * sizeof(double));
+        for (size_t i = 0; i < e.field[k].count; i++) {
+            e.copy[k][i] = bench_value(e.field[k].got, e.field[k].size, i);
+        }
         e.field[k].expected = e.copy[k];
     }
     memcpy(e.broken, p->broken, faces);
@@ -226,7 +246,7 @@ static void compare_masks(bench *b, const bench_row *row, const char *name, cons
     for (size_t i = 0; i < count; i++) {
         if (got[i] != expected[i]) {
             double values[2] = {got[i], expected[i]};
-            bench_compare(b, row, &(bench_field){name, &values[0], &values[1], 1});
+            bench_compare(b, row, &(bench_field){name, &values[0], &values[1], 1, sizeof values[0]});
             return;
         }
     }

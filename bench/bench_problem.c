@@ -54,20 +54,20 @@ static rg_domain *make_domain(bench_size size, bool quick, const rg_interface_ma
 
 static void allocate(bench_problem *p) {
     size_t blocks = p->domain->blocks, faces = p->domain->iblocks + 1;
-    p->pull = RG_NEW(double, blocks *RG_NODE_BLOCK);
-    p->u = RG_NEW(double, blocks *RG_NODE_BLOCK);
-    p->velocity = RG_NEW(double, blocks *RG_NODE_BLOCK);
-    p->force = RG_NEW(double, blocks *RG_NODE_BLOCK);
-    p->itraction = RG_NEW(double, blocks *RG_TRACTION_BLOCK);
-    p->traction = RG_NEW(double, blocks *RG_TRACTION_BLOCK);
-    p->stiffening = RG_NEW(double, blocks *RG_LANES);
+    p->pull = RG_NEW(rg_real, blocks * RG_NODE_BLOCK);
+    p->u = RG_NEW(rg_real, blocks * RG_NODE_BLOCK);
+    p->velocity = RG_NEW(rg_real, blocks * RG_NODE_BLOCK);
+    p->force = RG_NEW(rg_real, blocks * RG_NODE_BLOCK);
+    p->itraction = RG_NEW(rg_real, blocks * RG_TRACTION_BLOCK);
+    p->traction = RG_NEW(rg_real, blocks * RG_TRACTION_BLOCK);
+    p->stiffening = RG_NEW(rg_real, blocks * RG_LANES);
     p->energy = RG_NEW(double, blocks *RG_LANES);
     p->kinetic = RG_NEW(double, blocks *RG_LANES);
     p->cauchy = RG_NEW(double, blocks *RG_GAUSS * 6 * RG_LANES);
     p->cracked = RG_NEW(uint8_t, blocks);
-    p->ipull = RG_NEW(double, faces *RG_IFORCE_BLOCK);
-    p->iforce = RG_NEW(double, faces *RG_IFORCE_BLOCK);
-    p->crack = RG_NEW(double, faces *RG_CRACK_BLOCK);
+    p->ipull = RG_NEW(rg_real, faces * RG_IFORCE_BLOCK);
+    p->iforce = RG_NEW(rg_real, faces * RG_IFORCE_BLOCK);
+    p->crack = RG_NEW(rg_real, faces * RG_CRACK_BLOCK);
     p->ienergy = RG_NEW(double, faces *RG_E_INTERFACE *RG_LANES);
     p->broken = RG_NEW(uint8_t, faces * RG_LANES);
     p->unlinked = RG_NEW(uint8_t, faces * RG_LANES);
@@ -75,19 +75,19 @@ static void allocate(bench_problem *p) {
 }
 
 /* Fills blocks [begin, end) of `rows` values a lane. */
-static void fill(double *x, size_t begin, size_t end, int rows, uint64_t field, double size) {
+static void fill(rg_real *x, size_t begin, size_t end, int rows, uint64_t field, double size) {
     for (size_t b = begin; b < end; b++) {
         for (int r = 0; r < rows; r++) {
             for (size_t l = 0; l < RG_LANES; l++) {
                 x[(b * (size_t)rows + (size_t)r) * RG_LANES + l] =
-                    size * bench_noise(field, (rg_gid)(b * RG_LANES + l), r);
+                    (rg_real)(size * bench_noise(field, (rg_gid)(b * RG_LANES + l), r));
             }
         }
     }
 }
 
 /* Padding is at rest. */
-static void rest(double *x, const rg_domain *d, size_t begin, size_t end) {
+static void rest(rg_real *x, const rg_domain *d, size_t begin, size_t end) {
     for (size_t e = begin * RG_LANES; e < end * RG_LANES; e++) {
         for (int k = 0; d->id[e] < 0 && k < RG_NODES * 3; k++) {
             x[rg_node_index(e, k / 3, k % 3)] = 0;
@@ -128,16 +128,16 @@ static void break_face(bench_problem *p, size_t i) {
         double square = 0;
         for (int c = 0; c < 3; c++) {
             double w = OPENING * bench_noise(KEY_CRACK, (rg_gid)i, 3 * q + c);
-            p->crack[rg_crack_index(i, q, RG_CRACK_ORIGIN + c)] = -w;
+            p->crack[rg_crack_index(i, q, RG_CRACK_ORIGIN + c)] = (rg_real)-w;
             square += w * w;
         }
-        p->crack[rg_crack_index(i, q, RG_CRACK_OPENING)] = 1.1 * sqrt(square);
+        p->crack[rg_crack_index(i, q, RG_CRACK_OPENING)] = (rg_real)(1.1 * sqrt(square));
     }
 }
 
 static void reset_interfaces(bench_problem *p, size_t begin, size_t end, int percent) {
     const rg_domain *d = p->domain;
-    memset(p->crack + begin * RG_CRACK_BLOCK, 0, (end - begin) * RG_CRACK_BLOCK * sizeof(double));
+    memset(p->crack + begin * RG_CRACK_BLOCK, 0, (end - begin) * RG_CRACK_BLOCK * sizeof *p->crack);
     for (size_t i = begin * RG_LANES; i < end * RG_LANES; i++) {
         p->active[i / RG_LANES] = i % RG_LANES == 0 ? 0 : p->active[i / RG_LANES];
         p->broken[i] = p->unlinked[i] = 0;
@@ -161,8 +161,8 @@ int bench_unlinked_faces(const rg_domain *d, const uint8_t *unlinked, size_t b) 
     return faces;
 }
 
-static void spoil(double *x, size_t begin, size_t end, size_t per_block) {
-    memset(x + begin * per_block, 0xff, (end - begin) * per_block * sizeof *x);
+static void spoil(void *x, size_t size, size_t begin, size_t end, size_t per_block) {
+    memset((char *)x + begin * per_block * size, 0xff, (end - begin) * per_block * size);
 }
 
 void bench_problem_reset(bench_problem *p, int percent) {
@@ -171,19 +171,19 @@ void bench_problem_reset(bench_problem *p, int percent) {
         size_t begin, end;
         bench_share(p->domain->iblocks, &begin, &end);
         reset_interfaces(p, begin, end, percent);
-        spoil(p->iforce, begin, end, RG_IFORCE_BLOCK);
-        spoil(p->ienergy, begin, end, RG_E_INTERFACE * RG_LANES);
+        spoil(p->iforce, sizeof *p->iforce, begin, end, RG_IFORCE_BLOCK);
+        spoil(p->ienergy, sizeof *p->ienergy, begin, end, RG_E_INTERFACE * RG_LANES);
 #pragma omp barrier
         bench_share(p->domain->blocks, &begin, &end);
         fill(p->u, begin, end, RG_NODES * 3, KEY_U, ROUGH);
         fill(p->velocity, begin, end, RG_NODES * 3, KEY_VELOCITY, SPEED);
         rest(p->u, p->domain, begin, end);
-        spoil(p->force, begin, end, RG_NODE_BLOCK);
-        spoil(p->traction, begin, end, RG_TRACTION_BLOCK);
-        spoil(p->stiffening, begin, end, RG_LANES);
-        spoil(p->energy, begin, end, RG_LANES);
-        spoil(p->kinetic, begin, end, RG_LANES);
-        spoil(p->cauchy, begin, end, RG_GAUSS * 6 * RG_LANES);
+        spoil(p->force, sizeof *p->force, begin, end, RG_NODE_BLOCK);
+        spoil(p->traction, sizeof *p->traction, begin, end, RG_TRACTION_BLOCK);
+        spoil(p->stiffening, sizeof *p->stiffening, begin, end, RG_LANES);
+        spoil(p->energy, sizeof *p->energy, begin, end, RG_LANES);
+        spoil(p->kinetic, sizeof *p->kinetic, begin, end, RG_LANES);
+        spoil(p->cauchy, sizeof *p->cauchy, begin, end, RG_GAUSS * 6 * RG_LANES);
         for (size_t b = begin; b < end; b++) {
             p->cracked[b] = bench_unlinked_faces(p->domain, p->unlinked, b) > 0;
         }

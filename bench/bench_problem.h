@@ -10,11 +10,11 @@ typedef struct {
     rg_material material;
     rg_cohesive law;
     rg_domain *domain;
-    double *pull, *itraction, *ipull; /* in: bulk force, corner tractions, interface force */
-    double *u, *velocity, *crack;     /* in and out */
+    rg_real *pull, *itraction, *ipull; /* in: bulk force, corner tractions, interface force */
+    rg_real *u, *velocity, *crack;     /* in and out */
     uint8_t *cracked, *broken, *unlinked, *active;
-    double *force, *traction, *stiffening, *iforce; /* out */
-    double *energy, *cauchy, *kinetic, *ienergy;    /* out */
+    rg_real *force, *traction, *stiffening, *iforce; /* out */
+    double *energy, *cauchy, *kinetic, *ienergy;     /* out */
 } bench_problem;
 
 /* For the number of threads that OpenMP is set to; memory lies with the thread that uses it. Free with

@@ -5,7 +5,11 @@
 #include "bench.h"
 
 /* Of the largest value of the field: instruction sets fuse and order operations in their own way. */
-#define TOLERANCE 1e-10
+#define TOLERANCE (sizeof(rg_real) == sizeof(double) ? 1e-10 : 1e-5)
+
+double bench_value(const void *values, size_t size, size_t i) {
+    return size == sizeof(double) ? ((const double *)values)[i] : (double)((const float *)values)[i];
+}
 
 void bench_compare(bench *b, const bench_row *row, const bench_field *f) {
     double scale = 0;
@@ -13,12 +17,13 @@ void bench_compare(bench *b, const bench_row *row, const bench_field *f) {
         scale = fmax(scale, fabs(f->expected[i]));
     }
     for (size_t i = 0; i < f->count; i++) {
-        if (!(fabs(f->got[i] - f->expected[i]) <= TOLERANCE * scale)) {
+        double got = bench_value(f->got, f->size, i);
+        if (!(fabs(got - f->expected[i]) <= TOLERANCE * scale)) {
             fprintf(
                 stderr,
                 "rhegma-bench: %s, %s (%s, %d threads, rank %d): %s[%zu] is %.17g, the reference has %.17g\n",
-                row->kernel, row->set, bench_size_name[row->size], row->threads, b->rank, f->name, i,
-                f->got[i], f->expected[i]);
+                row->kernel, row->set, bench_size_name[row->size], row->threads, b->rank, f->name, i, got,
+                f->expected[i]);
             b->failed = true;
             return;
         }
@@ -29,9 +34,9 @@ void bench_print_roofs(const bench *b, const bench_roofs *r, FILE *out) {
     if (b->rank != 0) {
         return;
     }
-    fprintf(out, "\n%d ranks x %d threads\n", b->ranks, r->threads);
+    fprintf(out, "\n%d ranks x %d threads, %s precision\n", b->ranks, r->threads, RG_PRECISION);
     for (int s = 0; s < BENCH_SIZES; s++) {
-        double mb = 3e-6 * sizeof(double) * (double)r->words[s];
+        double mb = 3e-6 * sizeof(rg_real) * (double)r->words[s];
         fprintf(out, "triad %-10s %8.1f GB/s (3 words), %.1f with write-allocate; %.3g MB a rank\n",
                 bench_size_name[s], bench_triad_rate(b, r, (bench_size)s, 3),
                 bench_triad_rate(b, r, (bench_size)s, 4), mb);

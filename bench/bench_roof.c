@@ -11,7 +11,7 @@
 typedef struct {
     const char *name;
     double (*peak)(long rounds, double factor);
-    void (*triad)(double *a, const double *b, const double *c, double s, size_t words);
+    void (*triad)(rg_real *a, const rg_real *b, const rg_real *c, double s, size_t words);
 } loops;
 
 static const loops all_loops[] = {
@@ -34,7 +34,7 @@ static const loops *find_loops(const char *name) {
 
 typedef struct {
     const loops *use;
-    double *a, *b, *c;
+    rg_real *a, *b, *c;
     size_t words;
     long rounds;
     double flops; /* of all threads, in one call */
@@ -70,9 +70,9 @@ static void first_touch(const roof_job *j) {
 static void measure_triad(const bench *b, const loops *use, bench_roofs *r, bench_size size) {
     size_t words = r->words[size];
     roof_job j = {.use = use, .words = words};
-    j.a = RG_NEW(double, words);
-    j.b = RG_NEW(double, words);
-    j.c = RG_NEW(double, words);
+    j.a = RG_NEW(rg_real, words);
+    j.b = RG_NEW(rg_real, words);
+    j.c = RG_NEW(rg_real, words);
     first_touch(&j);
     bench_measure(b, b->options.repeats, triad, &j, &r->triad[size]);
     rg_free(j.a);
@@ -93,9 +93,9 @@ static void peak(void *context, int calls) {
 /* Words of a triad array: in the cache, as much memory as the kernels' small problem takes; else four times
  * the last cache over three arrays, and not less than a good number of pages. */
 static size_t triad_words(const bench *b, bench_size size, int threads) {
-    size_t small = (size_t)threads * 16384, least = b->options.quick ? (size_t)1 << 21 : (size_t)12 << 20;
-    size_t large = (4 * bench_cache_size() / 3 + 63) / 64 * 64 / sizeof(double);
-    return size == BENCH_CACHE ? small : large > least ? large : least;
+    size_t small = (size_t)threads << 17, least = (size_t)(b->options.quick ? 16 : 96) << 20;
+    size_t large = (4 * bench_cache_size() / 3 + 63) / 64 * 64;
+    return (size == BENCH_CACHE ? small : large > least ? large : least) / sizeof(rg_real);
 }
 
 void bench_measure_roofs(const bench *b, bench_roofs *r) {
@@ -114,7 +114,7 @@ void bench_measure_roofs(const bench *b, bench_roofs *r) {
 }
 
 double bench_triad_rate(const bench *b, const bench_roofs *r, bench_size size, int words) {
-    double bytes = (double)words * sizeof(double) * (double)r->words[size] * b->ranks;
+    double bytes = (double)words * sizeof(rg_real) * (double)r->words[size] * b->ranks;
     return 1e-9 * bytes / bench_median(&r->triad[size]);
 }
 

@@ -79,9 +79,9 @@ static void break_face(rg_solver *s, const rg_tile *t, size_t i) {
     s->broken[i] = s->unlinked[i] = (1 << RG_POINTS) - 1;
     s->active[i / RG_LANES] = 1;
     for (int q = 0; q < RG_POINTS; q++) {
-        s->crack[rg_crack_index(i, q, RG_CRACK_OPENING)] = 10 * OPENING;
+        s->crack[rg_crack_index(i, q, RG_CRACK_OPENING)] = (rg_real)(10 * OPENING);
         for (int c = 0; c < 3; c++) {
-            s->crack[rg_crack_index(i, q, RG_CRACK_ORIGIN + c)] = -2 * OPENING * normal[c] / area;
+            s->crack[rg_crack_index(i, q, RG_CRACK_ORIGIN + c)] = (rg_real)(-2 * OPENING * normal[c] / area);
         }
     }
     for (int k = 0; k < (i < t->sbegin * RG_LANES ? 2 : 1); k++) {
@@ -112,8 +112,9 @@ static void set_motion(rg_solver *s) {
     for (size_t slot = 0; slot < s->domain->blocks * RG_LANES; slot++) {
         rg_gid id = s->domain->id[slot];
         for (int k = 0; id >= 0 && k < 3 * RG_NODES; k++) {
-            s->u[rg_node_index(slot, k / 3, k % 3)] = ROUGH * bench_noise(KEY_U, id, k);
-            s->velocity[rg_node_index(slot, k / 3, k % 3)] = SPEED * bench_noise(KEY_VELOCITY, id, k);
+            s->u[rg_node_index(slot, k / 3, k % 3)] = (rg_real)(ROUGH * bench_noise(KEY_U, id, k));
+            s->velocity[rg_node_index(slot, k / 3, k % 3)] =
+                (rg_real)(SPEED * bench_noise(KEY_VELOCITY, id, k));
         }
     }
 }
@@ -175,8 +176,8 @@ static bench_row *add_row(bench *b, const rg_solver *s, const char *name, int th
 /* Two steps, then the motion must be the reference's: the second step feels the forces of the first. */
 static void validate(bench *b, const bench_row *row, rg_solver *s, const double *u, const double *velocity) {
     size_t count = s->domain->blocks * RG_NODE_BLOCK;
-    bench_compare(b, row, &(bench_field){"u", s->u, u, count});
-    bench_compare(b, row, &(bench_field){"velocity", s->velocity, velocity, count});
+    bench_compare(b, row, &(bench_field){"u", s->u, u, count, sizeof *s->u});
+    bench_compare(b, row, &(bench_field){"velocity", s->velocity, velocity, count, sizeof *s->velocity});
 }
 
 static void run_step(bench *b, rg_solver *s, int k, int threads) {
@@ -189,8 +190,10 @@ static void run_step(bench *b, rg_solver *s, int k, int threads) {
     take_steps(s, 1);
     bench_measure_once(take_steps, s, &row->samples);
     bench_print_row(b, row, stdout);
-    memcpy(u, s->u, count * sizeof *u);
-    memcpy(velocity, s->velocity, count * sizeof *velocity);
+    for (size_t i = 0; i < count; i++) {
+        u[i] = s->u[i];
+        velocity[i] = s->velocity[i];
+    }
     for (int i = 0; i < n; i++) {
         reset(s, sets[i], steps[k].broken);
         row = add_row(b, s, steps[k].name, threads);

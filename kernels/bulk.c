@@ -18,9 +18,9 @@ typedef rg_vec vec3[3];
 typedef struct {
     const rg_bulk_args *args;
     size_t block;
-    int lane;        /* first lane of the vector */
-    const double *u; /* the block's displacement at that lane */
-    vec3 grad[3];    /* grad l_k, k = 0, 1, 2 */
+    int lane;         /* first lane of the vector */
+    const rg_real *u; /* the block's displacement at that lane */
+    vec3 grad[3];     /* grad l_k, k = 0, 1, 2 */
     rg_vec volume;
     vec3 moment[RG_FACES][RG_FCORNERS]; /* m_i^k, i the face's corners */
 } element;
@@ -33,9 +33,9 @@ RG_INLINE rg_vec node(const element *e, int n, int c) {
 RG_INLINE void moments_of_nodes(vec3 jump[RG_FNODES], vec3 m[RG_FCORNERS]) {
     for (int c = 0; c < 3; c++) {
         rg_vec corners = jump[0][c] + jump[1][c] + jump[2][c], edges = jump[3][c] + jump[4][c] + jump[5][c];
-        rg_vec common = (2.0 / 15) * edges - (1.0 / 60) * corners;
+        rg_vec common = rg_splat(2.0 / 15) * edges - rg_splat(1.0 / 60) * corners;
         for (int i = 0; i < 3; i++) {
-            m[i][c] = common + (1.0 / 20) * jump[i][c] - (1.0 / 15) * jump[rg_facing[i]][c];
+            m[i][c] = common + rg_splat(1.0 / 20) * jump[i][c] - rg_splat(1.0 / 15) * jump[rg_facing[i]][c];
         }
     }
 }
@@ -103,7 +103,7 @@ RG_INLINE void load_element(element *e, const rg_bulk_args *args, size_t block, 
     e->block = block;
     e->lane = lane;
     e->u = args->u + block * RG_NODE_BLOCK + lane;
-    const double *geom = args->geom + block * RG_GEOM_BLOCK + lane;
+    const rg_real *geom = args->geom + block * RG_GEOM_BLOCK + lane;
     for (int k = 0; k < 3; k++) {
         for (int c = 0; c < 3; c++) {
             e->grad[k][c] = rg_load(geom + (RG_GEOM_GRAD + 3 * k + c) * RG_LANES);
@@ -125,56 +125,58 @@ RG_INLINE void common_derivatives(element *e, bool lift, vec3 common[4]) {
                     edges += node(e, rg_edge_node[k][j], c);
                 }
             }
-            common[k][c] = (4 * RG_GAUSS_A - 1) * node(e, k, c) + 4 * RG_GAUSS_A * edges;
+            common[k][c] = rg_splat(4 * RG_GAUSS_A - 1) * node(e, k, c) + rg_splat(4 * RG_GAUSS_A) * edges;
             if (lift) {
                 vec3 *m = e->moment[k];
-                common[k][c] += (6 * RG_GAUSS_A / RG_GAUSS_BA) * (m[0][c] + m[1][c] + m[2][c]);
+                common[k][c] += rg_splat(6 * RG_GAUSS_A / RG_GAUSS_BA) * (m[0][c] + m[1][c] + m[2][c]);
             }
         }
     }
 }
 
-/* F_g + R_g at Gauss point g. */
-RG_INLINE void deformation_gradient(const element *e, bool lift, vec3 common[4], int g, rg_vec F[3][3]) {
+/* H = F_g + R_g - I at Gauss point g. */
+RG_INLINE void displacement_gradient(const element *e, bool lift, vec3 common[4], int g, rg_vec H[3][3]) {
     vec3 d[4];
     for (int k = 0; k < 4; k++) {
         for (int c = 0; c < 3; c++) {
-            d[k][c] = common[k][c] + 4 * RG_GAUSS_BA * node(e, rg_edge_node[k][g], c);
+            d[k][c] = common[k][c] + rg_splat(4 * RG_GAUSS_BA) * node(e, rg_edge_node[k][g], c);
             if (lift && g != k) {
-                d[k][c] -= (6 / RG_GAUSS_BA) * e->moment[k][g < k ? g : g - 1][c];
+                d[k][c] -= rg_splat(6 / RG_GAUSS_BA) * e->moment[k][g < k ? g : g - 1][c];
             }
         }
     }
     for (int i = 0; i < 3; i++) {
         for (int j = 0; j < 3; j++) {
-            F[i][j] = (d[0][i] - d[3][i]) * e->grad[0][j] + (d[1][i] - d[3][i]) * e->grad[1][j] +
-                      (d[2][i] - d[3][i]) * e->grad[2][j] + (i == j ? 1.0 : 0.0);
+            H[i][j] = (d[0][i] - d[3][i]) * e->grad[0][j] + (d[1][i] - d[3][i]) * e->grad[1][j] +
+                      (d[2][i] - d[3][i]) * e->grad[2][j];
         }
     }
 }
 
 /* Nodal forces -sum_g (V/4) P_g grad N_a from q_k(g), and Q_k = sum_g q_k(g). */
-RG_INLINE void store_force(vec3 q[4][RG_GAUSS], vec3 Q[4], double *force) {
+RG_INLINE void store_force(vec3 q[4][RG_GAUSS], vec3 Q[4], rg_real *force) {
     for (int c = 0; c < 3; c++) {
         for (int k = 0; k < 4; k++) {
             rg_store(force + (k * 3 + c) * RG_LANES,
-                     (1 - 4 * RG_GAUSS_A) * Q[k][c] - 4 * RG_GAUSS_BA * q[k][k][c]);
+                     rg_splat(1 - 4 * RG_GAUSS_A) * Q[k][c] - rg_splat(4 * RG_GAUSS_BA) * q[k][k][c]);
             for (int j = k + 1; j < 4; j++) {
                 rg_store(force + (rg_edge_node[k][j] * 3 + c) * RG_LANES,
-                         -4 * RG_GAUSS_A * (Q[k][c] + Q[j][c]) - 4 * RG_GAUSS_BA * (q[k][j][c] + q[j][k][c]));
+                         rg_splat(-4 * RG_GAUSS_A) * (Q[k][c] + Q[j][c]) -
+                             rg_splat(4 * RG_GAUSS_BA) * (q[k][j][c] + q[j][k][c]));
             }
         }
     }
 }
 
 /* Area-weighted corner tractions sum_g e_ig P_g (area_f N_f), e_ig = (delta_ig - a)/(b - a). */
-RG_INLINE void store_traction(vec3 q[4][RG_GAUSS], vec3 Q[4], double *traction) {
+RG_INLINE void store_traction(vec3 q[4][RG_GAUSS], vec3 Q[4], rg_real *traction) {
     rg_vec row[RG_TRACTION_ROW];
     for (int f = 0; f < RG_FACES; f++) {
         for (int i = 0; i < RG_FCORNERS; i++) {
             for (int c = 0; c < 3; c++) {
                 row[(f * RG_FCORNERS + i) * 3 + c] =
-                    (12 / RG_GAUSS_BA) * (RG_GAUSS_A * Q[f][c] - q[f][rg_face_node[f][i]][c]);
+                    rg_splat(12 / RG_GAUSS_BA) *
+                    (rg_splat(RG_GAUSS_A) * Q[f][c] - q[f][rg_face_node[f][i]][c]);
             }
         }
     }
@@ -188,10 +190,12 @@ RG_INLINE void bulk_vector(const rg_bulk_args *args, size_t block, int lane, boo
     common_derivatives(&e, lift, common);
     rg_vec stiffening = {0}, bad = {0}, weight = 0.25 * e.volume;
     for (int g = 0; g < RG_GAUSS; g++) {
-        rg_vec F[3][3], P[3][3], cof[3][3], J, log_J;
-        deformation_gradient(&e, lift, common, g, F);
-        rg_neo_hookean_stress(&args->material, F, P, cof, &J, &log_J);
-        rg_vec s = rg_neo_hookean_stiffening(&args->material, cof, J, log_J);
+        rg_vec H[3][3], P[3][3];
+        rg_volume_change v;
+        displacement_gradient(&e, lift, common, g, H);
+        rg_neo_hookean_volume(H, &v);
+        rg_neo_hookean_stress(&args->material, H, &v, P);
+        rg_vec s = rg_neo_hookean_stiffening(&args->material, &v);
         stiffening = rg_max(stiffening, s);
         bad += 0.0 * s; /* a maximum forgets what is not a number */
         for (int c = 0; c < 3; c++) {
@@ -227,20 +231,23 @@ RG_INLINE void state_vector(const rg_bulk_state_args *args, size_t block, size_t
     common_derivatives(&e, lift, common);
     rg_vec energy = {0};
     for (int g = 0; g < RG_GAUSS; g++) {
-        rg_vec F[3][3], P[3][3], cof[3][3], J, log_J;
-        deformation_gradient(&e, lift, common, g, F);
-        rg_neo_hookean_stress(&args->bulk->material, F, P, cof, &J, &log_J);
-        energy += 0.25 * e.volume * rg_neo_hookean_energy(&args->bulk->material, F, log_J);
+        rg_vec H[3][3], F[3][3], P[3][3];
+        rg_volume_change v;
+        displacement_gradient(&e, lift, common, g, H);
+        rg_neo_hookean_volume(H, &v);
+        energy += 0.25 * e.volume * rg_neo_hookean_energy(&args->bulk->material, H, &v);
         if (args->cauchy != NULL) {
             static const int first[6] = {0, 1, 2, 1, 0, 0}, second[6] = {0, 1, 2, 2, 2, 1};
+            rg_plus_identity(H, F);
+            rg_neo_hookean_stress(&args->bulk->material, H, &v, P);
             double *out = args->cauchy + (row * RG_GAUSS + (size_t)g) * 6 * RG_LANES + lane;
             for (int s = 0; s < 6; s++) {
-                rg_store(out + s * RG_LANES, rg_dot(P[first[s]], F[second[s]]) / J);
+                rg_store_wide(out + s * RG_LANES, rg_dot(P[first[s]], F[second[s]]) / v.J);
             }
         }
     }
     if (args->energy != NULL) {
-        rg_store(args->energy + row * RG_LANES + lane, energy);
+        rg_store_wide(args->energy + row * RG_LANES + lane, energy);
     }
 }
 

@@ -9,18 +9,20 @@
 #include "kernels.h"
 #include "vec.h"
 
-#define RG_OPENING_FLOOR 1e-30 /* m: keeps the secant finite where nothing has opened */
+#define RG_OPENING_FLOOR 1e-20 /* m: keeps the secant finite where nothing has opened, also in floats */
+#define RG_NO_AREA       1e-37 /* m2: keeps the normal of padding finite, likewise */
 
 /* Secant s = T/delta (Pa/m); 0 once failed. */
 RG_INLINE rg_vec rg_cohesive_secant(const rg_cohesive *law, rg_vec delta_max) {
-    rg_vec s = law->strength * (1.0 / rg_max(delta_max, rg_splat(RG_OPENING_FLOOR)) - 1.0 / law->opening);
+    rg_vec floor = rg_splat(RG_OPENING_FLOOR);
+    rg_vec s = rg_splat(law->strength) * (1.0 / rg_max(delta_max, floor) - rg_splat(1.0 / law->opening));
     return rg_max(s, rg_splat(0.0));
 }
 
 /* Energy dissipated per area, G_c min(1, delta_max/delta_c) (J/m^2). */
 RG_INLINE rg_vec rg_cohesive_dissipated(const rg_cohesive *law, rg_vec delta_max) {
-    rg_vec excess = rg_max(delta_max - law->opening, rg_splat(0.0));
-    return 0.5 * law->strength * (delta_max - excess);
+    rg_vec excess = rg_max(delta_max - rg_splat(law->opening), rg_splat(0.0));
+    return rg_splat(0.5 * law->strength) * (delta_max - excess);
 }
 
 #endif

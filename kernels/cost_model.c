@@ -8,7 +8,8 @@ enum {
     FMA = 2,
     DOT = 5,   /* of 3-vectors: 1 + 2 FMA */
     CROSS = 9, /* 3 (1 + FMA) */
-    LOG = 31,  /* s = (m - 1)/(m + 1), z, k: 5; polynomial 9 FMA; sum: 8 */
+    LOG_TERMS = sizeof(rg_real) == sizeof(double) ? 9 : 3,
+    LOG = 13 + LOG_TERMS * FMA, /* s = t/(t + 2), z, k: 5; polynomial; sum: 8 */
 };
 
 /* The jump of six nodal vectors. */
@@ -28,22 +29,25 @@ enum {
     /* parts of the 4 derivatives common to all points: sum of 3 edges, 1 + FMA */
     COMMON = 4 * 3 * (3 + 1 + FMA),
     COMMON_LIFT = 4 * 3 * (2 + FMA),
-    /* at a point: 4 derivatives, an FMA each; 3 differences; 3 x 3 sums of three products, plus I */
-    GRADIENT = 4 * 3 * FMA + 9 + 9 * (1 + 2 * FMA + 1),
+    /* at a point: 4 derivatives, an FMA each; 3 differences; 3 x 3 sums of three products */
+    GRADIENT = 4 * 3 * FMA + 9 + 9 * (1 + 2 * FMA),
     GRADIENT_LIFT = 3 * 3 * FMA, /* no term on the face opposite the point */
-    /* first row of cof F and J, log J: all that the energy needs */
-    VOLUME_CHANGE = CROSS + DOT + LOG,
-    /* the other rows, p = (lambda log J - mu)/J, P = mu F + p cof F */
-    STRESS = 2 * CROSS + FMA + 1 + 9 * (1 + FMA),
-    /* bound on the acoustic tensor: cof^T cof (6 entries), row sums, /J^2, modulus, ratio, NaN guards */
-    STIFFENING = 6 * DOT + 9 + 2 + FMA + FMA + 1 + (1 + FMA) + FMA,
+    /* a row of cof F - I: two cofactors, and H_11 + H_22 + minor on the diagonal */
+    COFACTORS = 2 * (1 + FMA) + (1 + FMA + 2),
+    /* F, the first row, minor + H.D, + tr H, J, log J: all that the energy needs */
+    VOLUME_CHANGE = 3 + COFACTORS + DOT + 1 + 3 + 1 + LOG,
+    /* the other rows, r = (lambda log J + mu j)/J, p = r - mu, P = mu H + p D + r I */
+    STRESS = 2 * COFACTORS + 1 + FMA + 1 + 1 + 9 * (1 + FMA) + 3,
+    /* bound on the acoustic tensor: cof F, cof^T cof (6 entries), row sums, /J^2, modulus, ratio, NaN guards
+     */
+    STIFFENING = 3 + 6 * DOT + 9 + 2 + FMA + FMA + 1 + (1 + FMA) + FMA,
     /* q_k = (V/4) P grad l_k and their sums; q_3 from the other three */
     PROJECT = 9 * (DOT + 1 + 1) + 3 * 3,
     /* nodal forces: 4 corners 1 + FMA, 6 edges 2 + 1 + FMA; corner tractions: FMA + 1 */
     NODAL_FORCE = 3 * (4 * (1 + FMA) + 6 * (3 + FMA)),
     CORNER_TRACTION = RG_FACES * RG_FCORNERS * 3 * (FMA + 1),
-    /* energy density: F - I and its square, trace, three terms; times V/4 into the sum */
-    ENERGY = 3 + 9 * FMA + 3 + (1 + 1 + 1 + 2 * FMA) + FMA,
+    /* energy density: H:H, j - log J, three terms; times V/4 into the sum */
+    ENERGY = 3 * (DOT + 1) + (FMA + 1) + (1 + 1 + 1 + 2 * FMA) + FMA,
     CAUCHY = 6 * (DOT + 1), /* (P F^T)/J */
 };
 
@@ -128,9 +132,10 @@ enum {
     SIDES_TRACTION = 2 * SEAM_TRACTION,
     HISTORY = RG_CRACK_TIME, /* of a broken point: opening and origin; the time is not read */
     STRESSES = RG_GAUSS * 6,
+    WIDE = sizeof(double) / sizeof(rg_real), /* of a row of doubles: energies and stresses */
 };
 
-#define ROW   (RG_LANES * (double)sizeof *((rg_bulk_args *)0)->force)
+#define ROW   (RG_LANES * (double)sizeof(rg_real))
 #define LINKS ((double)sizeof(int32_t) * RG_LINK_BLOCK)
 #define SIDES ((double)sizeof(int32_t) * 2 * RG_LANES)
 
@@ -163,17 +168,17 @@ static traffic traffic_of(rg_cost_kernel kernel, const rg_cost_variant *v) {
     case RG_COST_BULK: /* out: forces, tractions, stiffening */
         return bulk_traffic(v, NODAL + TRACTION + 1);
     case RG_COST_BULK_STATE:
-        return bulk_traffic(v, 1 + (v->cauchy ? STRESSES : 0));
+        return bulk_traffic(v, WIDE * (1 + (v->cauchy ? STRESSES : 0)));
     case RG_COST_INTERFACE:
         return interface_traffic(v, SIDES_TRACTION + RG_IGEOM, FACE);
     case RG_COST_INTERFACE_STATE:
-        return interface_traffic(v, RG_IGEOM, RG_E_INTERFACE);
+        return interface_traffic(v, RG_IGEOM, WIDE * RG_E_INTERFACE);
     case RG_COST_KICK: /* in: bulk force, the forces of all interfaces, volume */
         return (traffic){.in = NODAL + FACE * v->interfaces + 1, .updated = NODAL, .index = LINKS};
     case RG_COST_DRIFT:
         return (traffic){.in = NODAL, .updated = NODAL};
     default: /* kinetic: velocity and volume */
-        return (traffic){.in = NODAL + 1, .out = 1};
+        return (traffic){.in = NODAL + 1, .out = WIDE};
     }
 }
 

@@ -34,11 +34,17 @@
 #define RG_DESHPANDE_EVANS_H
 
 #include "deshpande_evans_model.h"
-#include "neo_hookean.h"
 #include "vec_math.h"
 
 enum { RG_DE_NEWTON = 8 }; /* steps of the flow's iteration, at most; two where it is under way */
 #define RG_DE_NEAR 1e-6    /* size of its last step in log dep: the next one would be the square */
+
+/* Cofactor matrix J F^-T. */
+RG_INLINE void rg_cofactor(rg_vec F[3][3], rg_vec cof[3][3]) {
+    for (int i = 0; i < 3; i++) {
+        rg_cross(F[(i + 1) % 3], F[(i + 2) % 3], cof[i]);
+    }
+}
 
 static const int rg_sym_row[6] = {0, 1, 2, 1, 0, 0}, rg_sym_column[6] = {0, 1, 2, 2, 2, 1};
 static const int rg_sym[3][3] = {{0, 5, 4}, {5, 1, 3}, {4, 3, 2}};

@@ -37,7 +37,7 @@ RG_INLINE void load_interface(interface *s, const rg_interface_args *args, size_
     s->block = block;
     s->lane = lane;
     s->seam = seam;
-    const double *geom = args->geom + block * RG_IGEOM_BLOCK + lane;
+    const rg_real *geom = args->geom + block * RG_IGEOM_BLOCK + lane;
     for (int k = 0; k < 2; k++) {
         for (int c = 0; c < 3; c++) {
             s->edge[k][c] = rg_load(geom + (RG_IGEOM_EDGE + 3 * k + c) * RG_LANES);
@@ -56,7 +56,7 @@ RG_INLINE void load_interface(interface *s, const rg_interface_args *args, size_
 RG_INLINE rg_vec direction(const interface *s) {
     rg_vec sign;
     for (int l = 0; l < RG_VLEN; l++) {
-        sign[l] = 1 - 2 * (side(s, 1)[l] & 1);
+        sign[l] = (rg_real)(1 - 2 * (side(s, 1)[l] & 1));
     }
     return sign;
 }
@@ -68,7 +68,7 @@ RG_INLINE void traces(const interface *s, vec3 one[RG_FNODES], vec3 two[RG_FNODE
         rg_gather_face(s->args->u, side(s, 1), two);
         return;
     }
-    const double *ghost = s->args->ghost + (s->block - s->args->first_seam) * RG_GHOST_BLOCK + s->lane;
+    const rg_real *ghost = s->args->ghost + (s->block - s->args->first_seam) * RG_GHOST_BLOCK + s->lane;
     for (int a = 0; a < RG_FNODES; a++) {
         for (int c = 0; c < 3; c++) {
             two[a][c] = rg_load(ghost + (a * 3 + c) * RG_LANES);
@@ -145,7 +145,7 @@ RG_INLINE rg_vec normal_penalty(const interface *s) {
 RG_INLINE rg_vec test_bound(const interface *s) {
     double beta = s->args->law.beta, strength = s->args->law.strength;
     double reach = beta > 0 && beta < 1 ? 1 / (beta * beta) : 1;
-    return (0.25 * strength * strength / reach) * s->area_square;
+    return rg_splat(0.25 * strength * strength / reach) * s->area_square;
 }
 
 RG_INLINE bool any_to_test(const interface *s) {
@@ -158,7 +158,7 @@ RG_INLINE bool any_to_test(const interface *s) {
 
 /* Nodal forces sum_q w_q N_a(q) T_q. */
 RG_INLINE void store_nodal_force(const interface *s) {
-    double *force = s->args->force + s->block * RG_IFORCE_BLOCK + s->lane;
+    rg_real *force = s->args->force + s->block * RG_IFORCE_BLOCK + s->lane;
     for (int c = 0; c < 3; c++) {
         rg_vec corner[2], edge[2], sum[2];
         for (int k = 0; k < 2; k++) {
@@ -181,13 +181,13 @@ RG_INLINE void store_nodal_force(const interface *s) {
 /* ---- Damaged faces ---- */
 
 /* Derivatives of the six shape functions along xi and eta (l = 1 - xi - eta, xi, eta) at point q. */
-RG_INLINE void face_derivatives(int q, double xi[RG_FNODES], double eta[RG_FNODES]) {
-    double l[3];
+RG_INLINE void face_derivatives(int q, rg_real xi[RG_FNODES], rg_real eta[RG_FNODES]) {
+    rg_real l[3];
     for (int i = 0; i < 3; i++) {
         l[i] = i == q % 3 ? rg_tri[q / 3].r : rg_tri[q / 3].p;
     }
-    const double dxi[RG_FNODES] = {1 - 4 * l[0], 4 * l[1] - 1, 0, 4 * (l[0] - l[1]), 4 * l[2], -4 * l[2]};
-    const double deta[RG_FNODES] = {1 - 4 * l[0], 0, 4 * l[2] - 1, -4 * l[1], 4 * l[1], 4 * (l[0] - l[2])};
+    const rg_real dxi[RG_FNODES] = {1 - 4 * l[0], 4 * l[1] - 1, 0, 4 * (l[0] - l[1]), 4 * l[2], -4 * l[2]};
+    const rg_real deta[RG_FNODES] = {1 - 4 * l[0], 0, 4 * l[2] - 1, -4 * l[1], 4 * l[1], 4 * (l[0] - l[2])};
     memcpy(xi, dxi, sizeof dxi);
     memcpy(eta, deta, sizeof deta);
 }
@@ -197,7 +197,7 @@ RG_INLINE void mid_surface(const interface *s, vec3 n[RG_POINTS], rg_vec area[RG
     vec3 one[RG_FNODES], two[RG_FNODES];
     traces(s, one, two);
     for (int q = 0; q < RG_POINTS; q++) {
-        double xi[RG_FNODES], eta[RG_FNODES];
+        rg_real xi[RG_FNODES], eta[RG_FNODES];
         face_derivatives(q, xi, eta);
         vec3 g1, g2;
         for (int c = 0; c < 3; c++) {
@@ -213,7 +213,7 @@ RG_INLINE void mid_surface(const interface *s, vec3 n[RG_POINTS], rg_vec area[RG
         rg_vec twice = rg_sqrt(rg_dot(n[q], n[q]));
         area[q] = 0.5 * twice;
         for (int c = 0; c < 3; c++) {
-            n[q][c] *= 1.0 / rg_max(twice, rg_splat(1e-300)); /* padding has no area */
+            n[q][c] *= 1.0 / rg_max(twice, rg_splat(RG_NO_AREA)); /* padding has no area */
         }
     }
 }
@@ -221,7 +221,7 @@ RG_INLINE void mid_surface(const interface *s, vec3 n[RG_POINTS], rg_vec area[RG
 RG_INLINE rg_mask bit_mask(const uint8_t bits[RG_VLEN], int q) {
     rg_mask m;
     for (int l = 0; l < RG_VLEN; l++) {
-        m[l] = -(int64_t)((bits[l] >> q) & 1);
+        m[l] = -(rg_word)((bits[l] >> q) & 1);
     }
     return m;
 }
@@ -232,12 +232,12 @@ RG_INLINE void set_bits(uint8_t bits[RG_VLEN], int q, rg_mask m) {
     }
 }
 
-RG_INLINE double *crack_state(const interface *s, int q, int k) {
+RG_INLINE rg_real *crack_state(const interface *s, int q, int k) {
     return s->args->crack + s->block * s->args->crack_stride + (q * RG_CRACK + k) * RG_LANES + s->lane;
 }
 
 /* Writes x where m is set; where nothing is set nothing is touched (untouched pages cost no memory). */
-RG_INLINE void store_where(double *p, rg_mask m, rg_vec x) {
+RG_INLINE void store_where(rg_real *p, rg_mask m, rg_vec x) {
     rg_store(p, rg_select(m, x, rg_load(p)));
 }
 
@@ -249,9 +249,9 @@ RG_INLINE rg_mask switch_points(const interface *s, int q, const vec3 n, rg_vec 
     const rg_cohesive *law = &s->args->law;
     vec3 t, tau, d;
     for (int c = 0; c < 3; c++) {
-        t[c] = s->mean[q][c] / rg_max(area, rg_splat(1e-300));
+        t[c] = s->mean[q][c] / rg_max(area, rg_splat(RG_NO_AREA));
     }
-    double shear = law->beta > 0 ? 1 / (law->beta * law->beta) : 0;
+    rg_vec shear = rg_splat(law->beta > 0 ? 1 / (law->beta * law->beta) : 0);
     rg_vec tn = rg_dot(t, n), tension = rg_max(tn, rg_splat(0.0));
     for (int c = 0; c < 3; c++) {
         tau[c] = t[c] - tn * n[c];
@@ -259,11 +259,11 @@ RG_INLINE rg_mask switch_points(const interface *s, int q, const vec3 n, rg_vec 
     rg_vec effective = rg_sqrt(tension * tension + shear * rg_dot(tau, tau));
     rg_mask tested =
         (s->area_square > 0.0) & (rg_dot(s->mean[q], s->mean[q]) > test_bound(s)); /* padding has no area */
-    rg_mask now = intact & tested & (effective > law->strength);
+    rg_mask now = intact & tested & (effective > rg_splat(law->strength));
     if (!rg_any(now)) {
         return now;
     }
-    rg_vec eps = (law->total ? 0.0 : RG_ONSET * law->strength) * s->area / normal_penalty(s);
+    rg_vec eps = rg_splat(law->total ? 0.0 : RG_ONSET * law->strength) * s->area / normal_penalty(s);
     for (int c = 0; c < 3; c++) {
         d[c] = (shear * tau[c] + tension * n[c]) / effective;
         rg_vec origin = law->total ? rg_splat(0.0) : s->jump[q][c] - eps * d[c];
@@ -289,7 +289,7 @@ RG_INLINE void crack_opening(const interface *s, int q, const vec3 n, opening *o
     for (int c = 0; c < 3; c++) {
         o->tangential[c] = w[c] - o->normal * n[c];
     }
-    double beta2 = s->args->law.beta * s->args->law.beta;
+    rg_vec beta2 = rg_splat(s->args->law.beta * s->args->law.beta);
     rg_vec open = rg_max(o->normal, rg_splat(0.0));
     o->effective = rg_sqrt(beta2 * rg_dot(o->tangential, o->tangential) + open * open);
 }
@@ -309,10 +309,10 @@ RG_INLINE rg_mask broken_traction(interface *s, int q, const vec3 n, rg_mask bro
         rg_store(crack_state(s, q, RG_CRACK_OPENING), delta_max);
     }
     rg_vec secant = s->area * rg_cohesive_secant(law, delta_max);
-    rg_vec touching = rg_select(o.normal < law->contact_below, o.normal, rg_splat(0.0));
-    rg_vec along =
-        secant * rg_max(o.normal, rg_splat(0.0)) + (law->flux ? 0.0 : 1.0) * normal_penalty(s) * touching;
-    double beta2 = law->beta * law->beta;
+    rg_vec touching = rg_select(o.normal < rg_splat(law->contact_below), o.normal, rg_splat(0.0));
+    rg_vec along = secant * rg_max(o.normal, rg_splat(0.0)) +
+                   rg_splat(law->flux ? 0.0 : 1.0) * normal_penalty(s) * touching;
+    rg_vec beta2 = rg_splat(law->beta * law->beta);
     for (int c = 0; c < 3; c++) {
         rg_vec t = secant * (beta2 * o.tangential[c]) + along * n[c];
         s->total[q][c] = rg_select(acting, t, s->total[q][c]);
@@ -384,7 +384,7 @@ RG_INLINE void broken_energy(const interface *s, int q, const vec3 n, rg_mask br
     rg_vec delta_max = rg_load(crack_state(s, q, RG_CRACK_OPENING));
     rg_vec stored = 0.5 * s->area * rg_cohesive_secant(law, delta_max) * o.effective * o.effective;
     rg_vec contact = 0.5 * normal_penalty(s) * o.normal * o.normal;
-    rg_mask touching = law->flux ? (rg_mask){0} : broken & (o.normal < law->contact_below);
+    rg_mask touching = law->flux ? (rg_mask){0} : broken & (o.normal < rg_splat(law->contact_below));
     sum[RG_E_COHESIVE] += weight * rg_select(broken & unlinked, stored, zero);
     sum[RG_E_CONTACT] += weight * rg_select(touching, contact, zero);
     sum[RG_E_DISSIPATED] +=
@@ -407,13 +407,13 @@ RG_INLINE void state_vector(const rg_interface_state_args *args, size_t block, s
         rg_mask gone = bit_mask(unlinked, q);
         rg_vec along = rg_dot(s.normal, s.jump[q]);
         rg_vec penalty = s.pen_iso * rg_dot(s.jump[q], s.jump[q]) + s.pen_norm * along * along;
-        sum[RG_E_PENALTY] += rg_select(gone, rg_splat(0.0), 0.5 * rg_tri[q / 3].weight * penalty);
+        sum[RG_E_PENALTY] += rg_select(gone, rg_splat(0.0), rg_splat(0.5 * rg_tri[q / 3].weight) * penalty);
         if (s.args->active[block]) {
             broken_energy(&s, q, n[q], bit_mask(broken, q), gone, sum);
         }
     }
     for (size_t k = 0; k < RG_E_INTERFACE; k++) {
-        rg_store(args->energy + (row * RG_E_INTERFACE + k) * RG_LANES + lane, sum[k]);
+        rg_store_wide(args->energy + (row * RG_E_INTERFACE + k) * RG_LANES + lane, sum[k]);
     }
 }
 

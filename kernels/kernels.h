@@ -21,30 +21,30 @@ typedef struct {
 /* Traces: what seams tell each other. `send` writes the own traces as rows, `receive` collects those of the
  * other sides into ghosts, and traction rows likewise. Blocks are the tile's seam blocks. */
 typedef struct {
-    const double *u;        /* displacement (m) */
-    const double *traction; /* area-weighted corner tractions (N) */
-    const int32_t *side;    /* [seam]: own face */
-    const int32_t *other;   /* [seam]: row of the other side */
-    const double *rows;     /* all trace rows of this rank */
-    double *own_rows;       /* out: the tile's trace rows */
-    double *own_tractions;  /* out: the tile's traction rows */
-    double *ghost;          /* out: ghost traces */
+    const rg_real *u;        /* displacement (m) */
+    const rg_real *traction; /* area-weighted corner tractions (N) */
+    const int32_t *side;     /* [seam]: own face */
+    const int32_t *other;    /* [seam]: row of the other side */
+    const rg_real *rows;     /* all trace rows of this rank */
+    rg_real *own_rows;       /* out: the tile's trace rows */
+    rg_real *own_tractions;  /* out: the tile's traction rows */
+    rg_real *ghost;          /* out: ghost traces */
 } rg_trace_args;
 
 /* Bulk: tet10 at the lifted gradient F + R (Ten Eyck & Lew 2006), or at F alone. */
 typedef struct {
     rg_material material;
     bool lift;                /* variational form: add the lifted jumps R to F */
-    const double *u;          /* displacement (m) */
-    const double *ghost;      /* traces of the other tiles' elements (m) */
-    const double *geom;       /* element geometry */
+    const rg_real *u;         /* displacement (m) */
+    const rg_real *ghost;     /* traces of the other tiles' elements (m) */
+    const rg_real *geom;      /* element geometry */
     const int32_t *neighbour; /* links */
     const int32_t *interface; /* links */
     const uint8_t *cracked;   /* [block]: not 0 where some face of the block has an unlinked point */
     const uint8_t *unlinked;  /* [interface]: bit q set where point q has left the lift */
-    double *force;            /* out: internal nodal force of the bulk, -dW/du (N) */
-    double *traction;         /* out: area-weighted corner tractions area_f P N_outward (N) */
-    double *stiffening; /* out: [block][lane], largest ratio of the acoustic tensor to its value at F = I */
+    rg_real *force;           /* out: internal nodal force of the bulk, -dW/du (N) */
+    rg_real *traction;        /* out: area-weighted corner tractions area_f P N_outward (N) */
+    rg_real *stiffening; /* out: [block][lane], largest ratio of the acoustic tensor to its value at F = I */
 } rg_bulk_args;
 
 /* 12-node interface. The area vector points from minus to plus, jump [u] = u+ - u-. Force on the minus side
@@ -61,23 +61,23 @@ typedef struct {
 
 typedef struct {
     rg_cohesive law;
-    double time;                 /* time of the state (s), recorded where a point switches */
-    const double *u;             /* displacement (m) */
-    const double *traction;      /* area-weighted corner tractions of the tile's elements (N) */
-    size_t first_seam;           /* blocks from here on are seams */
-    const double *ghost;         /* seams: trace of the other side (m) */
-    const double *own_tractions; /* seams: the tile's traction rows (N) */
-    const double *tractions;     /* seams: all traction rows of this rank (N) */
+    double time;                  /* time of the state (s), recorded where a point switches */
+    const rg_real *u;             /* displacement (m) */
+    const rg_real *traction;      /* area-weighted corner tractions of the tile's elements (N) */
+    size_t first_seam;            /* blocks from here on are seams */
+    const rg_real *ghost;         /* seams: trace of the other side (m) */
+    const rg_real *own_tractions; /* seams: the tile's traction rows (N) */
+    const rg_real *tractions;     /* seams: all traction rows of this rank (N) */
     const int32_t *side[2]; /* [interface]: links of the minus and plus side; of a seam, `side` and `other` */
-    const double *geom;     /* interface geometry */
+    const rg_real *geom;    /* interface geometry */
     uint8_t *broken;        /* [interface] in/out: bit q set where point q has switched */
     uint8_t *unlinked; /* [interface] in/out: bit q set where point q has no DG terms (never set for a closed
                           point under flux contact) */
     uint8_t *active;   /* [block] in/out: not 0 where some lane of the block has a broken point */
-    double *crack;     /* crack state, in/out */
-    size_t crack_stride; /* doubles from one block's crack state to the next: RG_CRACK_BLOCK, or 0 to share
+    rg_real *crack;    /* crack state, in/out */
+    size_t crack_stride; /* values from one block's crack state to the next: RG_CRACK_BLOCK, or 0 to share
                             one */
-    double *force;       /* out: g, nodal force on the minus side (N) */
+    rg_real *force;      /* out: g, nodal force on the minus side (N) */
 } rg_interface_args;
 
 /* Central difference, in two parts: v += dt M^-1 (bulk force + interfaces inside the tile), and, once the
@@ -87,20 +87,20 @@ typedef struct {
     bool lumped; /* HRZ diagonal mass instead of the consistent one */
     bool seams;  /* second part: seams alone, else bulk and inside */
     double dt;   /* s */
-    const double *geom;
-    const double *force;      /* bulk; not read in the second part */
-    const double *iforce;     /* interface */
+    const rg_real *geom;
+    const rg_real *force;     /* bulk; not read in the second part */
+    const rg_real *iforce;    /* interface */
     const int32_t *interface; /* links */
-    double *velocity;         /* in/out (m/s) */
-    double *now; /* NULL, or out: first part v + dt_now M^-1 (...), second part += dt_now M^-1 (...) */
+    rg_real *velocity;        /* in/out (m/s) */
+    rg_real *now; /* NULL, or out: first part v + dt_now M^-1 (...), second part += dt_now M^-1 (...) */
     double dt_now;
 } rg_kick_args;
 
 /* u += dt v. */
 typedef struct {
     double dt;
-    const double *velocity;
-    double *u;
+    const rg_real *velocity;
+    rg_real *u;
 } rg_drift_args;
 
 /* State for ledger and output, per element or interface. Output rows count from the first block asked for:
@@ -114,7 +114,7 @@ typedef struct {
 typedef struct {
     double density;
     bool lumped;
-    const double *geom, *velocity;
+    const rg_real *geom, *velocity;
     double *energy; /* out: [row][lane] v M v / 2 (J) */
 } rg_kinetic_args;
 

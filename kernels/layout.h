@@ -8,7 +8,7 @@
  * displacement, then the corner tractions. Whether the other tile lies on the same rank makes no difference.
  *
  * Every field is a structure of arrays in blocks of RG_LANES elements (or interfaces): the lane is the
- * fastest index, so a kernel loads a vector of eight elements with one aligned load, and every array is
+ * fastest index, so a kernel loads a vector of elements with one aligned load, and every array is
  * padded to whole blocks, so no kernel has a scalar remainder.
  *
  *   displacement, velocity, force   [element block][10 nodes][3][lane]
@@ -37,15 +37,26 @@
 #include <stddef.h>
 #include <stdint.h>
 
+/* Precision of the fields and of what the kernels compute with them: a choice of the build. Parameters, sums
+ * and energies are doubles in both. */
+#ifdef RG_SINGLE
+typedef float rg_real;
+#define RG_PRECISION "single"
+#else
+typedef double rg_real;
+#define RG_PRECISION "double"
+#endif
+
 enum {
-    RG_LANES = 8,    /* elements or interfaces in a block, on every instruction set */
-    RG_NODES = 10,   /* nodes of a tetrahedron */
-    RG_FACES = 4,    /* faces of a tetrahedron */
-    RG_FNODES = 6,   /* nodes of a face */
-    RG_FCORNERS = 3, /* corners of a face */
-    RG_POINTS = 6,   /* quadrature points of an interface */
-    RG_GAUSS = 4,    /* quadrature points of a tetrahedron */
-    RG_TILE = 256,   /* elements of a tile of a large mesh: some 0.4 MB of fields */
+    RG_LANES = 64 / (int)sizeof(rg_real), /* elements or interfaces in a block, on every instruction set: a
+                                             row of them is a cache line */
+    RG_NODES = 10,                        /* nodes of a tetrahedron */
+    RG_FACES = 4,                         /* faces of a tetrahedron */
+    RG_FNODES = 6,                        /* nodes of a face */
+    RG_FCORNERS = 3,                      /* corners of a face */
+    RG_POINTS = 6,                        /* quadrature points of an interface */
+    RG_GAUSS = 4,                         /* quadrature points of a tetrahedron */
+    RG_TILE = 256,                        /* elements of a tile of a large mesh: some 0.4 MB of fields */
 };
 
 enum { /* element geometry: grad l_k of barycentric coordinates k = 0, 1, 2 (1/m), volume (m^3) */
@@ -70,7 +81,7 @@ enum { /* crack state of one interface point; meaningful only where the point's 
        RG_CRACK = 5,
 };
 
-enum { /* doubles per row, and per block */
+enum { /* values per row, and per block */
        RG_TRACTION_ROW = RG_FACES * RG_FCORNERS * 3,
        RG_IFORCE_ROW = RG_FNODES * 3,
        RG_NODE_BLOCK = RG_NODES * 3 * RG_LANES,

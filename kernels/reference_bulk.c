@@ -191,12 +191,12 @@ static void bulk_element(const rg_bulk_args *args, size_t e) {
     }
     for (int a = 0; a < RG_NODES; a++)
         for (int c = 0; c < 3; c++)
-            args->force[rg_node_index(e, a, c)] = force[a][c];
+            args->force[rg_node_index(e, a, c)] = (rg_real)force[a][c];
     for (int f = 0; f < RG_FACES; f++)
         for (int i = 0; i < RG_FCORNERS; i++)
             for (int c = 0; c < 3; c++)
-                args->traction[rg_traction_index(e, f, i, c)] = traction[f][i][c];
-    args->stiffening[e] = worst;
+                args->traction[rg_traction_index(e, f, i, c)] = (rg_real)traction[f][i][c];
+    args->stiffening[e] = (rg_real)worst;
 }
 
 void rg_reference_bulk(const rg_bulk_args *args, size_t begin, size_t end) {

@@ -139,15 +139,15 @@ static bool breaks(const rg_cohesive *law, const point *p, double direction[3]) 
 
 /* First crack state of a point. */
 static void activate(const rg_interface_args *args, const point *p, const double direction[3],
-                     double *crack[RG_CRACK]) {
+                     rg_real *crack[RG_CRACK]) {
     double onset = RG_ONSET * args->law.strength * p->area / (p->iso + p->norm);
-    *crack[RG_CRACK_OPENING] = args->law.total ? 0 : onset;
+    *crack[RG_CRACK_OPENING] = args->law.total ? 0 : (rg_real)onset;
     for (int c = 0; c < 3; c++)
-        *crack[RG_CRACK_ORIGIN + c] = args->law.total ? 0 : p->jump[c] - onset * direction[c];
-    *crack[RG_CRACK_TIME] = args->time;
+        *crack[RG_CRACK_ORIGIN + c] = args->law.total ? 0 : (rg_real)(p->jump[c] - onset * direction[c]);
+    *crack[RG_CRACK_TIME] = (rg_real)args->time;
 }
 
-static opening measure(const rg_cohesive *law, const point *p, double *const crack[RG_CRACK]) {
+static opening measure(const rg_cohesive *law, const point *p, rg_real *const crack[RG_CRACK]) {
     opening o = {0};
     double w[3];
     for (int c = 0; c < 3; c++)
@@ -166,8 +166,9 @@ static double secant(const rg_cohesive *law, double largest) {
 }
 
 /* Cohesive traction and contact, area-weighted; keeps the largest opening. */
-static void cohesive(const rg_cohesive *law, const point *p, const opening *o, double *largest, double t[3]) {
-    *largest = fmax(*largest, o->effective);
+static void cohesive(const rg_cohesive *law, const point *p, const opening *o, rg_real *largest,
+                     double t[3]) {
+    *largest = (rg_real)fmax(*largest, o->effective);
     double s = secant(law, *largest);
     for (int c = 0; c < 3; c++) {
         t[c] = p->area * s * (law->beta * law->beta * o->shear[c] + fmax(0, o->normal) * p->normal[c]);
@@ -176,8 +177,8 @@ static void cohesive(const rg_cohesive *law, const point *p, const opening *o, d
     }
 }
 
-static void crack_pointers(const rg_interface_args *args, size_t i, int q, double *crack[RG_CRACK]) {
-    double *block = args->crack + i / RG_LANES * args->crack_stride;
+static void crack_pointers(const rg_interface_args *args, size_t i, int q, rg_real *crack[RG_CRACK]) {
+    rg_real *block = args->crack + i / RG_LANES * args->crack_stride;
     for (int k = 0; k < RG_CRACK; k++)
         crack[k] = block + rg_crack_index(i % RG_LANES, q, k);
 }
@@ -188,7 +189,8 @@ static void set_bit(uint8_t *mask, int q, bool on) {
 
 /* Traction of point q, area-weighted; advances its state. */
 static void point_traction(const rg_interface_args *args, size_t i, int q, const point *p, double t[3]) {
-    double direction[3] = {0, 0, 0}, *crack[RG_CRACK];
+    double direction[3] = {0, 0, 0};
+    rg_real *crack[RG_CRACK];
     bool broken = args->broken[i] >> q & 1;
     for (int c = 0; c < 3; c++)
         t[c] = p->dg[c];
@@ -222,7 +224,7 @@ void rg_reference_interface(const rg_interface_args *args, size_t begin, size_t 
         }
         for (int a = 0; a < RG_FNODES; a++)
             for (int c = 0; c < 3; c++)
-                args->force[rg_iforce_index(i, a, c)] = g[a][c];
+                args->force[rg_iforce_index(i, a, c)] = (rg_real)g[a][c];
     }
 }
 
@@ -230,7 +232,7 @@ void rg_reference_interface(const rg_interface_args *args, size_t begin, size_t 
 static void point_energy(const rg_interface_args *args, size_t i, int q, double energy[RG_E_INTERFACE]) {
     const rg_cohesive *law = &args->law;
     bool broken = args->broken[i] >> q & 1, unlinked = args->unlinked[i] >> q & 1;
-    double *crack[RG_CRACK];
+    rg_real *crack[RG_CRACK];
     point p;
     sample(args, i, q, &p); /* without the traction dg is the penalty alone */
     if (!unlinked)

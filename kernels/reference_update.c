@@ -107,16 +107,16 @@ void rg_reference_kick(const rg_kick_args *args, size_t begin, size_t end) {
                     acceleration += inv[a][b] * f[b][c] / mass;
                 size_t k = rg_node_index(e, a, c);
                 if (args->now)
-                    args->now[k] =
-                        (args->seams ? args->now[k] : args->velocity[k]) + args->dt_now * acceleration;
-                args->velocity[k] += args->dt * acceleration;
+                    args->now[k] = (rg_real)((args->seams ? args->now[k] : args->velocity[k]) +
+                                             args->dt_now * acceleration);
+                args->velocity[k] = (rg_real)(args->velocity[k] + args->dt * acceleration);
             }
     }
 }
 
 void rg_reference_drift(const rg_drift_args *args, size_t begin, size_t end) {
     for (size_t k = begin * RG_NODE_BLOCK; k < end * RG_NODE_BLOCK; k++)
-        args->u[k] += args->dt * args->velocity[k];
+        args->u[k] = (rg_real)(args->u[k] + args->dt * args->velocity[k]);
 }
 
 void rg_reference_kinetic(const rg_kinetic_args *args, size_t begin, size_t end) {

@@ -9,15 +9,15 @@
 /* Shape functions of a six-node triangle at a point with coordinate r = 1 - 2p at its corner and p at the
  * others. */
 typedef struct {
-    double p, r, weight;
-    double corner, other;    /* N of the point's own corner, of the other corners: l (2 l - 1) */
-    double adjacent, facing; /* N of the two mid-edges at the own corner, of the one facing it: 4 l l' */
+    rg_real p, r, weight;
+    rg_real corner, other;    /* N of the point's own corner, of the other corners: l (2 l - 1) */
+    rg_real adjacent, facing; /* N of the two mid-edges at the own corner, of the one facing it: 4 l l' */
 } rg_tri_rule;
 
 #define RG_TRI_RULE(P, W)                                                                                    \
     {                                                                                                        \
-        P, 1 - 2 * (P), W, (1 - 2 * (P)) * (1 - 4 * (P)), (P) * (2 * (P)-1), 4 * (P) * (1 - 2 * (P)),        \
-            4 * (P) * (P)                                                                                    \
+        (rg_real)(P), (rg_real)(1 - 2 * (P)), (rg_real)(W), (rg_real)((1 - 2 * (P)) * (1 - 4 * (P))),        \
+            (rg_real)((P) * (2 * (P)-1)), (rg_real)(4 * (P) * (1 - 2 * (P))), (rg_real)(4 * (P) * (P))       \
     }
 
 static const rg_tri_rule rg_tri[2] = {RG_TRI_RULE(RG_TRI_P0, RG_TRI_W0), RG_TRI_RULE(RG_TRI_P1, RG_TRI_W1)};
@@ -26,7 +26,7 @@ static const rg_tri_rule rg_tri[2] = {RG_TRI_RULE(RG_TRI_P0, RG_TRI_W0), RG_TRI_
 static const int rg_facing[3] = {4, 5, 3};
 
 /* Six nodal vectors of a face in each lane: lane l reads node a at trace[l] + place[l][a] * 3 * RG_LANES. */
-RG_INLINE void rg_gather_nodes(const double *const trace[RG_VLEN], const int *const place[RG_VLEN],
+RG_INLINE void rg_gather_nodes(const rg_real *const trace[RG_VLEN], const int *const place[RG_VLEN],
                                rg_vec out[RG_FNODES][3]) {
     for (int a = 0; a < RG_FNODES; a++) {
         rg_lanes at;
@@ -40,8 +40,8 @@ RG_INLINE void rg_gather_nodes(const double *const trace[RG_VLEN], const int *co
 }
 
 /* Traces of a nodal field on the elements' faces that side links name. */
-RG_INLINE void rg_gather_face(const double *u, const int32_t link[RG_VLEN], rg_vec out[RG_FNODES][3]) {
-    const double *trace[RG_VLEN];
+RG_INLINE void rg_gather_face(const rg_real *u, const int32_t link[RG_VLEN], rg_vec out[RG_FNODES][3]) {
+    const rg_real *trace[RG_VLEN];
     const int *place[RG_VLEN];
     for (int l = 0; l < RG_VLEN; l++) {
         uint32_t side = (uint32_t)link[l];
@@ -52,11 +52,11 @@ RG_INLINE void rg_gather_face(const double *u, const int32_t link[RG_VLEN], rg_v
 }
 
 /* Traces that neighbour links name: of elements of the tile, or ghosts. */
-RG_INLINE void rg_gather_neighbour(const double *u, const double *ghost, const int32_t link[RG_VLEN],
+RG_INLINE void rg_gather_neighbour(const rg_real *u, const rg_real *ghost, const int32_t link[RG_VLEN],
                                    rg_vec out[RG_FNODES][3]) {
     static const int order[RG_FACES + 1][RG_FNODES] = {
         {1, 2, 3, 5, 9, 8}, {0, 2, 3, 6, 9, 7}, {0, 1, 3, 4, 8, 7}, {0, 1, 2, 4, 5, 6}, {0, 1, 2, 3, 4, 5}};
-    const double *trace[RG_VLEN];
+    const rg_real *trace[RG_VLEN];
     const int *place[RG_VLEN];
     for (int l = 0; l < RG_VLEN; l++) {
         uint32_t number = (uint32_t)link[l] / 8, code = (uint32_t)link[l] % 8;

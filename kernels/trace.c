@@ -17,7 +17,7 @@ void RG_ISA_NAME(rg_send)(const rg_trace_args *args, size_t begin, size_t end) {
 void RG_ISA_NAME(rg_send_tractions)(const rg_trace_args *args, size_t begin, size_t end) {
     for (size_t s = begin * RG_LANES; s < end * RG_LANES; s++) {
         memcpy(args->own_tractions + s * RG_SEAM_ROW, args->traction + (size_t)args->side[s] * RG_SEAM_ROW,
-               RG_SEAM_ROW * sizeof(double));
+               RG_SEAM_ROW * sizeof(rg_real));
     }
 }
 

@@ -12,13 +12,13 @@ static const int edge_opposite[6] = {5, 3, 4, 1, 2, 0};
 /* Adds the interface forces of face k, if it is one of the kind asked for. */
 RG_INLINE void add_face(const rg_kick_args *args, const int32_t link[RG_VLEN], int k, bool seams,
                         rg_vec f[3][RG_NODES]) {
-    static _Alignas(64) const double none[RG_IFORCE_BLOCK];
+    static _Alignas(64) const rg_real none[RG_IFORCE_BLOCK];
     rg_lanes at;
     rg_vec sign;
     for (int l = 0; l < RG_VLEN; l++) {
         bool there = link[l] >= 0 && ((link[l] & RG_SEAM) != 0) == seams;
         at.lane[l] = there ? rg_first_value(args->iforce, (uint32_t)link[l] / 4, RG_IFORCE_BLOCK) : none;
-        sign[l] = 1 - 2 * (link[l] & 1);
+        sign[l] = (rg_real)(1 - 2 * (link[l] & 1));
     }
     for (int a = 0; a < RG_FNODES; a++) {
         for (int c = 0; c < 3; c++) {
@@ -67,15 +67,15 @@ RG_INLINE void solve_consistent(rg_vec f[RG_NODES]) {
 
 RG_INLINE void solve_lumped(rg_vec f[RG_NODES]) {
     for (int n = 0; n < RG_NODES; n++) {
-        f[n] *= n < 4 ? 36.0 : 27.0 / 4;
+        f[n] *= n < 4 ? 36 : (rg_real)(27.0 / 4);
     }
 }
 
 /* Adds dt M^-1 f to the velocity; dt_now M^-1 f leads to the velocity now, at the time of the forces. */
 RG_INLINE void kick_vector(const rg_kick_args *args, size_t block, int lane, bool lumped, bool seams) {
-    rg_vec mass =
-        args->density * rg_load(args->geom + block * RG_GEOM_BLOCK + RG_GEOM_VOLUME * RG_LANES + lane);
-    rg_vec scale = args->dt / mass, scale_now = args->dt_now / mass;
+    rg_vec mass = rg_splat(args->density) *
+                  rg_load(args->geom + block * RG_GEOM_BLOCK + RG_GEOM_VOLUME * RG_LANES + lane);
+    rg_vec scale = rg_splat(args->dt) / mass, scale_now = rg_splat(args->dt_now) / mass;
     rg_vec f[3][RG_NODES];
     sum_force(args, block, lane, seams, f);
     for (int c = 0; c < 3; c++) {
@@ -122,7 +122,7 @@ void RG_ISA_NAME(rg_kick)(const rg_kick_args *args, size_t begin, size_t end) {
 
 void RG_ISA_NAME(rg_drift)(const rg_drift_args *args, size_t begin, size_t end) {
     for (size_t i = begin * RG_NODE_BLOCK; i < end * RG_NODE_BLOCK; i += RG_VLEN) {
-        rg_store(args->u + i, rg_load(args->u + i) + args->dt * rg_load(args->velocity + i));
+        rg_store(args->u + i, rg_load(args->u + i) + rg_splat(args->dt) * rg_load(args->velocity + i));
     }
 }
 
@@ -147,7 +147,7 @@ RG_INLINE rg_vec consistent_square(const rg_vec v[RG_NODES]) {
 RG_INLINE rg_vec lumped_square(const rg_vec v[RG_NODES]) {
     rg_vec sum = {0};
     for (int n = 0; n < RG_NODES; n++) {
-        sum += (n < 4 ? 1.0 / 36 : 4.0 / 27) * v[n] * v[n];
+        sum += rg_splat(n < 4 ? 1.0 / 36 : 4.0 / 27) * v[n] * v[n];
     }
     return sum;
 }
@@ -164,7 +164,8 @@ void RG_ISA_NAME(rg_kinetic)(const rg_kinetic_args *args, size_t begin, size_t e
                 }
                 sum += args->lumped ? lumped_square(v) : consistent_square(v);
             }
-            rg_store(args->energy + (b - begin) * RG_LANES + lane, 0.5 * args->density * volume * sum);
+            rg_store_wide(args->energy + (b - begin) * RG_LANES + lane,
+                          rg_splat(0.5 * args->density) * volume * sum);
         }
     }
 }

@@ -1,8 +1,14 @@
-/* Exponential functions of vectors, beside rg_log in vec.h. */
+/* Exponential functions of vectors of doubles, on top of the logarithm in vec.h. */
 #ifndef RG_VEC_MATH_H
 #define RG_VEC_MATH_H
 
 #include "vec.h"
+
+/* Natural logarithm to 1 ulp or so; NaN where x is not positive. */
+RG_INLINE rg_vec rg_log(rg_vec x) {
+    rg_vec excess;
+    return rg_log_beside_1(x - 1.0, x, &excess);
+}
 
 RG_INLINE rg_vec rg_min(rg_vec a, rg_vec b) {
     return -rg_max(-a, -b);

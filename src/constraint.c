@@ -193,7 +193,7 @@ static double velocity_at(const rg_constraints *k, const entry *e, int i, double
     return dt > 0 ? (value_at(k, e, i, time + half) - value_at(k, e, i, time - half)) / dt : 0;
 }
 
-void rg_constraints_start(rg_constraints *k, const double *u, const double *velocity) {
+void rg_constraints_start(rg_constraints *k, const rg_real *u, const rg_real *velocity) {
     size_t jumps = 0;
     for (size_t n = 0; n < k->entries; n++) {
         entry *e = &k->entry[n];
@@ -235,7 +235,7 @@ void rg_constraints_set(rg_constraints *k, double time, double dt, bool moving) 
 
 /* Adds to the velocities of an entry's nodes what brings the constrained ones to `target`; returns the work
  * of that impulse. */
-static double correct(const entry *e, const double *target, double *velocity) {
+static double correct(const entry *e, const double *target, rg_real *velocity) {
     const pattern *p = e->pattern;
     double work = 0, change[RG_NODES];
     for (int i = 0; i < p->constrained; i++) {
@@ -251,17 +251,19 @@ static double correct(const entry *e, const double *target, double *velocity) {
     for (int n = 0; n < RG_NODES; n++) {
         size_t at = rg_node_index((size_t)e->slot, p->node[n], e->component);
         if (n < p->constrained) {
-            velocity[at] = target[n];
+            velocity[at] = (rg_real)target[n];
             continue;
         }
+        double v = velocity[at];
         for (int j = 0; j < p->constrained; j++) {
-            velocity[at] += p->follow[n][j] * change[j];
+            v += p->follow[n][j] * change[j];
         }
+        velocity[at] = (rg_real)v;
     }
     return work;
 }
 
-void rg_constraints_kick(rg_constraints *k, size_t tile, double *velocity, double *now) {
+void rg_constraints_kick(rg_constraints *k, size_t tile, rg_real *velocity, rg_real *now) {
     for (size_t n = k->tile_begin[tile]; n < k->tile_begin[tile + 1]; n++) {
         entry *e = &k->entry[n];
         if (now != NULL) {
@@ -272,12 +274,12 @@ void rg_constraints_kick(rg_constraints *k, size_t tile, double *velocity, doubl
     }
 }
 
-void rg_constraints_place(const rg_constraints *k, size_t tile, double *u) {
+void rg_constraints_place(const rg_constraints *k, size_t tile, rg_real *u) {
     for (size_t n = k->tile_begin[tile]; n < k->tile_begin[tile + 1]; n++) {
         const entry *e = &k->entry[n];
         for (int i = 0; i < e->pattern->constrained; i++) {
             if (k->input->boundary[e->boundary[i]].is_displacement) {
-                u[rg_node_index((size_t)e->slot, e->pattern->node[i], e->component)] = e->place[i];
+                u[rg_node_index((size_t)e->slot, e->pattern->node[i], e->component)] = (rg_real)e->place[i];
             }
         }
     }

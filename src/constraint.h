@@ -19,7 +19,7 @@ typedef struct rg_constraints rg_constraints;
 rg_constraints *rg_constraints_make(const rg_case *c, const rg_domain *d, const rg_part *part);
 
 /* Takes the fields at t = 0 as what the constrained nodes come from. */
-void rg_constraints_start(rg_constraints *k, const double *u, const double *velocity);
+void rg_constraints_start(rg_constraints *k, const rg_real *u, const rg_real *velocity);
 
 /* Evaluates what is prescribed for a step `dt` (> 0) from `time`: velocities in its middle, displacements at
  * its end, and, `moving`, velocities at `time` itself (at the start they are the initial ones). One thread.
@@ -28,10 +28,10 @@ void rg_constraints_set(rg_constraints *k, double time, double dt, bool moving);
 
 /* Corrects the velocities of tile `tile` after its kick; before that those at the present time, unless `now`
  * is NULL. Both are whole fields. Keeps account of the work. */
-void rg_constraints_kick(rg_constraints *k, size_t tile, double *velocity, double *now);
+void rg_constraints_kick(rg_constraints *k, size_t tile, rg_real *velocity, rg_real *now);
 
 /* Puts what has a prescribed displacement in its place after the drift of tile `tile`. */
-void rg_constraints_place(const rg_constraints *k, size_t tile, double *u);
+void rg_constraints_place(const rg_constraints *k, size_t tile, rg_real *u);
 
 /* Adds the work done up to the last present time at which velocities were asked for (J) to `work`. */
 void rg_constraints_work(const rg_constraints *k, rg_exact_sum *work);

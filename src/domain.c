@@ -29,9 +29,9 @@ static void set_element(rg_domain *d, size_t slot, const rg_element *e) {
     double grad[3][3];
     gradients(e->x, grad);
     for (int k = 0; k < 9; k++) {
-        d->geom[rg_geom_index(slot, RG_GEOM_GRAD + k)] = grad[k / 3][k % 3];
+        d->geom[rg_geom_index(slot, RG_GEOM_GRAD + k)] = (rg_real)grad[k / 3][k % 3];
     }
-    d->geom[rg_geom_index(slot, RG_GEOM_VOLUME)] = e->volume;
+    d->geom[rg_geom_index(slot, RG_GEOM_VOLUME)] = (rg_real)e->volume;
     d->id[slot] = e->id;
     memcpy(d->corner + 12 * slot, e->x, sizeof e->x);
     memcpy(d->set + 4 * slot, e->set, sizeof e->set);
@@ -53,7 +53,7 @@ static void allocate_elements(rg_domain *d) {
     d->id = RG_NEW(rg_gid, slots);
     d->corner = RG_NEW(double, 12 * slots);
     d->set = RG_NEW(int8_t, 4 * slots);
-    d->geom = RG_NEW(double, d->blocks *RG_GEOM_BLOCK);
+    d->geom = RG_NEW(rg_real, d->blocks * RG_GEOM_BLOCK);
     d->neighbour = RG_NEW(int32_t, d->blocks * RG_LINK_BLOCK);
     d->interface = RG_NEW(int32_t, d->blocks * RG_LINK_BLOCK);
 }

@@ -36,7 +36,7 @@ typedef struct {
     rg_gid *id;           /* [slots]: global element number; -1 in padding */
     double *corner;       /* [slots][4][3]: m */
     int8_t *set;          /* [slots][4]: surface set, -1 for none */
-    double *geom;         /* kernels/layout.h */
+    rg_real *geom;        /* kernels/layout.h */
     int32_t *neighbour;   /* links */
     int32_t *interface;   /* links */
     rg_gid tile_elements; /* of every tile but the mesh's last one */
@@ -45,7 +45,7 @@ typedef struct {
     size_t tile_blocks, tile_iblocks, tile_sblocks; /* largest of a tile: all, interfaces, seams */
 
     int32_t *side[2]; /* links of the interfaces */
-    double *igeom;
+    rg_real *igeom;
     uint8_t *counted; /* [interface]: 1 where this copy speaks for the face (owns the lower-numbered side) */
     size_t own_rows;  /* of the seams, padding included; `shared` more come behind */
     size_t shared;

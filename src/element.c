@@ -73,7 +73,7 @@ double rg_inverse_mass_entry(bool lumped, int a, int b) {
     return by_kind(kind, a, b);
 }
 
-void rg_mass_times(bool lumped, double mass, const double *v, size_t slot, double out[RG_NODES][3]) {
+void rg_mass_times(bool lumped, double mass, const rg_real *v, size_t slot, double out[RG_NODES][3]) {
     for (int a = 0; a < RG_NODES; a++) {
         for (int c = 0; c < 3; c++) {
             out[a][c] = 0;

@@ -21,6 +21,6 @@ double rg_mass_entry(bool lumped, int a, int b);
 double rg_inverse_mass_entry(bool lumped, int a, int b);
 
 /* M v of element `slot` of total mass `mass`; v laid out as in layout.h. */
-void rg_mass_times(bool lumped, double mass, const double *v, size_t slot, double out[RG_NODES][3]);
+void rg_mass_times(bool lumped, double mass, const rg_real *v, size_t slot, double out[RG_NODES][3]);
 
 #endif

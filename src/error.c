@@ -4,6 +4,7 @@
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <time.h>
 
 void rg_fatal(int status, const char *format, ...) {
     va_list args;
@@ -21,6 +22,8 @@ void rg_fatal(int status, const char *format, ...) {
         int ranks = 1;
         MPI_Comm_size(MPI_COMM_WORLD, &ranks);
         if (ranks > 1) {
+            nanosleep(&(struct timespec){.tv_nsec = 100000000},
+                      NULL); /* lest the abort overtake the message */
             MPI_Abort(MPI_COMM_WORLD, status);
         }
     }

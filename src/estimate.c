@@ -40,7 +40,7 @@ static double largest_edge(const rg_solver *s) {
 
 /* Of the fields, or at most: with cracks everywhere and the three buffers of field output. */
 static double bytes_per_element(const rg_solver *s, bool at_most) {
-    double crack = (double)s->domain->iblocks * RG_CRACK_BLOCK * sizeof(double);
+    double crack = (double)s->domain->iblocks * RG_CRACK_BLOCK * sizeof *s->crack;
     double now = (double)rg_alloc_total(), elements = (double)s->domain->elements;
     double output = s->input->output.fields == 0 ? 0 : 3 * RG_NODES * 3 * sizeof(double) * elements;
     double sum[2] = {now + (at_most ? output : -crack), elements};
@@ -95,8 +95,8 @@ void rg_estimate_print(const rg_solver *s, const rg_estimate *e, FILE *out) {
         "memory         %.0f bytes per element, at most %.0f (output, cracks everywhere); %.3g GB in all\n",
         e->bytes_per_element, e->peak_bytes_per_element,
         e->peak_bytes_per_element * (double)e->elements * 1e-9);
-    fprintf(out, "time loop      about %.3g s on %d ranks x %d threads (%s)\n", e->seconds, s->ranks,
-            s->threads, s->kernels->name);
+    fprintf(out, "time loop      about %.3g s on %d ranks x %d threads (%s, %s precision)\n", e->seconds,
+            s->ranks, s->threads, s->kernels->name, RG_PRECISION);
     if (isfinite(e->cohesive_zone)) {
         double ratio = e->cohesive_zone / e->largest_edge;
         fprintf(out, "cohesive zone  %.3g m, %.2g times the longest edge (%.3g m)\n", e->cohesive_zone, ratio,

@@ -4,12 +4,14 @@
 
 #include "mem.h"
 
+#define REAL (sizeof(rg_real) == sizeof(double) ? MPI_DOUBLE : MPI_FLOAT)
+
 struct rg_halo {
     const rg_shared_face *face;
     size_t faces;
     int values, partners;
-    const double *rows;
-    double *send;
+    const rg_real *rows;
+    rg_real *send;
     MPI_Request *request; /* persistent: receives first, then sends */
     double waited;
 };
@@ -22,13 +24,13 @@ static int count_partners(const rg_shared_face *face, size_t faces) {
     return n;
 }
 
-rg_halo *rg_halo_make(const rg_domain *d, int values, double *rows, int tag, MPI_Comm comm) {
+rg_halo *rg_halo_make(const rg_domain *d, int values, rg_real *rows, int tag, MPI_Comm comm) {
     rg_halo *h = RG_NEW(rg_halo, 1);
     *h = (rg_halo){.face = d->shared_face, .faces = d->shared, .values = values, .rows = rows};
     h->partners = count_partners(h->face, h->faces);
-    h->send = RG_NEW(double, d->shared *(size_t)values);
+    h->send = RG_NEW(rg_real, d->shared * (size_t)values);
     h->request = RG_NEW(MPI_Request, 2 * (size_t)h->partners);
-    double *receive = rows + d->own_rows * (size_t)values;
+    rg_real *receive = rows + d->own_rows * (size_t)values;
     size_t begin = 0;
     for (int p = 0; p < h->partners; p++) {
         size_t end = begin;
@@ -37,8 +39,8 @@ rg_halo *rg_halo_make(const rg_domain *d, int values, double *rows, int tag, MPI
         }
         int count = (int)(end - begin) * values, rank = h->face[begin].rank;
         size_t at = begin * (size_t)values;
-        MPI_Recv_init(receive + at, count, MPI_DOUBLE, rank, tag, comm, &h->request[p]);
-        MPI_Send_init(h->send + at, count, MPI_DOUBLE, rank, tag, comm, &h->request[h->partners + p]);
+        MPI_Recv_init(receive + at, count, REAL, rank, tag, comm, &h->request[p]);
+        MPI_Send_init(h->send + at, count, REAL, rank, tag, comm, &h->request[h->partners + p]);
         begin = end;
     }
     return h;
@@ -48,7 +50,7 @@ void rg_halo_pack(rg_halo *h) {
     size_t values = (size_t)h->values;
 #pragma omp for schedule(static)
     for (size_t i = 0; i < h->faces; i++) {
-        memcpy(h->send + i * values, h->rows + h->face[i].seam * values, values * sizeof(double));
+        memcpy(h->send + i * values, h->rows + h->face[i].seam * values, values * sizeof *h->send);
     }
 }
 
@@ -77,6 +79,7 @@ void rg_halo_free(rg_halo *h) {
     if (h == NULL) {
         return;
     }
+    rg_halo_finish(h);
     for (int i = 0; i < 2 * h->partners; i++) {
         MPI_Request_free(&h->request[i]);
     }

@@ -14,9 +14,9 @@
 
 typedef struct rg_halo rg_halo;
 
-/* Exchanges the rows of `values` doubles each in rows[own rows and shared][values]. `tag` tells exchanges
+/* Exchanges the rows of `values` reals each in rows[own rows and shared][values]. `tag` tells exchanges
  * apart. Keeps references to both arguments. Collective; free with rg_halo_free. */
-rg_halo *rg_halo_make(const rg_domain *d, int values, double *rows, int tag, MPI_Comm comm);
+rg_halo *rg_halo_make(const rg_domain *d, int values, rg_real *rows, int tag, MPI_Comm comm);
 
 void rg_halo_pack(rg_halo *h);
 void rg_halo_start(rg_halo *h);
@@ -28,6 +28,7 @@ void rg_halo_finish(rg_halo *h);
 /* Seconds that `finish` has waited so far. */
 double rg_halo_waited(const rg_halo *h);
 
+/* Collective: ends what was started. */
 void rg_halo_free(rg_halo *h);
 
 #endif

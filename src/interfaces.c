@@ -56,12 +56,12 @@ static bool set_geometry(const builder *b, size_t i, const rg_element *e, int f)
     bool minus = is_minus(e, f, edge, &area);
     double h = 3 * fmin(e->volume, e->other_volume[f]) / area;
     double normal = m->lambda + 2 * m->mu, shear = m->penalty == RG_PENALTY_ELASTIC ? m->mu : normal;
-    double *g = b->domain->igeom;
+    rg_real *g = b->domain->igeom;
     for (int k = 0; k < 6; k++) {
-        g[rg_igeom_index(i, RG_IGEOM_EDGE + k)] = edge[k / 3][k % 3];
+        g[rg_igeom_index(i, RG_IGEOM_EDGE + k)] = (rg_real)edge[k / 3][k % 3];
     }
-    g[rg_igeom_index(i, RG_IGEOM_PEN_ISO)] = m->beta_s / h * shear * area;
-    g[rg_igeom_index(i, RG_IGEOM_PEN_NORM)] = m->beta_s / h * (normal - shear) / area;
+    g[rg_igeom_index(i, RG_IGEOM_PEN_ISO)] = (rg_real)(m->beta_s / h * shear * area);
+    g[rg_igeom_index(i, RG_IGEOM_PEN_NORM)] = (rg_real)(m->beta_s / h * (normal - shear) / area);
     return minus;
 }
 
@@ -100,7 +100,7 @@ static void allocate(rg_domain *d) {
     for (int k = 0; k < 2; k++) {
         d->side[k] = RG_NEW(int32_t, slots);
     }
-    d->igeom = RG_NEW(double, slots *RG_IGEOM);
+    d->igeom = RG_NEW(rg_real, slots * RG_IGEOM);
     d->counted = RG_NEW(uint8_t, slots);
 }
 

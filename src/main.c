@@ -6,6 +6,7 @@
 
 #include "denormals.h"
 #include "error.h"
+#include "layout.h"
 #include "mem.h"
 #include "mesh_command.h"
 #include "revision.h"
@@ -96,7 +97,7 @@ static rg_case *read_case(const arguments *a, int rank) {
 
 static int execute(int argc, char **argv, int rank) {
     if (argc == 2 && strcmp(argv[1], "--version") == 0) {
-        printf("rhegma %s\n", RG_REVISION);
+        printf("rhegma %s, %s precision\n", RG_REVISION, RG_PRECISION);
         return RG_OK;
     }
     if (argc == 2 && (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0)) {

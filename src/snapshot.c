@@ -59,7 +59,7 @@ rg_snapshots *rg_snapshots_open(const rg_solver *s) {
 }
 
 static void write_nodal(rg_snapshots *w, const rg_solver *s, const char *name, const char *unit,
-                        const double *field) {
+                        const rg_real *field) {
     for (size_t i = 0; i < w->slab->own; i++) {
         size_t slot = (size_t)w->slab->slot[i];
         const int *order = output_order(s->domain->corner + 12 * slot);

@@ -16,27 +16,27 @@
 static void allocate_fields(rg_solver *s) {
     const rg_domain *d = s->domain;
     size_t blocks = d->blocks, rows = d->own_rows + d->shared;
-    s->u = RG_NEW(double, blocks *RG_NODE_BLOCK);
-    s->velocity = RG_NEW(double, blocks *RG_NODE_BLOCK);
-    s->now = RG_NEW(double, blocks *RG_NODE_BLOCK);
-    s->stiffening = RG_NEW(double, blocks *RG_LANES);
-    s->tile_stiffening = RG_NEW(double, d->tiles);
-    s->crack = rg_alloc_sparse(d->iblocks * RG_CRACK_BLOCK, sizeof(double));
+    s->u = RG_NEW(rg_real, blocks * RG_NODE_BLOCK);
+    s->velocity = RG_NEW(rg_real, blocks * RG_NODE_BLOCK);
+    s->now = RG_NEW(rg_real, blocks * RG_NODE_BLOCK);
+    s->stiffening = RG_NEW(rg_real, blocks * RG_LANES);
+    s->tile_stiffening = RG_NEW(rg_real, d->tiles);
+    s->crack = rg_alloc_sparse(d->iblocks * RG_CRACK_BLOCK, sizeof *s->crack);
     s->crack_stride = RG_CRACK_BLOCK;
     s->cracked = RG_NEW(uint8_t, blocks);
     s->broken = RG_NEW(uint8_t, d->iblocks * RG_LANES);
     s->unlinked = RG_NEW(uint8_t, d->iblocks * RG_LANES);
     s->active = RG_NEW(uint8_t, d->iblocks);
-    s->rows[0] = RG_NEW(double, rows *RG_TRACE_ROW);
-    s->rows[1] = RG_NEW(double, rows *RG_TRACE_ROW);
-    s->tractions = RG_NEW(double, rows *RG_SEAM_ROW);
+    s->rows[0] = RG_NEW(rg_real, rows * RG_TRACE_ROW);
+    s->rows[1] = RG_NEW(rg_real, rows * RG_TRACE_ROW);
+    s->tractions = RG_NEW(rg_real, rows * RG_SEAM_ROW);
     s->watched = RG_NEW(uint8_t, d->tiles);
     s->work = RG_NEW(rg_workspace, (size_t)s->threads);
 }
 
 static void place_tile(rg_solver *s, const rg_tile *t) {
-    size_t at = t->begin * RG_NODE_BLOCK, bytes = rg_tile_eblocks(t) * RG_NODE_BLOCK * sizeof(double);
-    size_t seams = rg_tile_seams(t) * RG_LANES * sizeof(double);
+    size_t at = t->begin * RG_NODE_BLOCK, bytes = rg_tile_eblocks(t) * RG_NODE_BLOCK * sizeof *s->u;
+    size_t seams = rg_tile_seams(t) * RG_LANES * sizeof *s->tractions;
     memset(s->u + at, 0, bytes);
     memset(s->velocity + at, 0, bytes);
     memset(s->tractions + t->row * RG_SEAM_ROW, 0, seams * RG_SEAM_ROW);
@@ -131,7 +131,8 @@ rg_solver *rg_solver_make(const rg_case *input, MPI_Comm comm) {
 
 /* Where the forces go: velocity += dt M^-1 f. */
 typedef struct {
-    double *velocity, dt;
+    rg_real *velocity;
+    double dt;
     bool move;    /* the step goes on: drift and publish at once */
     bool observe; /* `now` is wanted everywhere */
     bool constrain;
@@ -167,11 +168,11 @@ static void kick(rg_solver *s, size_t tile, const rg_workspace *w, const impulse
 }
 
 /* Largest value; not a number if one is not (a maximum forgets it). */
-static double largest(const double *x, size_t count) {
-    double m = 0, bad = 0;
+static rg_real largest(const rg_real *x, size_t count) {
+    rg_real m = 0, bad = 0;
     for (size_t i = 0; i < count; i++) {
         m = x[i] > m ? x[i] : m;
-        bad += 0.0 * x[i];
+        bad += 0 * x[i];
     }
     return m + bad;
 }
@@ -282,9 +283,10 @@ static void evaluate(rg_solver *s, const impulse *p) {
     MPI_Wait(&s->stiffening_request, MPI_STATUS_IGNORE);
 }
 
-/* Sends the traces of the current displacement. */
+/* Sends the traces of the current displacement, once those of the last drift have arrived. */
 static void publish(rg_solver *s) {
     const rg_domain *d = s->domain;
+    rg_halo_finish(s->halo_u[s->current]);
 #pragma omp parallel
     {
         const rg_workspace *w = &s->work[omp_get_thread_num()];
@@ -297,7 +299,7 @@ static void publish(rg_solver *s) {
     }
 }
 
-void rg_solver_impulse(rg_solver *s, double *velocity, double dt) {
+void rg_solver_impulse(rg_solver *s, rg_real *velocity, double dt) {
     publish(s);
     evaluate(s, &(impulse){.velocity = velocity, .dt = dt});
 }
@@ -322,9 +324,9 @@ static void set_initial(rg_solver *s) {
             rg_node_position(s->domain->corner + 12 * slot, n, x);
             for (int k = 0; k < 3; k++) {
                 s->u[rg_node_index(slot, n, k)] =
-                    initial_value(c->initial.displacement[k], "displacement", k, x);
+                    (rg_real)initial_value(c->initial.displacement[k], "displacement", k, x);
                 s->velocity[rg_node_index(slot, n, k)] =
-                    initial_value(c->initial.velocity[k], "velocity", k, x);
+                    (rg_real)initial_value(c->initial.velocity[k], "velocity", k, x);
             }
         }
     }

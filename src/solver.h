@@ -18,7 +18,7 @@
 
 /* What one thread needs to work on a tile. */
 typedef struct {
-    double *force, *traction, *iforce, *ghost; /* layout.h */
+    rg_real *force, *traction, *iforce, *ghost; /* layout.h */
 } rg_workspace;
 
 typedef struct rg_solver rg_solver;
@@ -35,17 +35,17 @@ struct rg_solver {
     rg_part *patch; /* rank 0, until rg_spectrum: the elements that limit the time step (patch.h) */
     rg_domain *domain;
 
-    double *u, *velocity, *now; /* layout.h; now: velocity at the time of u, where it was asked for */
-    double *crack;
+    rg_real *u, *velocity, *now; /* layout.h; now: velocity at the time of u, where it was asked for */
+    rg_real *crack;
     size_t crack_stride;
-    double *stiffening; /* [blocks][lane] */
-    double *tile_stiffening;
+    rg_real *stiffening; /* [blocks][lane] */
+    rg_real *tile_stiffening;
     double stiffening_here,
         stiffening_anywhere; /* largest on this rank, on all ranks; infinite if not finite */
     MPI_Request stiffening_request;
     uint8_t *cracked, *broken, *unlinked, *active;
-    double *rows[2], *tractions; /* trace rows, of the current state and of the next; traction rows */
-    int current;                 /* which of `rows` */
+    rg_real *rows[2], *tractions; /* trace rows, of the current state and of the next; traction rows */
+    int current;                  /* which of `rows` */
     rg_halo *halo_u[2], *halo_t;
     rg_workspace *work; /* [threads] */
     rg_constraints *constraints;
@@ -87,7 +87,7 @@ void rg_solver_drift(rg_solver *s);
 void rg_solver_step(rg_solver *s, double dt);
 
 /* velocity += dt M^-1 (all forces of u), without constraints. For the spectrum. Collective. */
-void rg_solver_impulse(rg_solver *s, double *velocity, double dt);
+void rg_solver_impulse(rg_solver *s, rg_real *velocity, double dt);
 
 void rg_solver_free(rg_solver *s);
 

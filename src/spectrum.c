@@ -11,6 +11,7 @@
 enum { MAX_ITERATIONS = 80, CHECK_EVERY = 8, POWER_ITERATIONS = 60 };
 
 #define TOLERANCE 1e-3 /* relative change of omega^2 between two checks */
+#define EXHAUSTED (sizeof(rg_real) == sizeof(double) ? 1e-10 : 1e-5) /* beta, rounding apart from 0 */
 /* Relative, added to omega^2. Measured on cubes of 6 tets, regular, jittered, stretched, graded: the patch
  * stays below the whole mesh by up to 0.5 % (nearly regular meshes with lumped mass; mostly far less where
  * elements differ), the iteration below its limit by up to 0.3 %, and faces closed here and there exceed all
@@ -25,13 +26,14 @@ static size_t values(const rg_solver *s) {
 }
 
 /* Inner product a . M b, exact sum over elements. */
-static double mass_dot(rg_solver *s, const double *a, const double *b) {
+static double mass_dot(rg_solver *s, const rg_real *a, const rg_real *b) {
     const rg_domain *d = s->domain;
     rg_exact_sum sum = {0};
 #pragma omp parallel
     {
         rg_exact_sum mine = {0};
-        _Alignas(64) double both[RG_NODE_BLOCK], energy[2][RG_LANES];
+        _Alignas(64) rg_real both[RG_NODE_BLOCK];
+        double energy[2][RG_LANES];
 #pragma omp for schedule(static)
         for (size_t block = 0; block < d->blocks; block++) {
             for (int sign = 0; sign < 2; sign++) { /* a.Mb = (|a + b|^2 - |a - b|^2)/4 */
@@ -57,7 +59,7 @@ static double mass_dot(rg_solver *s, const double *a, const double *b) {
     return rg_exact_value(&sum);
 }
 
-static double largest_entry(rg_solver *s, const double *a) {
+static double largest_entry(rg_solver *s, const rg_real *a) {
     double m = 0;
 #pragma omp parallel for schedule(static) reduction(max : m)
     for (size_t i = 0; i < values(s); i++) {
@@ -68,16 +70,16 @@ static double largest_entry(rg_solver *s, const double *a) {
 }
 
 /* y <- a y + b x */
-static void combine(rg_solver *s, double a, double *y, double b, const double *x) {
+static void combine(rg_solver *s, double a, rg_real *y, double b, const rg_real *x) {
 #pragma omp parallel for schedule(static)
     for (size_t i = 0; i < values(s); i++) {
-        y[i] = a * y[i] + b * x[i];
+        y[i] = (rg_real)(a * y[i] + b * x[i]);
     }
 }
 
 /* Elements at the cut of a patch are held at rest: the vectors are then those of the whole mesh that vanish
  * outside, and the largest frequency a lower bound of the whole mesh's. */
-static void hold_cut(rg_solver *s, double *q) {
+static void hold_cut(rg_solver *s, rg_real *q) {
 #pragma omp parallel for schedule(static)
     for (size_t slot = 0; slot < s->domain->blocks * RG_LANES; slot++) {
         if (memchr(s->domain->set + 4 * slot, RG_PATCH_CUT, 4) != NULL) {
@@ -88,12 +90,12 @@ static void hold_cut(rg_solver *s, double *q) {
     }
 }
 
-static void randomize(rg_solver *s, double *q) {
+static void randomize(rg_solver *s, rg_real *q) {
     for (size_t slot = 0; slot < s->domain->blocks * RG_LANES; slot++) {
         rg_gid id = s->domain->id[slot];
         for (int k = 0; k < 3 * RG_NODES; k++) {
             uint64_t h = rg_hash(rg_hash(0, (uint64_t)id), (uint64_t)k);
-            q[rg_node_index(slot, k / 3, k % 3)] = id < 0 ? 0 : 2 * rg_hash_uniform(h) - 1;
+            q[rg_node_index(slot, k / 3, k % 3)] = id < 0 ? 0 : (rg_real)(2 * rg_hash_uniform(h) - 1);
         }
     }
     hold_cut(s, q);
@@ -108,7 +110,7 @@ typedef struct {
 } linear_operator;
 
 /* w <- w + A q / scale, A = M^-1 K. Uses u. */
-static void apply(const linear_operator *op, const double *q, double *w) {
+static void apply(const linear_operator *op, const rg_real *q, rg_real *w) {
     rg_solver *s = op->s;
     double amplitude = AMPLITUDE * op->height / largest_entry(s, q);
     combine(s, 0, s->u, amplitude, q);
@@ -145,22 +147,22 @@ typedef struct {
     double alpha[MAX_ITERATIONS], beta[MAX_ITERATIONS];
 } lanczos;
 
-static void swap(double **a, double **b) {
-    double *t = *a;
+static void swap(rg_real **a, rg_real **b) {
+    rg_real *t = *a;
     *a = *b;
     *b = t;
 }
 
 /* One step: q_j in `q`, q_{j-1} in `before`; leaves q_{j+1} in `q` and q_j in `before`. False if the space is
  * full. */
-static bool lanczos_step(const linear_operator *op, lanczos *z, int j, double **q, double **before) {
+static bool lanczos_step(const linear_operator *op, lanczos *z, int j, rg_real **q, rg_real **before) {
     rg_solver *s = op->s;
     combine(s, j > 0 ? -z->beta[j - 1] : 0, *before, 0, *q);
     apply(op, *q, *before);
     z->alpha[j] = mass_dot(s, *before, *q);
     combine(s, 1, *before, -z->alpha[j], *q);
     z->beta[j] = sqrt(fmax(0, mass_dot(s, *before, *before)));
-    if (!(z->beta[j] > 1e-10)) {
+    if (!(z->beta[j] > EXHAUSTED)) {
         return false;
     }
     combine(s, 1 / z->beta[j], *before, 0, *q);
@@ -168,14 +170,15 @@ static bool lanczos_step(const linear_operator *op, lanczos *z, int j, double **
     return true;
 }
 
-static void first_vector(const linear_operator *op, double *q, double *before) {
+static void first_vector(const linear_operator *op, rg_real *q, rg_real *before) {
     randomize(op->s, q);
     combine(op->s, 1 / sqrt(mass_dot(op->s, q, q)), q, 0, q);
     memset(before, 0, values(op->s) * sizeof *before);
 }
 
 static double lanczos_eigenvalue(const linear_operator *op, lanczos *z) {
-    double *q = op->s->velocity, *before = op->s->now, last = 0;
+    rg_real *q = op->s->velocity, *before = op->s->now;
+    double last = 0;
     first_vector(op, q, before);
     for (z->n = 0; z->n < MAX_ITERATIONS;) {
         bool more = lanczos_step(op, z, z->n++, &q, &before);
@@ -193,7 +196,8 @@ static double lanczos_eigenvalue(const linear_operator *op, lanczos *z) {
 /* Not symmetric: growth of the norm under repeated application. */
 static double power_eigenvalue(const linear_operator *op) {
     rg_solver *s = op->s;
-    double *q = s->velocity, *w = s->now, norm = 0, largest = 0;
+    rg_real *q = s->velocity, *w = s->now;
+    double norm = 0, largest = 0;
     first_vector(op, q, w);
     for (int i = 0; i < POWER_ITERATIONS; i++) {
         memset(w, 0, values(s) * sizeof *w);
@@ -219,7 +223,7 @@ static void tridiagonal_vector(const lanczos *z, double theta, double y[MAX_ITER
 }
 
 /* Element with the most of the squared vector; the lowest number among equals. */
-static rg_gid dominant_element(rg_solver *s, const double *x) {
+static rg_gid dominant_element(rg_solver *s, const rg_real *x) {
     double most = -1;
     rg_gid id = -1;
     for (size_t slot = 0; slot < s->domain->blocks * RG_LANES; slot++) {
@@ -248,8 +252,9 @@ static rg_gid limiting_element(const linear_operator *op, const lanczos *known, 
         power_eigenvalue(op);
         return dominant_element(s, s->velocity);
     }
-    double y[MAX_ITERATIONS], *q = s->velocity, *before = s->now;
-    double *ritz = RG_NEW(double, values(s));
+    double y[MAX_ITERATIONS];
+    rg_real *q = s->velocity, *before = s->now;
+    rg_real *ritz = RG_NEW(rg_real, values(s));
     lanczos again = *known;
     tridiagonal_vector(known, theta, y);
     first_vector(op, q, before);
@@ -271,7 +276,7 @@ static const char *const state_name[] = {"intact", "broken and closed"};
 
 /* Puts the faces into a state, or (INTACT) back as they were. `shared` is one block of crack state for all.
  */
-static void set_state(rg_solver *s, state which, double *shared) {
+static void set_state(rg_solver *s, state which, rg_real *shared) {
     const rg_domain *d = s->domain;
     memset(s->broken, which == CLOSED ? (1 << RG_POINTS) - 1 : 0, d->iblocks * RG_LANES);
     memset(s->unlinked, which == CLOSED ? (1 << RG_POINTS) - 1 : 0, d->iblocks * RG_LANES);
@@ -309,18 +314,19 @@ static double smallest_height(const rg_solver *s) {
 }
 
 static void rest(rg_solver *s) {
-    memset(s->velocity, 0, values(s) * sizeof(double));
-    memset(s->now, 0, values(s) * sizeof(double));
-    memset(s->u, 0, values(s) * sizeof(double));
+    memset(s->velocity, 0, values(s) * sizeof *s->u);
+    memset(s->now, 0, values(s) * sizeof *s->u);
+    memset(s->u, 0, values(s) * sizeof *s->u);
 }
 
 void rg_spectrum_whole(rg_solver *s) {
     rg_cohesive law = s->law;
-    double *crack = s->crack;
+    rg_real *crack = s->crack;
     const rg_material *m = &s->material;
     linear_operator op = {.s = s, .height = smallest_height(s)};
     op.scale = (m->lambda + 2 * m->mu) / m->density / (op.height * op.height);
-    double *shared = RG_NEW(double, RG_CRACK_BLOCK), worst = 0;
+    rg_real *shared = RG_NEW(rg_real, RG_CRACK_BLOCK);
+    double worst = 0;
     bool closes = s->input->interface.law != RG_LAW_NONE && s->input->interface.contact != RG_CONTACT_FLUX;
     lanczos run[STATES] = {{0}};
     state limiting = INTACT;

@@ -59,6 +59,7 @@ static void write_run(FILE *f, const rg_summary *m, const rg_solver *s, const rg
     integer(f, "cut_faces", s->part->quality.cut_faces);
     integer(f, "neighbours_max", s->part->quality.neighbours_max);
     text(f, "instruction_set", s->kernels->name);
+    text(f, "precision", RG_PRECISION);
     integer(f, "steps", s->step);
     number(f, "time_end", s->time);
     number(f, "dt_critical", e->dt_critical);
@@ -80,7 +81,8 @@ static void write_physics(FILE *f, const rg_summary *m, const rg_ledger *l) {
     number(f, "first_fracture_time_s", m->first_fracture);
     number(f, "broken_area_m2", l->last.broken_area);
     number(f, "failed_area_m2", l->last.failed_area);
-    integer(f, "halo_doubles_per_face", 3 * RG_FNODES + 3 * RG_FCORNERS);
+    number(f, "halo_doubles_per_face",
+           (RG_TRACE_ROW + RG_SEAM_ROW) * (double)sizeof(rg_real) / sizeof(double));
     vector(f, "momentum", l->last.momentum);
     vector(f, "angular_momentum", l->last.angular_momentum);
     text(f, "status", m->failure[0] == '\0' ? "completed" : m->failure);

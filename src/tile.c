@@ -4,7 +4,7 @@
 
 rg_trace_args rg_tile_traces(const rg_solver *s, const rg_tile *t, const rg_workspace *w, bool next) {
     const rg_domain *d = s->domain;
-    double *rows = s->rows[next ? 1 - s->current : s->current];
+    rg_real *rows = s->rows[next ? 1 - s->current : s->current];
     return (rg_trace_args){.u = s->u + t->begin * RG_NODE_BLOCK,
                            .traction = w->traction,
                            .side = d->side[0] + t->sbegin * RG_LANES,
@@ -58,10 +58,10 @@ void rg_tile_receive(const rg_solver *s, const rg_tile *t, const rg_workspace *w
 }
 
 rg_workspace rg_workspace_make(const rg_domain *d) {
-    return (rg_workspace){.force = RG_NEW(double, d->tile_blocks *RG_NODE_BLOCK),
-                          .traction = RG_NEW(double, d->tile_blocks *RG_TRACTION_BLOCK),
-                          .iforce = RG_NEW(double, d->tile_iblocks *RG_IFORCE_BLOCK),
-                          .ghost = RG_NEW(double, d->tile_sblocks *RG_GHOST_BLOCK)};
+    return (rg_workspace){.force = RG_NEW(rg_real, d->tile_blocks * RG_NODE_BLOCK),
+                          .traction = RG_NEW(rg_real, d->tile_blocks * RG_TRACTION_BLOCK),
+                          .iforce = RG_NEW(rg_real, d->tile_iblocks * RG_IFORCE_BLOCK),
+                          .ghost = RG_NEW(rg_real, d->tile_sblocks * RG_GHOST_BLOCK)};
 }
 
 void rg_workspace_free(rg_workspace *w) {
@@ -71,7 +71,7 @@ void rg_workspace_free(rg_workspace *w) {
     rg_free(w->ghost);
 }
 
-double rg_tile_trace(const rg_solver *s, const rg_tile *t, size_t i, int k, int a, int c) {
+rg_real rg_tile_trace(const rg_solver *s, const rg_tile *t, size_t i, int k, int a, int c) {
     int32_t link = s->domain->side[k][i];
     if (i >= t->sbegin * RG_LANES) {
         int32_t other = s->domain->side[1][i];

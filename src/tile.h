@@ -34,6 +34,6 @@ rg_workspace rg_workspace_make(const rg_domain *d);
 void rg_workspace_free(rg_workspace *w);
 
 /* Displacement component c at node a of interface i (of tile t) on side k: 0 minus, 1 plus. */
-double rg_tile_trace(const rg_solver *s, const rg_tile *t, size_t i, int k, int a, int c);
+rg_real rg_tile_trace(const rg_solver *s, const rg_tile *t, size_t i, int k, int a, int c);
 
 #endif

@@ -25,6 +25,14 @@ ENVIRONMENT = {
     "OMPI_MCA_mpi_yield_when_idle": "1",
     "OMP_WAIT_POLICY": "passive",
 }
+SINGLE = "single precision" in subprocess.run([PROGRAM, "--version"], env={**os.environ, **ENVIRONMENT},
+                                               capture_output=True, text=True, timeout=TIMEOUT).stdout
+
+
+def rounding(double, single):
+    """The bound of what only rounding disturbs, for the precision of the program. Single: about three times what was
+    measured."""
+    return single if SINGLE else double
 
 
 def launch(*arguments, ranks=1, threads=1, cwd=None, **environment):

@@ -83,9 +83,9 @@ static void element_geometry(input *in, mesh *m, size_t e, size_t s) {
         rg_reference_cross(edge[(k + 1) % 3], edge[(k + 2) % 3], cross[k]);
     double det = rg_reference_dot(edge[0], cross[0]);
     for (int k = 0; k < 9; k++)
-        in->geom[rg_geom_index(s, RG_GEOM_GRAD + k)] = cross[k / 3][k % 3] / det;
+        in->geom[rg_geom_index(s, RG_GEOM_GRAD + k)] = (rg_real)(cross[k / 3][k % 3] / det);
     m->volume[e] = fabs(det) / 6;
-    in->geom[rg_geom_index(s, RG_GEOM_VOLUME)] = m->volume[e];
+    in->geom[rg_geom_index(s, RG_GEOM_VOLUME)] = (rg_real)m->volume[e];
     for (int i = 0; i < 4; i++)
         for (int j = i; j < 4; j++)
             for (int c = 0; c < 3; c++)
@@ -106,14 +106,14 @@ static bool interface_geometry(input *in, const mesh *m, size_t s, size_t e, int
     for (int k = 0; k < 2; k++)
         for (int c = 0; c < 3; c++)
             in->igeom[rg_igeom_index(s, RG_IGEOM_EDGE + 3 * k + c)] =
-                in->x[e][rg_face_node[f][k + 1]][c] - in->x[e][rg_face_node[f][0]][c];
+                (rg_real)(in->x[e][rg_face_node[f][k + 1]][c] - in->x[e][rg_face_node[f][0]][c]);
     double area = input_area(in, s, area_vector);
     for (int c = 0; c < 3; c++)
         outward += area_vector[c] * (in->x[e][rg_face_node[f][0]][c] - in->x[e][f][c]);
     double height = 3 * fmin(m->volume[e], m->volume[d]) / area, penalty = area * 4 / height;
-    in->igeom[rg_igeom_index(s, RG_IGEOM_PEN_ISO)] = penalty * in->material.mu;
+    in->igeom[rg_igeom_index(s, RG_IGEOM_PEN_ISO)] = (rg_real)(penalty * in->material.mu);
     in->igeom[rg_igeom_index(s, RG_IGEOM_PEN_NORM)] =
-        penalty * (in->material.lambda + in->material.mu) / (area * area);
+        (rg_real)(penalty * (in->material.lambda + in->material.mu) / (area * area));
     return outward > 0;
 }
 
@@ -168,14 +168,15 @@ static void fill_nodes(input *in, input_kind kind) {
                 size_t k = rg_node_index(in->element[e], a, c);
                 uint64_t component = (uint64_t)(3 * a + c);
                 const double *x = in->x[e][a];
-                in->u[k] =
-                    rg_reference_dot(in->gradient[c], x) - x[c] + rough * noise(in, KEY_U, e, component);
-                in->velocity[k] = 10 * noise(in, KEY_VELOCITY, e, component);
-                in->pull[k] = 20 * noise(in, KEY_PULL, e, component);
+                in->u[k] = (rg_real)(rg_reference_dot(in->gradient[c], x) - x[c] +
+                                     rough * noise(in, KEY_U, e, component));
+                in->velocity[k] = (rg_real)(10 * noise(in, KEY_VELOCITY, e, component));
+                in->pull[k] = (rg_real)(20 * noise(in, KEY_PULL, e, component));
             }
     for (uint64_t i = 0; i < INPUT_INTERFACES; i++)
         for (int k = 0; k < RG_FNODES * 3; k++)
-            in->ipull[rg_iforce_index(in->slot[i], k / 3, k % 3)] = 20 * noise(in, KEY_PULL, ~i, (uint64_t)k);
+            in->ipull[rg_iforce_index(in->slot[i], k / 3, k % 3)] =
+                (rg_real)(20 * noise(in, KEY_PULL, ~i, (uint64_t)k));
 }
 
 double input_area(const input *in, size_t s, double vector[3]) {
@@ -232,7 +233,7 @@ static void fill_interface_traction(input *in, size_t i) {
             double own = 0.02 * noise(in, KEY_TRACTION, i, (uint64_t)(k + 9 * (side + 1)));
             int32_t link = in->side[side][s];
             in->traction[rg_traction_index((size_t)link / 4, link % 4, k / 3, k % 3)] =
-                force * ((side ? -1 : 1) * t + common + own);
+                (rg_real)(force * ((side ? -1 : 1) * t + common + own));
         }
 }
 
@@ -258,11 +259,11 @@ void input_break_point(input *in, size_t i, int q, const double w[2], double lar
     input_jump(in, s, q, jump);
     in->broken[s] |= (uint8_t)(1 << q);
     in->unlinked[s] |= (uint8_t)(1 << q);
-    in->crack[rg_crack_index(s, q, RG_CRACK_OPENING)] = largest * in->law.opening;
+    in->crack[rg_crack_index(s, q, RG_CRACK_OPENING)] = (rg_real)(largest * in->law.opening);
     for (int c = 0; c < 3; c++)
         in->crack[rg_crack_index(s, q, RG_CRACK_ORIGIN + c)] =
-            jump[c] - in->law.opening * (w[0] * n[c] + w[1] * m[c]);
-    in->crack[rg_crack_index(s, q, RG_CRACK_TIME)] = 1e-7;
+            (rg_real)(jump[c] - in->law.opening * (w[0] * n[c] + w[1] * m[c]));
+    in->crack[rg_crack_index(s, q, RG_CRACK_TIME)] = (rg_real)1e-7;
 }
 
 void input_break(input *in, double probability) {
@@ -306,19 +307,19 @@ void *input_alloc(size_t bytes) {
     return memset(p, 0, whole);
 }
 
-static double *doubles(size_t blocks, size_t per_block) {
-    return input_alloc(blocks * per_block * sizeof(double));
+static rg_real *reals(size_t blocks, size_t per_block) {
+    return input_alloc(blocks * per_block * sizeof(rg_real));
 }
 
 static void allocate(input *in) {
-    in->u = doubles(INPUT_EBLOCKS, RG_NODE_BLOCK);
-    in->velocity = doubles(INPUT_EBLOCKS, RG_NODE_BLOCK);
-    in->pull = doubles(INPUT_EBLOCKS, RG_NODE_BLOCK);
-    in->geom = doubles(INPUT_EBLOCKS, RG_GEOM_BLOCK);
-    in->traction = doubles(INPUT_EBLOCKS, RG_TRACTION_BLOCK);
-    in->igeom = doubles(INPUT_IBLOCKS, RG_IGEOM_BLOCK);
-    in->ipull = doubles(INPUT_IBLOCKS, RG_IFORCE_BLOCK);
-    in->crack = doubles(INPUT_IBLOCKS, RG_CRACK_BLOCK);
+    in->u = reals(INPUT_EBLOCKS, RG_NODE_BLOCK);
+    in->velocity = reals(INPUT_EBLOCKS, RG_NODE_BLOCK);
+    in->pull = reals(INPUT_EBLOCKS, RG_NODE_BLOCK);
+    in->geom = reals(INPUT_EBLOCKS, RG_GEOM_BLOCK);
+    in->traction = reals(INPUT_EBLOCKS, RG_TRACTION_BLOCK);
+    in->igeom = reals(INPUT_IBLOCKS, RG_IGEOM_BLOCK);
+    in->ipull = reals(INPUT_IBLOCKS, RG_IFORCE_BLOCK);
+    in->crack = reals(INPUT_IBLOCKS, RG_CRACK_BLOCK);
     in->neighbour = input_alloc(INPUT_ESLOTS * RG_FACES * sizeof(int32_t));
     in->interface = input_alloc(INPUT_ESLOTS * RG_FACES * sizeof(int32_t));
     for (int side = 0; side < 2; side++)
@@ -376,7 +377,7 @@ void input_free(input *in) {
     free(in);
 }
 
-rg_bulk_args input_bulk_args(const input *in, double *force, double *traction, double *stiffening) {
+rg_bulk_args input_bulk_args(const input *in, rg_real *force, rg_real *traction, rg_real *stiffening) {
     return (rg_bulk_args){
         .material = in->material,
         .lift = true,
@@ -393,7 +394,7 @@ rg_bulk_args input_bulk_args(const input *in, double *force, double *traction, d
 }
 
 rg_interface_args input_interface_args(const input *in, uint8_t *broken, uint8_t *unlinked, uint8_t *active,
-                                       double *crack, double *force) {
+                                       rg_real *crack, rg_real *force) {
     return (rg_interface_args){
         .law = in->law,
         .time = 3e-7,

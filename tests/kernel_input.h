@@ -11,8 +11,8 @@
 enum {
     INPUT_ELEMENTS = 108,
     INPUT_INTERFACES = 174,
-    INPUT_EBLOCKS = 14, /* with padding */
-    INPUT_IBLOCKS = 22, /* with padding */
+    INPUT_EBLOCKS = (INPUT_ELEMENTS + RG_LANES - 1) / RG_LANES,
+    INPUT_IBLOCKS = (INPUT_INTERFACES + RG_LANES - 1) / RG_LANES,
     INPUT_ESLOTS = INPUT_EBLOCKS * RG_LANES,
     INPUT_ISLOTS = INPUT_IBLOCKS * RG_LANES,
     INPUT_SETS = 8, /* room for all sets of kernels */
@@ -34,12 +34,12 @@ typedef struct {
     rg_material material;
     rg_cohesive law;
     uint64_t seed;
-    double gradient[3][3];                         /* F of the smooth part */
-    double x[INPUT_ELEMENTS][RG_NODES][3];         /* reference positions (m) */
-    size_t element[INPUT_ESLOTS];                  /* slot of element e; padding behind */
-    size_t slot[INPUT_ISLOTS];                     /* slot of interface i; padding behind */
-    double *u, *velocity, *pull, *geom, *traction; /* element fields; pull: some bulk force */
-    double *igeom, *ipull, *crack;                 /* interface fields; ipull: some interface force */
+    double gradient[3][3];                          /* F of the smooth part */
+    double x[INPUT_ELEMENTS][RG_NODES][3];          /* reference positions (m) */
+    size_t element[INPUT_ESLOTS];                   /* slot of element e; padding behind */
+    size_t slot[INPUT_ISLOTS];                      /* slot of interface i; padding behind */
+    rg_real *u, *velocity, *pull, *geom, *traction; /* element fields; pull: some bulk force */
+    rg_real *igeom, *ipull, *crack;                 /* interface fields; ipull: some interface force */
     int32_t *neighbour, *interface, *side[2];
     uint8_t *broken, *unlinked, *active, *cracked;
 } input;
@@ -73,10 +73,10 @@ uint8_t input_unlinked(const input *in, size_t s, int f);
 void input_flags(input *in);
 
 /* Kernel arguments that read the input and write to the given arrays (which may be NULL if not used). */
-rg_bulk_args input_bulk_args(const input *in, double *force, double *traction, double *stiffening);
+rg_bulk_args input_bulk_args(const input *in, rg_real *force, rg_real *traction, rg_real *stiffening);
 
 rg_interface_args input_interface_args(const input *in, uint8_t *broken, uint8_t *unlinked, uint8_t *active,
-                                       double *crack, double *force);
+                                       rg_real *crack, rg_real *force);
 
 /* Zeroed, 64-byte aligned. */
 void *input_alloc(size_t bytes);

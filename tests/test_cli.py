@@ -59,7 +59,8 @@ def test_missing_case_file(tmp_path, command):
 def test_version_is_that_of_the_summary(run):
     process = launch("--version")
     assert process.returncode == 0 and process.stderr == ""
-    assert process.stdout == f"rhegma {run(FRAGMENTS, sets=SHORT).summary['revision']}\n"
+    summary = run(FRAGMENTS, sets=SHORT).summary
+    assert process.stdout == f"rhegma {summary['revision']}, {summary['precision']} precision\n"
 
 
 @pytest.mark.parametrize("option", ["--help", "-h"])

@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "kernel_input.h"
+#include "precision.h"
 
 enum { ALL = 63, MINUS_FACE = 3, PLUS_FACE = 1 };
 
@@ -265,9 +266,10 @@ typedef enum { INSIDE, FROM_MINUS, FROM_PLUS, VIEWS } view;
  * they have the first rows of tractions, the other side the last ones. */
 typedef struct {
     view view;
-    _Alignas(64) double u[RG_NODE_BLOCK], traction[RG_TRACTION_BLOCK], geom[RG_IGEOM_BLOCK];
-    _Alignas(64) double crack[RG_CRACK_BLOCK], force[RG_IFORCE_BLOCK], energy[RG_E_INTERFACE * RG_LANES];
-    _Alignas(64) double ghost[RG_GHOST_BLOCK], rows[2 * RG_LANES * RG_SEAM_ROW];
+    _Alignas(64) rg_real u[RG_NODE_BLOCK], traction[RG_TRACTION_BLOCK], geom[RG_IGEOM_BLOCK];
+    _Alignas(64) rg_real crack[RG_CRACK_BLOCK], force[RG_IFORCE_BLOCK];
+    double energy[RG_E_INTERFACE * RG_LANES];
+    _Alignas(64) rg_real ghost[RG_GHOST_BLOCK], rows[2 * RG_LANES * RG_SEAM_ROW];
     _Alignas(64) int32_t side[2][RG_LANES];
     _Alignas(64) uint8_t broken[RG_LANES], unlinked[RG_LANES];
     uint8_t active;
@@ -291,10 +293,10 @@ static void bench_make(bench *b, rg_cohesive law, double up, view v) {
     b->view = v;
     for (size_t i = 0; i < RG_LANES; i++) {
         bench_link(b, i);
-        b->geom[rg_igeom_index(i, RG_IGEOM_PEN_ISO)] = AREA * ISO;
-        b->geom[rg_igeom_index(i, RG_IGEOM_PEN_NORM)] = NORM / AREA;
-        b->geom[rg_igeom_index(i, RG_IGEOM_EDGE + (up > 0 ? 0 : 1))] = SIDE;
-        b->geom[rg_igeom_index(i, RG_IGEOM_EDGE + (up > 0 ? 4 : 3))] = SIDE;
+        b->geom[rg_igeom_index(i, RG_IGEOM_PEN_ISO)] = (rg_real)(AREA * ISO);
+        b->geom[rg_igeom_index(i, RG_IGEOM_PEN_NORM)] = (rg_real)(NORM / AREA);
+        b->geom[rg_igeom_index(i, RG_IGEOM_EDGE + (up > 0 ? 0 : 1))] = (rg_real)SIDE;
+        b->geom[rg_igeom_index(i, RG_IGEOM_EDGE + (up > 0 ? 4 : 3))] = (rg_real)SIDE;
     }
     b->args = (rg_interface_args){
         .law = law,
@@ -319,11 +321,11 @@ static void bench_make(bench *b, rg_cohesive law, double up, view v) {
 /* Uniform traction of the minus side (per area) and jump. */
 static void bench_load(bench *b, const double pull[3], const double jump[3]) {
     for (int k = 0; k < RG_FCORNERS * 3; k++) {
-        b->traction[rg_traction_index(0, MINUS_FACE, k / 3, k % 3)] = AREA * pull[k % 3];
-        b->traction[rg_traction_index(1, PLUS_FACE, k / 3, k % 3)] = -AREA * pull[k % 3];
+        b->traction[rg_traction_index(0, MINUS_FACE, k / 3, k % 3)] = (rg_real)(AREA * pull[k % 3]);
+        b->traction[rg_traction_index(1, PLUS_FACE, k / 3, k % 3)] = (rg_real)(-AREA * pull[k % 3]);
     }
     for (int k = 0; k < RG_FNODES * 3; k++)
-        b->u[rg_node_index(1, rg_face_node[PLUS_FACE][k / 3], k % 3)] += jump[k % 3];
+        b->u[rg_node_index(1, rg_face_node[PLUS_FACE][k / 3], k % 3)] += (rg_real)jump[k % 3];
 }
 
 /* Displacement u = (G - I) x of both sides. */
@@ -333,8 +335,8 @@ static void bench_deform(bench *b, const double g[3][3]) {
         const double *x = xy[k / 3];
         double moved = SIDE * (g[k % 3][0] * x[0] + g[k % 3][1] * x[1]);
         double u = moved - (k % 3 < 2 ? SIDE * x[k % 3] : 0);
-        b->u[rg_node_index(0, rg_face_node[MINUS_FACE][k / 3], k % 3)] = u;
-        b->u[rg_node_index(1, rg_face_node[PLUS_FACE][k / 3], k % 3)] = u;
+        b->u[rg_node_index(0, rg_face_node[MINUS_FACE][k / 3], k % 3)] = (rg_real)u;
+        b->u[rg_node_index(1, rg_face_node[PLUS_FACE][k / 3], k % 3)] = (rg_real)u;
     }
 }
 
@@ -343,7 +345,7 @@ static void bench_deform(bench *b, const double g[3][3]) {
 static void bench_exchange(bench *b) {
     const size_t own = b->view == FROM_PLUS, other = 1 - own;
     const int face[2] = {MINUS_FACE, PLUS_FACE};
-    double *trace = &b->u[rg_node_index(other, 0, 0)], u[RG_FNODES][3];
+    rg_real *trace = &b->u[rg_node_index(other, 0, 0)], u[RG_FNODES][3];
     for (int k = 0; k < RG_FNODES * 3; k++)
         u[k / 3][k % 3] = b->u[rg_node_index(other, rg_face_node[face[other]][k / 3], k % 3)];
     for (int k = 0; k < RG_NODES * 3; k++)
@@ -352,9 +354,9 @@ static void bench_exchange(bench *b) {
         for (int k = 0; k < RG_FNODES * 3; k++)
             b->ghost[rg_iforce_index(i, k / 3, k % 3)] = u[k / 3][k % 3];
         memcpy(b->rows + i * RG_SEAM_ROW, &b->traction[rg_traction_index(own, face[own], 0, 0)],
-               RG_SEAM_ROW * sizeof(double));
+               RG_SEAM_ROW * sizeof(rg_real));
         memcpy(b->rows + other_row(i) * RG_SEAM_ROW,
-               &b->traction[rg_traction_index(other, face[other], 0, 0)], RG_SEAM_ROW * sizeof(double));
+               &b->traction[rg_traction_index(other, face[other], 0, 0)], RG_SEAM_ROW * sizeof(rg_real));
     }
     for (int k = 0; k < RG_TRACTION_BLOCK; k++)
         b->traction[k] = NAN;
@@ -379,20 +381,21 @@ static void expect_force(const rg_kernels *set, const scenario *s, const bench *
     for (int k = 0; k < RG_FNODES * 3; k++) {
         double expected = k / 3 < 3 ? 0 : AREA * t[k % 3] / 3;
         double scale = AREA * fmax(SIGMA, fmax(fabs(t[0]), fabs(t[2])));
-        expect(set, s->name, "force", b->force[rg_iforce_index(i, k / 3, k % 3)], expected, 1e-11 * scale);
+        expect(set, s->name, "force", b->force[rg_iforce_index(i, k / 3, k % 3)], expected,
+               TOLERANCE * scale);
     }
 }
 
 static void expect_point(const rg_kernels *set, const scenario *s, const bench *b, size_t i, int q,
                          double up) {
-    const double *crack = &b->crack[rg_crack_index(i, q, 0)];
+    const rg_real *crack = &b->crack[rg_crack_index(i, q, 0)];
     if (!s->is_broken)
         return;
-    expect(set, s->name, "opening", crack[RG_CRACK_OPENING * RG_LANES], s->new_opening, 1e-11 * DELTA);
-    expect(set, s->name, "time", crack[RG_CRACK_TIME * RG_LANES], s->broken ? 0 : TIME, 0);
+    expect(set, s->name, "opening", crack[RG_CRACK_OPENING * RG_LANES], s->new_opening, TOLERANCE * DELTA);
+    expect(set, s->name, "time", crack[RG_CRACK_TIME * RG_LANES], s->broken ? 0 : (rg_real)TIME, 0);
     const double origin[3] = {s->new_origin[1], 0, up * s->new_origin[0]};
     for (int c = 0; c < 3; c++)
-        expect(set, s->name, "origin", crack[(RG_CRACK_ORIGIN + c) * RG_LANES], origin[c], 1e-11 * DELTA);
+        expect(set, s->name, "origin", crack[(RG_CRACK_ORIGIN + c) * RG_LANES], origin[c], TOLERANCE * DELTA);
 }
 
 static void check_scenario(const rg_kernels *set, const scenario *s, double up, view v) {
@@ -407,10 +410,10 @@ static void check_scenario(const rg_kernels *set, const scenario *s, double up, 
     memset(b.unlinked, s->unlinked ? ALL : 0, RG_LANES);
     b.active = s->broken;
     for (size_t k = 0; k < RG_LANES * RG_POINTS; k++) {
-        double *crack = &b.crack[rg_crack_index(k / RG_POINTS, (int)(k % RG_POINTS), 0)];
-        crack[RG_CRACK_OPENING * RG_LANES] = s->opening;
-        crack[RG_CRACK_ORIGIN * RG_LANES] = s->origin[1];
-        crack[(RG_CRACK_ORIGIN + 2) * RG_LANES] = up * s->origin[0];
+        rg_real *crack = &b.crack[rg_crack_index(k / RG_POINTS, (int)(k % RG_POINTS), 0)];
+        crack[RG_CRACK_OPENING * RG_LANES] = (rg_real)s->opening;
+        crack[RG_CRACK_ORIGIN * RG_LANES] = (rg_real)s->origin[1];
+        crack[(RG_CRACK_ORIGIN + 2) * RG_LANES] = (rg_real)(up * s->origin[0]);
     }
     bench_run(&b, set);
     expect(set, s->name, "active", b.active, s->is_broken, 0);
@@ -422,7 +425,7 @@ static void check_scenario(const rg_kernels *set, const scenario *s, double up, 
             expect_point(set, s, &b, i, q, up);
         for (size_t k = 0; k < RG_E_INTERFACE; k++)
             expect(set, s->name, "energy", b.energy[k * RG_LANES + i], AREA * s->energy[k],
-                   1e-11 * AREA * GC);
+                   TOLERANCE * AREA * GC);
     }
 }
 

@@ -2,12 +2,11 @@
 
 import numpy as np
 import pytest
-from conftest import CASES
+from conftest import CASES, SINGLE, rounding
 
 YOUNG, POISSON, DENSITY = 260e9, 0.21, 3690.0  # of every case here
 LAMBDA, MU = YOUNG * POISSON / ((1 + POISSON) * (1 - 2 * POISSON)), YOUNG / (2 * (1 + POISSON))
 WAVE_SPEED = np.sqrt((LAMBDA + 2 * MU) / DENSITY)
-ROUNDING = 1e-14  # 45 units in the last place of 1, the size of F
 
 
 def cauchy(gradient):
@@ -34,14 +33,14 @@ def test_affine_displacement_stays(affine):
     frames = affine.frames()
     assert len(frames) == 6
     for frame in frames:
-        assert np.abs(frame["displacement"] - exact).max() < 1e-12 * np.abs(exact).max()
-        # Strains are rounded at 1, not at their own size, so velocities at c_d, not at c_d times the strain.
-        assert np.abs(frame["velocity"]).max() < ROUNDING * WAVE_SPEED
+        assert np.abs(frame["displacement"] - exact).max() < rounding(1e-12, 1.3e-6) * np.abs(exact).max()
+        # At c_d, not at c_d times the strain: displacements are rounded at their own size, not at that of a jump.
+        assert np.abs(frame["velocity"]).max() < rounding(1e-14, 1e-7) * WAVE_SPEED
 
 
 def test_affine_stress_is_that_of_the_law_everywhere(affine):
     for frame in affine.frames():
-        assert np.abs(frame["stress"] - cauchy(GRADIENT)).max() < 1e-12 * YOUNG
+        assert np.abs(frame["stress"] - cauchy(GRADIENT)).max() < rounding(1e-12, 1.2e-8) * YOUNG
 
 
 # ---- rotation.yaml ----
@@ -52,11 +51,12 @@ def test_rotation_leaves_the_body_at_rest(run):
     frames = turned.frames()
     assert len(frames) == 3
     for frame in frames:
-        assert np.abs(frame["stress"]).max() < 1e-13 * YOUNG
-        assert np.abs(frame["velocity"]).max() < 1e-12 * WAVE_SPEED
-    assert np.abs(turned.energy["bulk"]).max() < 1e-15 * YOUNG * 1e-9  # J, for the volume
+        assert np.abs(frame["stress"]).max() < rounding(1e-13, 1e-5) * YOUNG
+        assert np.abs(frame["velocity"]).max() < rounding(1e-12, 7e-5) * WAVE_SPEED
+    assert np.abs(turned.energy["bulk"]).max() < rounding(1e-15, 2.5e-8) * YOUNG * 1e-9  # J, for the volume
 
 
+@pytest.mark.skipif(SINGLE, reason="displacements as large as the body leave strains of 1e-5 in floats: README")
 def test_rounding_alone_does_not_stop_a_run(run):
     assert run(CASES / "rotation.yaml").summary["status"] == "completed"
 
@@ -94,13 +94,13 @@ def test_linear_momentum_is_constant_through_fragmentation(run, penalty, mass):
     energy = fragments(run, penalty, mass)
     assert energy["broken_area"][-1] > 1e-6
     assert np.abs(vector(energy, "momentum")[0]).min() > 0.01 * momentum_scale(energy)
-    assert drift(energy, "momentum", momentum_scale(energy)) < 1e-12
+    assert drift(energy, "momentum", momentum_scale(energy)) < rounding(1e-12, 2.5e-7)
 
 
 def test_isotropic_penalty_conserves_spin_while_nothing_breaks(run):
     energy = fragments(run, "isotropic", **UNBREAKABLE)
     assert energy["broken_area"][-1] == 0
-    assert drift(energy, "angular", spin(energy)) < 1e-10
+    assert drift(energy, "angular", spin(energy)) < rounding(1e-10, 1e-4)
 
 
 # The other tractions are not parallel to the jump, so they turn the body a little: the elastic penalty (it is stiffer
@@ -110,10 +110,10 @@ def test_isotropic_penalty_conserves_spin_while_nothing_breaks(run):
 
 def test_elastic_penalty_hardly_changes_spin_while_nothing_breaks(run):
     energy = fragments(run, **UNBREAKABLE)
-    assert drift(energy, "angular", spin(energy)) < 4e-8
+    assert drift(energy, "angular", spin(energy)) < rounding(4e-8, 1e-4)
 
 
 @pytest.mark.parametrize("penalty, bound", [("elastic", 1e-4), ("isotropic", 1e-5)])
 def test_fragmentation_hardly_changes_spin(run, penalty, bound):
     energy = fragments(run, penalty)
-    assert drift(energy, "angular", spin(energy)) < bound
+    assert drift(energy, "angular", spin(energy)) < rounding(bound, 1e-4)

@@ -10,14 +10,14 @@
 #include <stdlib.h>
 #include <string.h>
 #include "kernel_input.h"
-
-#define TOLERANCE 1e-11 /* of the largest value of the same field and kind */
+#include "precision.h"
 
 /* All that the kernels write. */
 typedef struct {
-    double *force, *traction, *stiffening, *energy, *cauchy, *kinetic, *lumped_kinetic;
-    double *velocity, *u, *now, *lumped_velocity, *lumped_u, *lumped_now;
-    double *iforce, *crack, *ienergy;
+    rg_real *force, *traction, *stiffening;
+    double *energy, *cauchy, *kinetic, *lumped_kinetic, *ienergy;
+    rg_real *velocity, *u, *now, *lumped_velocity, *lumped_u, *lumped_now;
+    rg_real *iforce, *crack;
     uint8_t *broken, *unlinked, *active;
 } output;
 
@@ -25,13 +25,13 @@ typedef struct {
  * kind. */
 typedef struct {
     const char *name;
-    size_t offset;
+    size_t offset, size; /* size: of a value, which is a real or a double */
     size_t rows, kinds;
     bool element;
 } field;
 
 #define FIELD(name, rows, kinds, element)                                                                    \
-    { #name, offsetof(output, name), rows, kinds, element }
+    { #name, offsetof(output, name), sizeof *((output *)0)->name, rows, kinds, element }
 
 enum { FIELDS = 16, TRACTION_FIELD = 1, CRACK_FIELD = 14 };
 
@@ -54,10 +54,15 @@ static const field fields[FIELDS] = {
     FIELD(ienergy, 4, 4, false),
 };
 
-static double *values(const output *out, int f) {
-    double *p;
+static void *values(const output *out, int f) {
+    void *p;
     memcpy(&p, (const char *)out + fields[f].offset, sizeof p);
     return p;
+}
+
+static double value(const output *out, int f, size_t k) {
+    const void *p = values(out, f);
+    return fields[f].size == sizeof(double) ? ((const double *)p)[k] : (double)((const float *)p)[k];
 }
 
 static size_t field_blocks(int f) {
@@ -76,20 +81,19 @@ static void *copy(const void *from, size_t bytes) {
 
 /* Fields that are only written start from a value that no kernel gives; the others from the input. */
 static output output_make(const input *in) {
-    const size_t node_bytes = INPUT_EBLOCKS * RG_NODE_BLOCK * sizeof(double);
+    const size_t node_bytes = INPUT_EBLOCKS * RG_NODE_BLOCK * sizeof(rg_real);
     output out;
     for (int f = 0; f < FIELDS; f++) {
         size_t n = field_blocks(f) * fields[f].rows * RG_LANES;
-        double *p = input_alloc(n * sizeof *p);
-        for (size_t k = 0; k < n; k++)
-            p[k] = -12345;
+        void *p = input_alloc(n * fields[f].size);
+        memset(p, 0xc5, n * fields[f].size);
         memcpy((char *)&out + fields[f].offset, &p, sizeof p);
     }
     memcpy(out.velocity, in->velocity, node_bytes);
     memcpy(out.u, in->u, node_bytes);
     memcpy(out.lumped_velocity, in->velocity, node_bytes);
     memcpy(out.lumped_u, in->u, node_bytes);
-    memcpy(out.crack, in->crack, INPUT_IBLOCKS * RG_CRACK_BLOCK * sizeof(double));
+    memcpy(out.crack, in->crack, INPUT_IBLOCKS * RG_CRACK_BLOCK * sizeof(rg_real));
     out.broken = copy(in->broken, INPUT_ISLOTS);
     out.unlinked = copy(in->unlinked, INPUT_ISLOTS);
     out.active = copy(in->active, INPUT_IBLOCKS);
@@ -173,7 +177,6 @@ static bool is_meaningful(const output *out, int f, size_t block, size_t row, si
 }
 
 static void compare_kind(const char *set, int f, size_t kind, const output *out, const output *ref) {
-    const double *a = values(out, f), *b = values(ref, f);
     const size_t rows = fields[f].rows;
     double scale = 0;
     for (int pass = 0; pass < 2; pass++) /* the scale, then the comparison */
@@ -182,9 +185,9 @@ static void compare_kind(const char *set, int f, size_t kind, const output *out,
             if (row % fields[f].kinds != kind || !is_meaningful(ref, f, block, row, k % RG_LANES))
                 continue;
             if (pass == 0)
-                scale = fmax(scale, fabs(b[k]));
-            else if (!(fabs(a[k] - b[k]) <= TOLERANCE * scale))
-                fail_at(set, fields[f].name, k, a[k], b[k]);
+                scale = fmax(scale, fabs(value(ref, f, k)));
+            else if (!(fabs(value(out, f, k) - value(ref, f, k)) <= TOLERANCE * scale))
+                fail_at(set, fields[f].name, k, value(out, f, k), value(ref, f, k));
         }
 }
 
@@ -260,7 +263,7 @@ static void compare_sets(const input *in, tally *t) {
     count(in, &ref, t);
     for (int f = 0; f < FIELDS; f++)
         for (size_t k = 0; k < field_blocks(f) * fields[f].rows * RG_LANES; k++)
-            assert_true(isfinite(values(&ref, f)[k]));
+            assert_true(isfinite(value(&ref, f, k)));
     for (int k = 0; k < n; k++) {
         output out = run(sets[k], in);
         compare(sets[k]->name, &out, &ref);
@@ -289,9 +292,9 @@ static void test_against_reference(void **state) {
 
 static void assert_same_bits(const char *set, int f, const output *a, size_t sa, const output *b, size_t sb) {
     for (size_t row = 0; row < fields[f].rows; row++) {
-        const double *x = &values(a, f)[row_index(f, sa, row)], *y = &values(b, f)[row_index(f, sb, row)];
-        if (is_meaningful(a, f, sa / RG_LANES, row, sa % RG_LANES) && memcmp(x, y, sizeof *x) != 0)
-            fail_at(set, fields[f].name, row, *x, *y);
+        double x = value(a, f, row_index(f, sa, row)), y = value(b, f, row_index(f, sb, row));
+        if (is_meaningful(a, f, sa / RG_LANES, row, sa % RG_LANES) && memcmp(&x, &y, sizeof x) != 0)
+            fail_at(set, fields[f].name, row, x, y);
     }
 }
 
@@ -416,7 +419,7 @@ static void check_state(const rg_kernels *set, input_kind kind, rg_cohesive law)
     assert_memory_equal(before.broken, in->broken, INPUT_ISLOTS);
     assert_memory_equal(before.unlinked, in->unlinked, INPUT_ISLOTS);
     assert_memory_equal(before.active, in->active, INPUT_IBLOCKS);
-    assert_memory_equal(before.crack, in->crack, INPUT_IBLOCKS * RG_CRACK_BLOCK * sizeof(double));
+    assert_memory_equal(before.crack, in->crack, INPUT_IBLOCKS * RG_CRACK_BLOCK * sizeof(rg_real));
     output out = run(set, in);
     assert_memory_equal(before.energy, out.energy, INPUT_ESLOTS * sizeof(double));
     assert_memory_equal(before.cauchy, out.cauchy, INPUT_ESLOTS * 24 * sizeof(double));
@@ -471,13 +474,13 @@ static void check_inverted(const rg_kernels *set, input_kind kind, rg_cohesive l
     const size_t e = in->element[40];
     output before = run_bulk(set, in, false);
     for (int a = 0; a < RG_NODES; a++) /* mirror the deformed element */
-        in->u[rg_node_index(e, a, 0)] = -2 * in->x[40][a][0] - in->u[rg_node_index(e, a, 0)];
+        in->u[rg_node_index(e, a, 0)] = (rg_real)(-2 * in->x[40][a][0] - in->u[rg_node_index(e, a, 0)]);
     output after = run_bulk(set, in, false);
     for (size_t s = 0; s < INPUT_ESLOTS; s++)
         if (s == e)
             assert_true(isnan(after.stiffening[s]));
         else
-            assert_memory_equal(&after.stiffening[s], &before.stiffening[s], sizeof(double));
+            assert_memory_equal(&after.stiffening[s], &before.stiffening[s], sizeof(rg_real));
     output_free(&before);
     output_free(&after);
     input_free(in);
@@ -490,7 +493,7 @@ static void test_inverted(void **state) {
 }
 
 static void check_unbreakable(const rg_kernels *set, input_kind kind, rg_cohesive law) {
-    double shared[RG_CRACK_BLOCK] __attribute__((aligned(64))) = {0}, untouched[RG_CRACK_BLOCK] = {0};
+    rg_real shared[RG_CRACK_BLOCK] __attribute__((aligned(64))) = {0}, untouched[RG_CRACK_BLOCK] = {0};
     law.strength = INFINITY;
     input *in = make_broken(kind, law, 3, 0);
     output out = output_make(in), ref = output_make(in);

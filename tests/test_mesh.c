@@ -20,6 +20,7 @@
 #include "../src/mem.h"
 #include "../src/mesh.h"
 #include "../src/tet.h"
+#include "child.h"
 
 static const struct box {
     int64_t cells[3];
@@ -530,29 +531,6 @@ static void test_partition_tiny(void **state) {
         }
         rg_mesh_free(m);
     }
-}
-
-/* Runs `job` in a child process; returns its exit status and what it said on standard error. */
-static int run_child(void (*job)(void), char *said, size_t size) {
-    int ends[2], status;
-    assert_int_equal(pipe(ends), 0);
-    pid_t child = fork();
-    if (child == 0) {
-        dup2(ends[1], STDERR_FILENO);
-        job();
-        _exit(0);
-    }
-    close(ends[1]);
-    size_t length = 0;
-    ssize_t got;
-    while ((got = read(ends[0], said + length, size - 1 - length)) > 0) {
-        length += (size_t)got;
-    }
-    said[length] = '\0';
-    close(ends[0]);
-    assert_int_equal(waitpid(child, &status, 0), child);
-    assert_true(WIFEXITED(status));
-    return WEXITSTATUS(status);
 }
 
 static void expect_refusal(void (*job)(void), const char *const *words) {

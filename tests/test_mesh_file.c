@@ -20,6 +20,7 @@
 #include "../src/mesh.h"
 #include "../src/mesh_check.h"
 #include "../src/mesh_file.h"
+#include "child.h"
 
 static char path[] = "/tmp/rhegma-mesh-XXXXXX", damaged[sizeof path + 8];
 
@@ -198,29 +199,6 @@ static void read_all(void) {
     rg_tile_graph *g = rg_mesh_file_graph(f);
     bool there = rg_mesh_file_partition(f, 2, owner) && rg_mesh_file_partition(f, 3, owner);
     _exit(equal(expected, m) && there && g->tiles == TILES ? 0 : 99);
-}
-
-/* Runs `job` in a child process, which a minute ends; returns its exit status and what it said. */
-static int run_child(void (*job)(void), char *said, size_t size) {
-    int ends[2], status;
-    assert_int_equal(pipe(ends), 0);
-    pid_t child = fork();
-    if (child == 0) {
-        alarm(60);
-        dup2(ends[1], STDERR_FILENO);
-        job();
-        _exit(0);
-    }
-    close(ends[1]);
-    size_t length = 0;
-    ssize_t got;
-    while ((got = read(ends[0], said + length, size - 1 - length)) > 0) {
-        length += (size_t)got;
-    }
-    said[length] = '\0';
-    close(ends[0]);
-    assert_int_equal(waitpid(child, &status, 0), child);
-    return WIFEXITED(status) ? WEXITSTATUS(status) : 1000 + WTERMSIG(status);
 }
 
 static char *load(size_t *size) {

@@ -9,19 +9,9 @@
 #include "../src/mem.h"
 #include "../src/mesh.h"
 #include "../src/tet.h"
+#include "tap.h"
 
-static int rank, ranks, number, failures;
-
-/* One line of TAP: fine if it is on every rank. */
-static void report(bool good, const char *mesh, const char *name) {
-    int mine = good, all;
-    MPI_Allreduce(&mine, &all, 1, MPI_INT, MPI_LAND, MPI_COMM_WORLD);
-    number++;
-    failures += !all;
-    if (rank == 0) {
-        printf("%s %d - %s: %s\n", all ? "ok" : "not ok", number, mesh, name);
-    }
-}
+static int ranks;
 
 static const struct box {
     const char *name;

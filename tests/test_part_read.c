@@ -9,20 +9,10 @@
 #include "../src/mem.h"
 #include "../src/mesh.h"
 #include "../src/mesh_file.h"
+#include "tap.h"
 
-static int rank, ranks, number, failures;
+static int ranks;
 static char path[] = "/tmp/rhegma-part-XXXXXX";
-
-/* One line of TAP: fine if it is on every rank. */
-static void report(bool good, const char *mesh, const char *name) {
-    int mine = good, all;
-    MPI_Allreduce(&mine, &all, 1, MPI_INT, MPI_LAND, MPI_COMM_WORLD);
-    number++;
-    failures += !all;
-    if (rank == 0) {
-        printf("%s %d - %s: %s\n", all ? "ok" : "not ok", number, mesh, name);
-    }
-}
 
 static const struct box {
     const char *name;

@@ -10,23 +10,12 @@
 #include "../src/mem.h"
 #include "../src/patch.h"
 #include "../src/spectrum.h"
+#include "tap.h"
 
 /* Relative to omega^2 of the whole mesh. The patch gives a lower bound; its error and that of both iterations
  * (up to 0.3 % each) must leave the margin of 2 % its use. */
 #define BELOW 8e-3
 #define ABOVE 3e-3
-
-static int rank, number, failures;
-
-static void report(bool good, const char *mesh, const char *name) {
-    int mine = good, all;
-    MPI_Allreduce(&mine, &all, 1, MPI_INT, MPI_LAND, MPI_COMM_WORLD);
-    number++;
-    failures += !all;
-    if (rank == 0) {
-        printf("%s %d - %s: %s\n", all ? "ok" : "not ok", number, mesh, name);
-    }
-}
 
 /* ---- Cases ---- */
 
