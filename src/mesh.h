@@ -61,9 +61,6 @@ void rg_mesh_box_around(const rg_mesh *mesh, double box[2][3]);
 
 void rg_mesh_free(rg_mesh *mesh);
 
-/* Partition of the graph of tiles of `tile` elements (tile_graph.h). */
-void rg_mesh_partition(const rg_mesh *mesh, int tile, int parts, int32_t *part);
-
 /* One element with all that its rank must know of it. */
 typedef struct {
     rg_gid id;

@@ -153,9 +153,3 @@ void rg_tile_graph_partition(const rg_tile_graph *graph, int parts, int32_t *par
     rg_free(result);
     fill_empty(graph->tiles, parts, part);
 }
-
-void rg_mesh_partition(const rg_mesh *mesh, int tile, int parts, int32_t *part) {
-    rg_tile_graph *g = rg_tile_graph_make(mesh, tile);
-    rg_tile_graph_partition(g, parts, part);
-    rg_tile_graph_free(g);
-}

@@ -139,8 +139,8 @@ static int *share_starts(int mine, int *size, int ranks, MPI_Comm comm) {
     return start;
 }
 
-/* A ring has at most two new neighbours... of all elements; the lowest numbers join if there is no room for
- * all. */
+/* A ring: at most four new elements beside each member; the lowest numbers join if there is no room for all.
+ */
 static void grow(set *s, const rg_part *part, int ranks, MPI_Comm comm) {
     rg_gid *mine = RG_NEW(rg_gid, 4 * RG_PATCH_MOST);
     int count = 0;

@@ -20,6 +20,7 @@
 #include "../src/mem.h"
 #include "../src/mesh.h"
 #include "../src/tet.h"
+#include "../src/tile_graph.h"
 #include "child.h"
 
 static const struct box {
@@ -463,6 +464,13 @@ static void test_hilbert_point(void **state) {
     assert_true(rg_hilbert_cell(corners[1]) == (UINT64_C(1) << 63) - 1);
 }
 
+/* part[tiles]: which of `parts` has a tile. */
+static void partition(const rg_mesh *m, int tile, int parts, int32_t *part) {
+    rg_tile_graph *g = rg_tile_graph_make(m, tile);
+    rg_tile_graph_partition(g, parts, part);
+    rg_tile_graph_free(g);
+}
+
 /* Sizes of the smallest and the largest part, in elements. */
 static void part_sizes(const rg_mesh *m, int tile, int parts, const int32_t *part, rg_gid *least,
                        rg_gid *most) {
@@ -486,8 +494,8 @@ static void check_partition(const rg_mesh *m, int tile, int parts) {
     size_t tiles = (size_t)((m->elements + tile - 1) / tile);
     int32_t *part = RG_NEW(int32_t, tiles), *again = RG_NEW(int32_t, tiles);
     rg_gid least, most, cut = 0;
-    rg_mesh_partition(m, tile, parts, part);
-    rg_mesh_partition(m, tile, parts, again);
+    partition(m, tile, parts, part);
+    partition(m, tile, parts, again);
     assert_memory_equal(part, again, tiles * sizeof *part);
     part_sizes(m, tile, parts, part, &least, &most);
     double even = (double)m->elements / parts;
@@ -524,7 +532,7 @@ static void test_partition_tiny(void **state) {
         for (int tile = 1; tile <= 7; tile++) {
             for (int parts = 1; parts <= (m->elements + tile - 1) / tile; parts++) {
                 rg_gid least, most;
-                rg_mesh_partition(m, tile, parts, part);
+                partition(m, tile, parts, part);
                 part_sizes(m, tile, parts, part, &least, &most);
                 assert_true(least >= 1);
             }
@@ -555,7 +563,7 @@ static const rg_mesh *one_cell; /* made before the fork: a child has no threads 
 
 static void many_parts(void) {
     int32_t part[3];
-    rg_mesh_partition(one_cell, 2, 4, part);
+    partition(one_cell, 2, 4, part);
 }
 
 static void shared_thrice(void) {

@@ -348,25 +348,24 @@ static void duplicate(void) { /* the second element has its own copies of the tr
     check(m);
 }
 
-static void
-hanging(void) { /* the second element stands with a corner on the middle of the first one's face */
-    static const double on[4][3] = {{0.3, 0.3, 0}, {0.5, 0.5, -1}, {0.2, 0.6, -1}, {0.1, 0.1, -1}};
+/* The first element of a pair, and a second one of vertices of its own. */
+static void check_second(const double corner[4][3]) {
     rg_mesh *m = pair();
     const rg_gid second[4] = {4, 5, 6, 7};
-    memcpy(m->x + 3 * 4, on, sizeof on);
+    memcpy(m->x + 3 * 4, corner, 4 * sizeof *corner);
     m->vertices = 8;
     memcpy(m->corner + 4, second, sizeof second);
     check(m);
 }
 
+static void hanging(void) { /* with a corner on the middle of the first one's face */
+    static const double on[4][3] = {{0.3, 0.3, 0}, {0.5, 0.5, -1}, {0.2, 0.6, -1}, {0.1, 0.1, -1}};
+    check_second(on);
+}
+
 static void on_an_edge(void) { /* the same on an edge */
     static const double on[4][3] = {{0.5, 0, 0}, {0.5, -0.5, -1}, {0.2, -0.6, -1}, {0.1, -0.1, -1.5}};
-    rg_mesh *m = pair();
-    const rg_gid second[4] = {4, 5, 6, 7};
-    memcpy(m->x + 3 * 4, on, sizeof on);
-    m->vertices = 8;
-    memcpy(m->corner + 4, second, sizeof second);
-    check(m);
+    check_second(on);
 }
 
 static void strangers(void) {
