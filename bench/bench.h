@@ -10,13 +10,14 @@
 #include "cost_model.h"
 #include "kernels.h"
 
-enum { BENCH_SAMPLES = 100, BENCH_SETS = 4, BENCH_LABEL = 48 };
+enum { BENCH_SAMPLES = 100, BENCH_SETS = 4, BENCH_LABEL = 48, BENCH_TEXT = 256 };
 
 typedef struct {
     bool quick;
     const char *json;   /* file to write, or NULL */
     const char *kernel; /* only rows with this in their name, or NULL */
     int threads;        /* up to this many */
+    int rounds;         /* of the measurement of efficiency; 0 for the table of kernels */
     int repeats;
 } bench_options;
 
@@ -72,6 +73,8 @@ void bench_measure(const bench *b, int repeats, void (*call)(void *context, int 
 /* Times one call, done once. Collective. */
 void bench_measure_once(void (*call)(void *context, int calls), void *context, bench_samples *out);
 
+/* Value below which the share `p` of the samples lies, between neighbours linearly. */
+double bench_quantile(const bench_samples *s, double p);
 double bench_median(const bench_samples *s);
 double bench_minimum(const bench_samples *s);
 
@@ -82,6 +85,21 @@ void bench_share(size_t count, size_t *begin, size_t *end);
 
 /* Measures triad and peak for the number of threads that OpenMP is set to. Collective. */
 void bench_measure_roofs(const bench *b, bench_roofs *r);
+
+/* Arrays of `words` words for the triad and `rounds` of multiply-adds for the peak, in loops of the
+ * instruction set named; memory lies with the threads that OpenMP is set to. Free with bench_roof_job_free.
+ */
+typedef struct bench_roof_job bench_roof_job;
+bench_roof_job *bench_roof_job_make(const char *set, size_t words, long rounds);
+void bench_roof_job_free(bench_roof_job *j);
+
+/* `calls` times all words, shared among the threads; all rounds, on each thread. */
+void bench_triad(void *job, int calls);
+void bench_peak(void *job, int calls);
+
+/* Words of a triad array: in the cache, as much memory as the kernels' small problem takes; else four times
+ * the last cache over three arrays, and not less than a good number of pages. */
+size_t bench_triad_words(bench_size size, int threads, bool quick);
 
 /* GB/s over all ranks, from the median: 3 words an element, as triads are quoted, or 4 with the line fetched
  * before it is written, as the cost model counts. */
@@ -106,6 +124,10 @@ bool bench_wants(const bench *b, const char *kernel);
 
 /* A new row; the pointer holds until the next one. */
 bench_row *bench_add_row(bench *b, const char *kernel, const char *set, bench_size size, int threads);
+
+/* What `ranks` cores gain over one: triad, peak and the step, on one core, on all as threads of rank 0, and
+ * on all as ranks, in turn, options.rounds times; prints the ratios, writes options.json. Collective. */
+void bench_efficiency(bench *b);
 
 /* Names of the kernels, NULL behind the last. */
 const char *bench_kernel_name(int k);
@@ -132,12 +154,14 @@ void bench_print_roofs(const bench *b, const bench_roofs *r, FILE *out);
 void bench_print_header(FILE *out);
 void bench_print_row(const bench *b, const bench_row *row, FILE *out);
 
+/* Members of the record: the machine with each thread's processors, [ranks][threads], and the build. */
+void bench_put_machine(const bench *b, char (*affinity)[BENCH_TEXT], FILE *out);
+void bench_put_build(FILE *out);
+
 /* Collective; writes options.json on rank 0. */
 void bench_write_json(const bench *b);
 
 /* ---- Machine (bench_machine.c) ---- */
-
-enum { BENCH_TEXT = 256 };
 
 /* Processor model from /proc/cpuinfo, "unknown" if it is not there. */
 void bench_cpu_model(char text[BENCH_TEXT]);

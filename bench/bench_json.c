@@ -42,7 +42,7 @@ static void put_date(FILE *out) {
     put_text(out, "date", text);
 }
 
-static void put_machine(const bench *b, char (*affinity)[BENCH_TEXT], FILE *out) {
+void bench_put_machine(const bench *b, char (*affinity)[BENCH_TEXT], FILE *out) {
     char cpu[BENCH_TEXT], host[BENCH_TEXT] = "";
     bench_cpu_model(cpu);
     gethostname(host, sizeof host - 1);
@@ -60,7 +60,7 @@ static void put_machine(const bench *b, char (*affinity)[BENCH_TEXT], FILE *out)
     fprintf(out, "],\n");
 }
 
-static void put_build(FILE *out) {
+void bench_put_build(FILE *out) {
     fprintf(out, "  ");
     put_text(out, "revision", RG_REVISION);
     fprintf(out, ", ");
@@ -128,8 +128,8 @@ static void put_row(const bench *b, const bench_row *r, FILE *out) {
 static void put_all(const bench *b, char (*affinity)[BENCH_TEXT], FILE *out) {
     fprintf(out, "{\n  \"program\": \"rhegma-bench\", \"quick\": %s, \"validated\": %s,\n",
             b->options.quick ? "true" : "false", b->failed ? "false" : "true");
-    put_build(out);
-    put_machine(b, affinity, out);
+    bench_put_build(out);
+    bench_put_machine(b, affinity, out);
     put_roofs(b, out);
     fprintf(out, "  \"rows\": [\n");
     for (int k = 0; k < b->rows; k++) {

@@ -20,6 +20,8 @@ static const char usage[] =
     "  --kernel NAME   only kernels with NAME in their name (step for the whole step)\n"
     "  --threads N     1, 2, 4, ... and N threads per rank (default: what OMP_NUM_THREADS allows)\n"
     "  --repeats R     samples per row, 3 to 100 (default 21; 5 if quick)\n"
+    "  --efficiency N  instead: what the ranks' cores gain over one core, in N rounds (3 to 100); see "
+    "bench/efficiency\n"
     "  --help\n"
     "us/tet counts two interfaces as one tet; the other columns follow kernels/cost_model.c "
     "(perf/model.md).\n"
@@ -68,6 +70,10 @@ static int parse_value(bench *b, const char *option, const char *value) {
     } else if (strcmp(option, "--kernel") == 0) {
         o->kernel = value;
         return name_exists(value) ? RG_OK : complain(b, "no kernel has this in its name", value);
+    } else if (strcmp(option, "--efficiency") == 0) {
+        return parse_count(value, 3, BENCH_SAMPLES, &o->rounds)
+                   ? RG_OK
+                   : complain(b, "--efficiency: a number from 3 to 100 is needed, not", value);
     } else if (strcmp(option, "--threads") == 0) {
         return parse_count(value, 1, MOST_THREADS, &o->threads)
                    ? RG_OK
@@ -86,7 +92,7 @@ static int parse(bench *b, int argc, char **argv) {
         if (strcmp(a, "--quick") == 0) {
             b->options.quick = true;
         } else if (strcmp(a, "--json") == 0 || strcmp(a, "--kernel") == 0 || strcmp(a, "--threads") == 0 ||
-                   strcmp(a, "--repeats") == 0) {
+                   strcmp(a, "--repeats") == 0 || strcmp(a, "--efficiency") == 0) {
             if (parse_value(b, a, i + 1 < argc ? argv[i + 1] : NULL) != RG_OK) {
                 return RG_USAGE;
             }
@@ -175,7 +181,11 @@ int main(int argc, char **argv) {
         }
     } else {
         status = parse(b, argc, argv);
-        status = status == RG_OK ? run(b) : status;
+        if (status == RG_OK && b->options.rounds > 0) {
+            bench_efficiency(b);
+        } else if (status == RG_OK) {
+            status = run(b);
+        }
     }
     rg_free(b->row);
     rg_free(b);

@@ -32,16 +32,16 @@ static const loops *find_loops(const char *name) {
     return &all_loops[k];
 }
 
-typedef struct {
+struct bench_roof_job {
     const loops *use;
     rg_real *a, *b, *c;
     size_t words;
     long rounds;
     double flops; /* of all threads, in one call */
-} roof_job;
+};
 
-static void triad(void *context, int calls) {
-    const roof_job *j = context;
+void bench_triad(void *context, int calls) {
+    const bench_roof_job *j = context;
 #pragma omp parallel
     {
         size_t begin, end;
@@ -54,7 +54,7 @@ static void triad(void *context, int calls) {
     }
 }
 
-static void first_touch(const roof_job *j) {
+static void first_touch(const bench_roof_job *j) {
 #pragma omp parallel
     {
         size_t begin, end;
@@ -67,21 +67,27 @@ static void first_touch(const roof_job *j) {
     }
 }
 
-static void measure_triad(const bench *b, const loops *use, bench_roofs *r, bench_size size) {
-    size_t words = r->words[size];
-    roof_job j = {.use = use, .words = words};
-    j.a = RG_NEW(rg_real, words);
-    j.b = RG_NEW(rg_real, words);
-    j.c = RG_NEW(rg_real, words);
-    first_touch(&j);
-    bench_measure(b, b->options.repeats, triad, &j, &r->triad[size]);
-    rg_free(j.a);
-    rg_free(j.b);
-    rg_free(j.c);
+bench_roof_job *bench_roof_job_make(const char *set, size_t words, long rounds) {
+    bench_roof_job *j = RG_NEW(bench_roof_job, 1);
+    *j = (bench_roof_job){.use = find_loops(set),
+                          .a = RG_NEW(rg_real, words),
+                          .b = RG_NEW(rg_real, words),
+                          .c = RG_NEW(rg_real, words),
+                          .words = words,
+                          .rounds = rounds};
+    first_touch(j);
+    return j;
 }
 
-static void peak(void *context, int calls) {
-    roof_job *j = context;
+void bench_roof_job_free(bench_roof_job *j) {
+    rg_free(j->a);
+    rg_free(j->b);
+    rg_free(j->c);
+    rg_free(j);
+}
+
+void bench_peak(void *context, int calls) {
+    bench_roof_job *j = context;
     double flops = 0;
 #pragma omp parallel reduction(+ : flops)
     for (int i = 0; i < calls; i++) {
@@ -90,10 +96,8 @@ static void peak(void *context, int calls) {
     j->flops = flops / calls;
 }
 
-/* Words of a triad array: in the cache, as much memory as the kernels' small problem takes; else four times
- * the last cache over three arrays, and not less than a good number of pages. */
-static size_t triad_words(const bench *b, bench_size size, int threads) {
-    size_t small = (size_t)threads << 17, least = (size_t)(b->options.quick ? 16 : 96) << 20;
+size_t bench_triad_words(bench_size size, int threads, bool quick) {
+    size_t small = (size_t)threads << 17, least = (size_t)(quick ? 16 : 96) << 20;
     size_t large = (4 * bench_cache_size() / 3 + 63) / 64 * 64;
     return (size == BENCH_CACHE ? small : large > least ? large : least) / sizeof(rg_real);
 }
@@ -102,14 +106,17 @@ void bench_measure_roofs(const bench *b, bench_roofs *r) {
     const rg_kernels *sets[BENCH_SETS];
     *r = (bench_roofs){.threads = omp_get_max_threads(), .sets = rg_kernels_available(sets, BENCH_SETS)};
     for (int s = 0; s < BENCH_SIZES; s++) {
-        r->words[s] = triad_words(b, (bench_size)s, r->threads);
-        measure_triad(b, find_loops(sets[0]->name), r, (bench_size)s);
+        r->words[s] = bench_triad_words((bench_size)s, r->threads, b->options.quick);
+        bench_roof_job *j = bench_roof_job_make(sets[0]->name, r->words[s], 0);
+        bench_measure(b, b->options.repeats, bench_triad, j, &r->triad[s]);
+        bench_roof_job_free(j);
     }
     for (int k = 0; k < r->sets; k++) {
-        roof_job j = {.use = find_loops(sets[k]->name), .rounds = b->options.quick ? 20000 : 200000};
+        bench_roof_job *j = bench_roof_job_make(sets[k]->name, 0, b->options.quick ? 20000 : 200000);
         r->set[k] = sets[k]->name;
-        bench_measure(b, b->options.repeats, peak, &j, &r->peak[k]);
-        r->flops[k] = j.flops;
+        bench_measure(b, b->options.repeats, bench_peak, j, &r->peak[k]);
+        r->flops[k] = j->flops;
+        bench_roof_job_free(j);
     }
 }
 

@@ -49,11 +49,16 @@ static int ascending(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-double bench_median(const bench_samples *s) {
-    double sorted[BENCH_SAMPLES];
+double bench_quantile(const bench_samples *s, double p) {
+    double sorted[BENCH_SAMPLES], at = p * (s->count - 1);
     memcpy(sorted, s->seconds, (size_t)s->count * sizeof *sorted);
     qsort(sorted, (size_t)s->count, sizeof *sorted, ascending);
-    return 0.5 * (sorted[(s->count - 1) / 2] + sorted[s->count / 2]);
+    int below = (int)at, above = below + 1 < s->count ? below + 1 : below;
+    return sorted[below] + (at - below) * (sorted[above] - sorted[below]);
+}
+
+double bench_median(const bench_samples *s) {
+    return bench_quantile(s, 0.5);
 }
 
 double bench_minimum(const bench_samples *s) {
