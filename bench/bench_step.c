@@ -25,23 +25,9 @@ const char *bench_step_name(int k) {
 
 /* ---- Calls ---- */
 
-static void exchange(rg_halo *h) {
-    rg_halo_pack(h);
-#pragma omp master
-    {
-        rg_halo_start(h);
-        rg_halo_finish(h);
-    }
-#pragma omp barrier
-}
-
-/* Both messages of a step, with nothing to hide them. */
-static void exchange_all(void *context, int calls) {
-    rg_solver *s = context;
-#pragma omp parallel
+static void exchange(void *context, int calls) {
     for (int i = 0; i < calls; i++) {
-        exchange(s->halo_u[s->current]);
-        exchange(s->halo_t);
+        rg_solver_exchange(context);
     }
 }
 
@@ -98,7 +84,7 @@ static void run_halo(bench *b, rg_solver *s, int threads) {
     if (b->ranks > 1 && bench_wants(b, "halo")) {
         bench_row *row = add_row(b, s, "halo", threads);
         row->cost = (rg_cost){0};
-        bench_measure(b, b->options.repeats, exchange_all, s, &row->samples);
+        bench_measure(b, b->options.repeats, exchange, s, &row->samples);
         bench_print_row(b, row, stdout);
     }
 }

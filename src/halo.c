@@ -75,6 +75,14 @@ double rg_halo_waited(const rg_halo *h) {
     return h->waited;
 }
 
+int rg_halo_partners(const rg_halo *h) {
+    return h->partners;
+}
+
+size_t rg_halo_bytes(const rg_halo *h) {
+    return h->faces * (size_t)h->values * sizeof *h->send;
+}
+
 void rg_halo_free(rg_halo *h) {
     if (h == NULL) {
         return;

@@ -28,6 +28,10 @@ void rg_halo_finish(rg_halo *h);
 /* Seconds that `finish` has waited so far. */
 double rg_halo_waited(const rg_halo *h);
 
+/* Ranks that this one exchanges with, a message each; bytes that it sends them in one exchange. */
+int rg_halo_partners(const rg_halo *h);
+size_t rg_halo_bytes(const rg_halo *h);
+
 /* Collective: ends what was started. */
 void rg_halo_free(rg_halo *h);
 

@@ -238,15 +238,22 @@ static void sweep(rg_solver *s, tile_work *work, const impulse *p, size_t begin,
     }
 }
 
-static void start(rg_halo *h) {
+static void mark(rg_solver *s, rg_phase phase) {
+#pragma omp master
+    rg_phases_mark(&s->phases, phase);
+}
+
+static void start(rg_solver *s, rg_halo *h) {
     rg_halo_pack(h);
 #pragma omp master
     rg_halo_start(h);
+    mark(s, RG_PHASE_EXCHANGE);
 }
 
-static void finish(rg_halo *h) {
+static void finish(rg_solver *s, rg_halo *h) {
 #pragma omp master
     rg_halo_finish(h);
+    mark(s, RG_PHASE_WAIT);
 #pragma omp barrier
 }
 
@@ -259,6 +266,7 @@ static void start_stiffening(rg_solver *s) {
         MPI_Iallreduce(&s->stiffening_here, &s->stiffening_anywhere, 1, MPI_DOUBLE, MPI_MAX, s->comm,
                        &s->stiffening_request);
     }
+    mark(s, RG_PHASE_REDUCE);
 }
 
 /* All forces. The traces of the displacement, sent at the end of the last drift, arrive under the first sweep
@@ -266,21 +274,27 @@ static void start_stiffening(rg_solver *s) {
 static void evaluate(rg_solver *s, const impulse *p) {
     size_t outer = s->domain->boundary_tiles, all = s->domain->tiles;
     rg_halo *traces = s->halo_u[s->current], *next = s->halo_u[1 - s->current];
+    rg_phases_begin(&s->phases);
 #pragma omp parallel
     {
         sweep(s, inside, p, outer, all, traces);
-        finish(traces);
+        mark(s, RG_PHASE_COMPUTE);
+        finish(s, traces);
         sweep(s, inside, p, 0, outer, NULL);
-        start(s->halo_t);
+        mark(s, RG_PHASE_COMPUTE);
+        start(s, s->halo_t);
         start_stiffening(s);
         sweep(s, across, p, outer, all, s->halo_t);
-        finish(s->halo_t);
+        mark(s, RG_PHASE_JUMP);
+        finish(s, s->halo_t);
         sweep(s, across, p, 0, outer, NULL);
+        mark(s, RG_PHASE_JUMP);
         if (p->move) {
-            start(next);
+            start(s, next);
         }
     }
     MPI_Wait(&s->stiffening_request, MPI_STATUS_IGNORE);
+    rg_phases_mark(&s->phases, RG_PHASE_REDUCE);
 }
 
 /* Sends the traces of the current displacement, once those of the last drift have arrived. */
@@ -295,7 +309,7 @@ static void publish(rg_solver *s) {
             rg_trace_args traces = rg_tile_traces(s, &d->tile[t], w, false);
             s->kernels->send(&traces, 0, rg_tile_seams(&d->tile[t]));
         }
-        start(s->halo_u[s->current]);
+        start(s, s->halo_u[s->current]);
     }
 }
 
@@ -369,6 +383,7 @@ void rg_solver_kick(rg_solver *s, double dt) {
 
 void rg_solver_drift(rg_solver *s) {
     const rg_domain *d = s->domain;
+    rg_phases_begin(&s->phases);
 #pragma omp parallel
     {
         const rg_workspace *w = &s->work[omp_get_thread_num()];
@@ -376,7 +391,8 @@ void rg_solver_drift(rg_solver *s) {
         for (size_t t = 0; t < d->tiles; t++) {
             drift(s, t, w);
         }
-        start(s->halo_u[1 - s->current]);
+        mark(s, RG_PHASE_JUMP);
+        start(s, s->halo_u[1 - s->current]);
     }
     advance(s);
 }
@@ -386,6 +402,16 @@ void rg_solver_step(rg_solver *s, double dt) {
     p.move = true;
     evaluate(s, &p);
     advance(s);
+}
+
+void rg_solver_exchange(rg_solver *s) {
+#pragma omp parallel
+    {
+        start(s, s->halo_u[s->current]);
+        finish(s, s->halo_u[s->current]);
+        start(s, s->halo_t);
+        finish(s, s->halo_t);
+    }
 }
 
 void rg_solver_free(rg_solver *s) {

@@ -15,6 +15,7 @@
 #include "exact_sum.h"
 #include "halo.h"
 #include "kernels.h"
+#include "phases.h"
 
 /* What one thread needs to work on a tile. */
 typedef struct {
@@ -60,9 +61,11 @@ struct rg_solver {
     double omega2;   /* largest squared frequency, faces intact or closed (1/s^2) */
     rg_gid limiting; /* element that sets it */
     const char *limiting_state;
-    double pass_seconds; /* of one evaluation of all forces, as measured at set-up */
-    double time, dt;     /* of the current state (s); dt is the step that led to it */
-    double dt_next;      /* step that leads on, once kicked */
+    double pass_seconds;     /* of one evaluation of all forces, as measured at set-up */
+    double exchange_seconds; /* of a step's messages with nothing to hide them, as measured at set-up */
+    rg_phases phases;        /* of all passes since it was cleared */
+    double time, dt;         /* of the current state (s); dt is the step that led to it */
+    double dt_next;          /* step that leads on, once kicked */
     int64_t step;
 };
 
@@ -88,6 +91,10 @@ void rg_solver_step(rg_solver *s, double dt);
 
 /* velocity += dt M^-1 (all forces of u), without constraints. For the spectrum. Collective. */
 void rg_solver_impulse(rg_solver *s, rg_real *velocity, double dt);
+
+/* Both exchanges of a step with nothing to hide them, as a measurement: the rows are not of one state.
+ * Collective. */
+void rg_solver_exchange(rg_solver *s);
 
 void rg_solver_free(rg_solver *s);
 

@@ -96,12 +96,15 @@ void rg_summary_write(rg_summary *m, rg_solver *s, const rg_ledger *l, const rg_
     MPI_Allreduce(MPI_IN_PLACE, &m->halo_wait_seconds, 1, MPI_DOUBLE, MPI_MAX, s->comm);
     double work = (double)e->elements * (double)s->step;
     m->us_per_tet_step = work > 0 ? 1e6 * m->loop_seconds * s->ranks * s->threads / work : 0;
+    rg_phases_report phases = rg_phases_gather(&s->phases, s->halo_u[0], s->halo_t, s->comm);
     if (s->rank != 0) {
         return;
     }
     FILE *f = rg_open_in(s->input->output.dir, "summary.json");
     fputs("{\n", f);
     write_run(f, m, s, e);
+    number(f, "exchange_alone_s", s->exchange_seconds);
+    rg_phases_write(&phases, f);
     write_physics(f, m, l);
     number(f, "bytes_per_tet", e->bytes_per_element);
     fprintf(f, "  \"state_hash\": \"%016" PRIx64 "\",\n  \"revision\": \"%s\"\n}\n", hash, RG_REVISION);

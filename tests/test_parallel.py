@@ -60,6 +60,36 @@ def test_fragments_are_the_same_on_any_layout(run, variant, ranks, threads):
     assert_same_bits(one, other)
 
 
+@pytest.mark.parametrize("ranks", [5, 8, 16])
+def test_fragments_are_the_same_on_many_ranks(run, ranks):
+    sets = {**FRAGMENTS, "time.end": 0.1e-6}
+    one = run(CASES / "fragments.yaml", sets=sets)
+    other = run(CASES / "fragments.yaml", ranks=ranks, sets=sets)
+    assert one.summary["failed_area_m2"] > 0
+    assert other.summary["ranks"] == ranks
+    assert_same_bits(one, other)
+
+
+# ---- Where the time goes ----
+
+
+def test_phases_add_up_to_the_loop(run):
+    summary = run(CASES / "fragments.yaml", ranks=3, sets=FRAGMENTS).summary
+    for least, mean, most in [*summary["phases_s"].values(), summary["bytes_per_step"], summary["messages_per_step"]]:
+        assert 0 <= least <= mean * (1 + 1e-5) and mean <= most * (1 + 1e-5)
+    total = sum(mean for _, mean, _ in summary["phases_s"].values())
+    loop = summary["wall_s"] - summary["output_s"]
+    assert 0.5 * loop < total < 1.01 * summary["wall_s"]  # ranks wait for messages while another still writes
+
+
+def test_halo_sends_one_message_to_each_neighbour_and_phase(run):
+    summary = run(CASES / "fragments.yaml", ranks=3, sets=FRAGMENTS).summary
+    assert summary["messages_per_step"] == [2 * n for n in summary["neighbours"]]
+    assert summary["halo_doubles_per_face"] <= 33
+    sent = 3 * summary["bytes_per_step"][1]  # by all; each cut face has two sides
+    assert sent == pytest.approx(2 * summary["cut_faces"] * 8 * summary["halo_doubles_per_face"], rel=1e-5)
+
+
 @pytest.mark.parametrize("variant", [name for name in VARIANTS if name != "default"])
 def test_hash_tells_variants_apart(run, variant):
     one = run(CASES / "fragments.yaml", sets=FRAGMENTS)
