@@ -97,8 +97,9 @@ static void run_states(const job *j, size_t begin, size_t end) {
     rg_bulk_args bulk = bulk_args(j);
     rg_interface_args interface = interface_args(j);
     if (j->what->kernel == RG_COST_BULK_STATE) {
-        rg_bulk_state_args a = {&bulk, p->energy + begin * RG_LANES,
-                                p->cauchy + begin * RG_GAUSS * 6 * RG_LANES};
+        rg_bulk_state_args a = {.bulk = &bulk,
+                                .energy = p->energy + begin * RG_LANES,
+                                .cauchy = p->cauchy + begin * RG_GAUSS * 6 * RG_LANES};
         j->set->bulk_state(&a, begin, end);
     } else if (j->what->kernel == RG_COST_INTERFACE_STATE) {
         rg_interface_state_args a = {&interface, p->ienergy + begin * RG_E_INTERFACE * RG_LANES};

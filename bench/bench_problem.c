@@ -111,7 +111,7 @@ bench_problem *bench_problem_make(bench_size size, bool quick) {
     const double lambda = 77.8e9, mu = 107.4e9; /* alumina */
     const rg_interface_material m = {lambda, mu, 4, RG_PENALTY_ELASTIC};
     bench_problem *p = RG_NEW(bench_problem, 1);
-    p->material = (rg_material){lambda, mu, 3690};
+    p->material = (rg_material){.lambda = lambda, .mu = mu, .density = 3690};
     p->law = (rg_cohesive){.strength = STRENGTH, .opening = OPENING, .beta = 1};
     p->domain = make_domain(size, quick, &m);
     allocate(p);

@@ -3,6 +3,8 @@
 
 #include <math.h>
 
+#include "materials.h"
+
 static const double pi = 3.14159265358979323846;
 
 rg_deshpande_evans rg_deshpande_evans_alumina(void) {
@@ -56,6 +58,7 @@ rg_de_constants rg_de_prepare(const rg_deshpande_evans *p, double dt) {
         .c1 = 1 / (pi * pi * pow(p->alpha, 1.5)),
         .c2 = 2 * pow(d0, 2.0 / 3),
         .c3 = 2 * p->alpha * p->alpha * pi * (p->single_pi ? 1 : pi),
+        .d0 = d0,
         .d0_23 = pow(d0, 2.0 / 3),
         .sum = (a3 + a1) / sqrt(3),
         .difference = a3 - a1,
@@ -79,4 +82,9 @@ rg_de_constants rg_de_prepare(const rg_deshpande_evans *p, double dt) {
     c.silent = exp((log(RG_DE_NO_GROWTH * c.offset / dt) - c.log_rate) / c.exponent) / c.intensity;
     c.quiet = quiet_stress(&c);
     return c;
+}
+
+void rg_prepare_deshpande_evans(rg_material *m, double dt) {
+    rg_de_material *de = &m->of.deshpande_evans;
+    de->constants = rg_de_prepare(&de->parameters, dt);
 }

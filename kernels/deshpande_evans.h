@@ -304,9 +304,9 @@ RG_INLINE void rg_de_flow_history(rg_vec cof[3][3], rg_vec inv_J, rg_vec b[6], r
 
 /* Elastic strain of a deformation gradient. */
 typedef struct {
-    rg_vec cof[3][3], inv_J; /* cofactors of F, 1/det F */
-    rg_vec b[6], e[6];       /* F Cp^-1 F^T, deviator of 1/2 log b */
-    rg_vec ekk, eb;          /* log J, sqrt(2/3 e:e) */
+    rg_vec cof[3][3], J, inv_J; /* cofactors of F, det F and its inverse */
+    rg_vec b[6], e[6];          /* F Cp^-1 F^T, deviator of 1/2 log b */
+    rg_vec ekk, eb;             /* log J, sqrt(2/3 e:e) */
 } rg_de_strain;
 
 RG_INLINE void rg_de_strain_at(rg_vec F[3][3], rg_vec history[RG_DE_HISTORY], rg_de_strain *d) {
@@ -315,11 +315,11 @@ RG_INLINE void rg_de_strain_at(rg_vec F[3][3], rg_vec history[RG_DE_HISTORY], rg
         metric[k] = history[RG_DE_FLOW + k] + (k < 3 ? 1.0 : 0.0);
     }
     rg_cofactor(F, d->cof);
-    rg_vec J = rg_dot(F[0], d->cof[0]);
-    d->inv_J = 1.0 / J;
+    d->J = rg_dot(F[0], d->cof[0]);
+    d->inv_J = 1.0 / d->J;
     rg_congruence(F, metric, d->b);
     rg_hencky_deviator(d->b, d->e);
-    d->ekk = rg_log(J);
+    d->ekk = rg_log(d->J);
     d->eb = rg_sqrt((2.0 / 3) * rg_sym_dot(d->e, d->e));
 }
 
@@ -364,15 +364,22 @@ typedef struct {
     rg_vec damage;     /* released by growth of cracks in the step (J/m^3); can be negative, see the model */
 } rg_de_result;
 
-/* First Piola-Kirchhoff stress P (Pa) and energy at a given history. */
-RG_INLINE void rg_de_at_rest(const rg_de_constants *c, rg_vec F[3][3], rg_vec history[RG_DE_HISTORY],
-                             rg_vec P[3][3], rg_vec *energy) {
+/* The point at a given history, which stays: first Piola-Kirchhoff stress P (Pa), nothing released. */
+RG_INLINE rg_de_result rg_de_at_rest(const rg_de_constants *c, rg_vec F[3][3], rg_vec history[RG_DE_HISTORY],
+                                     rg_vec P[3][3]) {
     rg_de_strain d;
     rg_de_strain_at(F, history, &d);
     rg_de_cracks k = rg_de_cracks_at(c, history[RG_DE_GROWTH]);
     rg_de_stress s = rg_de_stress_at(c, &k, d.ekk, d.eb);
     rg_de_piola(&s, &d, P);
-    *energy = rg_de_stored(&s, d.ekk, d.eb);
+    return (rg_de_result){.stiffening = rg_de_stiffening(c, &s, &d), .energy = rg_de_stored(&s, d.ekk, d.eb)};
+}
+
+/* 1, 2 or 3; 0 where there is no stress. */
+RG_INLINE rg_vec rg_de_regime(const rg_de_cracks *k, const rg_de_stress *s) {
+    rg_vec regime = rg_select(s->drive > 0.0, rg_splat(2.0), rg_splat(1.0));
+    regime = rg_select(s->mean >= k->open * s->mises, rg_splat(3.0), regime);
+    return rg_select((s->mean == 0.0) & (s->mises == 0.0), rg_splat(0.0), regime);
 }
 
 /* Flow of one step with the cracks as they are: history, eb and stress after it; returns the energy released

@@ -80,7 +80,7 @@ typedef struct {
     double crack_compliance;  /* 2 kappa = pi D0/(2 alpha^3 G (1 + nu)) (1/Pa) */
     double offset;            /* beta/alpha */
     double c1, c2, c3;        /* c1 (X + offset)^(3/2), (c2 - 1) (1 - D^(2/3))/X^2, c3/X^2 */
-    double d0_23;             /* D0^(2/3) */
+    double d0, d0_23;         /* D0, D0^(2/3) */
     double sum, difference;   /* (A3 + A1)/sqrt 3, A3 - A1 */
     double gamma_root;        /* (C - A)/(1 + X)^(1/2) */
     double growth_max;        /* X at damage_max */
@@ -97,6 +97,12 @@ typedef struct {
 
 /* Constants for steps of `dt` (s), which is > 0. */
 rg_de_constants rg_de_prepare(const rg_deshpande_evans *p, double dt);
+
+/* The ceramic as a material of a run (materials.h). */
+typedef struct {
+    rg_deshpande_evans parameters;
+    rg_de_constants constants;
+} rg_de_material;
 
 /* D0 = 4/3 pi (alpha a)^3 f, and D = D0 (1 + X)^3. */
 double rg_de_initial_damage(const rg_deshpande_evans *p);

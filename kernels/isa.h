@@ -19,4 +19,10 @@ void RG_ISA_NAME(rg_bulk_state)(const rg_bulk_state_args *args, size_t begin, si
 void RG_ISA_NAME(rg_kinetic)(const rg_kinetic_args *args, size_t begin, size_t end);
 void RG_ISA_NAME(rg_interface_state)(const rg_interface_state_args *args, size_t begin, size_t end);
 
+/* One of each for every material. */
+#define RG_BULK_KERNELS(name, NAME, word, history, inside)                                                   \
+    void RG_ISA_NAME(rg_bulk_##name)(const rg_bulk_args *args, size_t begin, size_t end);                    \
+    void RG_ISA_NAME(rg_bulk_state_##name)(const rg_bulk_state_args *args, size_t begin, size_t end);
+RG_MATERIALS_HERE(RG_BULK_KERNELS)
+
 #endif

@@ -11,12 +11,7 @@
 
 #include <stdbool.h>
 #include "layout.h"
-
-/* neo-Hookean solid, W = (lambda/2 log J - mu) log J + mu/2 (tr F^T F - 3). */
-typedef struct {
-    double lambda, mu; /* Lame constants (Pa) */
-    double density;    /* reference density (kg/m^3) */
-} rg_material;
+#include "materials.h"
 
 /* Traces: what seams tell each other. `send` writes the own traces as rows, `receive` collects those of the
  * other sides into ghosts, and traction rows likewise. Blocks are the tile's seam blocks. */
@@ -42,6 +37,8 @@ typedef struct {
     const int32_t *interface; /* links */
     const uint8_t *cracked;   /* [block]: not 0 where some face of the block has an unlinked point */
     const uint8_t *unlinked;  /* [interface]: bit q set where point q has left the lift */
+    rg_real *history;         /* of the material, in/out; NULL if it has none */
+    bool advance;             /* history goes on by the step that ends here; else it stays as it is */
     rg_real *force;           /* out: internal nodal force of the bulk, -dW/du (N) */
     rg_real *traction;        /* out: area-weighted corner tractions area_f P N_outward (N) */
     rg_real *stiffening; /* out: [block][lane], largest ratio of the acoustic tensor to its value at F = I */
@@ -107,9 +104,15 @@ typedef struct {
  * block `begin` writes row 0. */
 typedef struct {
     const rg_bulk_args *bulk;
-    double *energy; /* out, or NULL: [row][lane] sum_g (V/4) W(F_g + R_g) (J) */
-    double *cauchy; /* out, or NULL: [row][4 Gauss points][xx yy zz yz xz xy][lane] Cauchy stress (Pa) */
+    double *energy;   /* out, or NULL: [row][lane] sum_g (V/4) W(F_g + R_g) (J) */
+    double *cauchy;   /* out, or NULL: [row][4 Gauss points][xx yy zz yz xz xy][lane] Cauchy stress (Pa) */
+    double *internal; /* out, or NULL: [row][4 Gauss points][RG_INTERNAL][lane]; only of a material with
+                         history */
 } rg_bulk_state_args;
+
+/* Internal variables that are output: damage, 0 to 1; regime of the cracks, 1, 2, 3 (0: no stress);
+ * equivalent plastic strain. 0 where the material has none. */
+enum { RG_INTERNAL_DAMAGE, RG_INTERNAL_REGIME, RG_INTERNAL_PLASTIC, RG_INTERNAL };
 
 typedef struct {
     double density;

@@ -15,6 +15,7 @@
  *   element geometry                [element block][RG_GEOM][lane]
  *   face traction (area-weighted)   [element][4 faces][3 corners][3]
  *   links                           [element block][4 faces][lane]
+ *   history of the material         [element block][4 points x values, RG_RELEASED][lane]
  *   interface geometry              [interface block][RG_IGEOM][lane]
  *   interface nodal force           [interface block][6 nodes][3][lane]
  *   crack state                     [interface block][6 points][RG_CRACK][lane]
@@ -81,6 +82,10 @@ enum { /* crack state of one interface point; meaningful only where the point's 
        RG_CRACK = 5,
 };
 
+/* History of a material with n values per point: those of the 4 points of the element, then the energy that
+ * the element has set free since the start (J), by cause. */
+enum { RG_RELEASED_PLASTIC, RG_RELEASED_DAMAGE, RG_RELEASED };
+
 enum { /* values per row, and per block */
        RG_TRACTION_ROW = RG_FACES * RG_FCORNERS * 3,
        RG_IFORCE_ROW = RG_FNODES * 3,
@@ -131,6 +136,16 @@ static inline size_t rg_iforce_index(size_t i, int n, int c) {
 
 static inline size_t rg_crack_index(size_t i, int q, int k) {
     return (i / RG_LANES) * RG_CRACK_BLOCK + (size_t)(q * RG_CRACK + k) * RG_LANES + i % RG_LANES;
+}
+
+/* Rows of the history of an element with n values per point (none for n = 0), and the index of one of them.
+ */
+static inline size_t rg_history_rows(int n) {
+    return n == 0 ? 0 : (size_t)(RG_GAUSS * n + RG_RELEASED);
+}
+
+static inline size_t rg_history_index(size_t e, int n, size_t row) {
+    return (e / RG_LANES * rg_history_rows(n) + row) * RG_LANES + e % RG_LANES;
 }
 
 /* Links are 32-bit numbers with a small code in the low bits.

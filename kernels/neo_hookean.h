@@ -2,8 +2,7 @@
 #ifndef RG_NEO_HOOKEAN_H
 #define RG_NEO_HOOKEAN_H
 
-#include "kernels.h"
-#include "vec.h"
+#include "material_point.h"
 
 /* Strains are small against 1, and what is computed from F loses the digits that the 1 takes: all but the
  * last few in floats. So everything is written in H = F - I, in cof F - I = D and in J - 1 = j. */
@@ -13,15 +12,6 @@ typedef struct {
     rg_vec second;     /* j - tr H: second invariant and determinant of H */
     rg_vec log_excess; /* j - log J */
 } rg_volume_change;
-
-/* F = I + H. */
-RG_INLINE void rg_plus_identity(rg_vec H[3][3], rg_vec F[3][3]) {
-    for (int i = 0; i < 3; i++) {
-        for (int j = 0; j < 3; j++) {
-            F[i][j] = i == j ? H[i][j] + 1.0 : H[i][j];
-        }
-    }
-}
 
 /* Off the diagonal a cofactor of F has no 1 to lose: each of its products has a small factor. */
 RG_INLINE void rg_neo_hookean_volume(rg_vec H[3][3], rg_volume_change *v) {

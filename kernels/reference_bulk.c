@@ -1,7 +1,8 @@
-/* Reference bulk: tet10, neo-Hookean, at F plus the lifted jumps R (Ten Eyck & Lew 2006). */
+/* Reference bulk: tet10, at F plus the lifted jumps R (Ten Eyck & Lew 2006). */
 #include <math.h>
 #include <string.h>
 #include "reference.h"
+#include "reference_material.h"
 
 /* One element, gathered. */
 typedef struct {
@@ -119,43 +120,6 @@ static void deformation(const element *el, int g, double f[3][3]) {
     add_lift(el, g, f);
 }
 
-/* Inverse of a 3x3 matrix; returns the determinant. */
-static double invert(double f[3][3], double inv[3][3]) {
-    double cofactor[3][3];
-    for (int r = 0; r < 3; r++)
-        rg_reference_cross(f[(r + 1) % 3], f[(r + 2) % 3], cofactor[r]);
-    double det = rg_reference_dot(f[0], cofactor[0]);
-    for (int r = 0; r < 3; r++)
-        for (int c = 0; c < 3; c++)
-            inv[c][r] = cofactor[r][c] / det;
-    return det;
-}
-
-/* First Piola-Kirchhoff stress. */
-static void stress(const rg_material *m, double f[3][3], double p[3][3]) {
-    double inv[3][3];
-    double log_j = log(invert(f, inv));
-    for (int r = 0; r < 3; r++)
-        for (int c = 0; c < 3; c++)
-            p[r][c] = m->mu * f[r][c] + (m->lambda * log_j - m->mu) * inv[c][r];
-}
-
-/* Bound of the acoustic tensor relative to its value at F = I; NaN unless det F > 0. */
-static double stiffening(const rg_material *m, double f[3][3]) {
-    double inv[3][3], largest = 0;
-    double det = invert(f, inv);
-    if (!(det > 0))
-        return NAN;
-    for (int r = 0; r < 3; r++) {
-        double sum = 0;
-        for (int c = 0; c < 3; c++)
-            sum += fabs(rg_reference_dot(inv[r], inv[c]));
-        largest = fmax(largest, sum);
-    }
-    double slope = m->lambda + m->mu - m->lambda * log(det);
-    return (m->mu + fmax(0, slope) * largest) / (m->lambda + 2 * m->mu);
-}
-
 static void add_force(const element *el, int g, double p[3][3], double force[RG_NODES][3]) {
     for (int a = 0; a < RG_NODES; a++) {
         double dn[3];
@@ -176,6 +140,35 @@ static void add_traction(const element *el, int g, double p[3][3],
     }
 }
 
+enum { MOST_HISTORY = 16 }; /* values per point */
+
+static rg_reference_law *law_of(const rg_material *m) {
+#define LAW(name, NAME, word, history, inside) [RG_MATERIAL_##NAME] = rg_reference_point_##name,
+    static rg_reference_law *const laws[] = {RG_MATERIALS(LAW)};
+    return laws[m->model];
+}
+
+/* The material at point g of element e, at its history. */
+static rg_reference_point material(const rg_bulk_args *args, bool advance, size_t e, int g, double f[3][3],
+                                   double p[3][3]) {
+    int n = rg_material_history(args->material.model);
+    double history[MOST_HISTORY];
+    rg_reference_point point = {0};
+    for (int k = 0; k < n; k++)
+        history[k] = args->history[rg_history_index(e, n, (size_t)(g * n + k))];
+    law_of (&args->material)(&args->material, advance, f, history, p, &point);
+    for (int k = 0; advance && k < n; k++)
+        args->history[rg_history_index(e, n, (size_t)(g * n + k))] = (rg_real)history[k];
+    return point;
+}
+
+static void release(const rg_bulk_args *args, size_t e, double volume, const rg_reference_point *point) {
+    int n = rg_material_history(args->material.model);
+    for (int k = 0; n > 0 && args->advance && k < RG_RELEASED; k++)
+        args->history[rg_history_index(e, n, (size_t)(RG_GAUSS * n + k))] +=
+            (rg_real)(volume / 4 * point->released[k]);
+}
+
 static void bulk_element(const rg_bulk_args *args, size_t e) {
     element el;
     double force[RG_NODES][3] = {{0}}, traction[RG_FACES][RG_FCORNERS][3] = {{{0}}}, worst = 0;
@@ -183,11 +176,11 @@ static void bulk_element(const rg_bulk_args *args, size_t e) {
     for (int g = 0; g < RG_GAUSS; g++) {
         double f[3][3], p[3][3];
         deformation(&el, g, f);
-        stress(&args->material, f, p);
+        rg_reference_point point = material(args, args->advance, e, g, f, p);
+        release(args, e, el.volume, &point);
         add_force(&el, g, p, force);
         add_traction(&el, g, p, traction);
-        double here = stiffening(&args->material, f);
-        worst = isnan(here) || isnan(worst) ? NAN : fmax(worst, here);
+        worst = isnan(point.stiffening) || isnan(worst) ? NAN : fmax(worst, point.stiffening);
     }
     for (int a = 0; a < RG_NODES; a++)
         for (int c = 0; c < 3; c++)
@@ -204,20 +197,10 @@ void rg_reference_bulk(const rg_bulk_args *args, size_t begin, size_t end) {
         bulk_element(args, e);
 }
 
-static double energy_density(const rg_material *m, double f[3][3]) {
-    double inv[3][3], trace = 0;
-    double log_j = log(invert(f, inv));
-    for (int r = 0; r < 3; r++)
-        trace += rg_reference_dot(f[r], f[r]);
-    return (m->lambda / 2 * log_j - m->mu) * log_j + m->mu / 2 * (trace - 3);
-}
-
 /* Cauchy stress P F^T / J, six components. */
-static void cauchy_stress(const rg_material *m, double f[3][3], double s[6]) {
+static void cauchy_stress(double p[3][3], double f[3][3], double s[6]) {
     static const int row[6] = {0, 1, 2, 1, 0, 0}, column[6] = {0, 1, 2, 2, 2, 1};
-    double p[3][3], inv[3][3];
-    double det = invert(f, inv);
-    stress(m, f, p);
+    double inv[3][3], det = rg_reference_invert(f, inv);
     for (int k = 0; k < 6; k++)
         s[k] = rg_reference_dot(p[row[k]], f[column[k]]) / det;
 }
@@ -229,12 +212,16 @@ void rg_reference_bulk_state(const rg_bulk_state_args *args, size_t begin, size_
         size_t row = e / RG_LANES - begin;
         load(args->bulk, e, &el);
         for (int g = 0; g < RG_GAUSS; g++) {
-            double f[3][3], s[6];
+            double f[3][3], p[3][3], s[6];
+            size_t at = row * RG_GAUSS + (size_t)g;
             deformation(&el, g, f);
-            energy += el.volume / 4 * energy_density(&args->bulk->material, f);
-            cauchy_stress(&args->bulk->material, f, s);
-            for (int k = 0; args->cauchy && k < 6; k++)
-                args->cauchy[(row * 24 + (size_t)(g * 6 + k)) * RG_LANES + e % RG_LANES] = s[k];
+            rg_reference_point point = material(args->bulk, false, e, g, f, p);
+            energy += el.volume / 4 * point.energy;
+            cauchy_stress(p, f, s);
+            for (size_t k = 0; args->cauchy && k < 6; k++)
+                args->cauchy[(at * 6 + k) * RG_LANES + e % RG_LANES] = s[k];
+            for (size_t k = 0; args->internal && k < RG_INTERNAL; k++)
+                args->internal[(at * RG_INTERNAL + k) * RG_LANES + e % RG_LANES] = point.internal[k];
         }
         if (args->energy)
             args->energy[row * RG_LANES + e % RG_LANES] = energy;

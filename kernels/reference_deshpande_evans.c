@@ -6,6 +6,7 @@
 
 #include "layout.h"
 #include "reference.h"
+#include "reference_material.h"
 
 static const double pi = 3.14159265358979323846;
 
@@ -207,18 +208,6 @@ static void transpose(double a[3][3], double out[3][3]) {
             out[i][j] = a[j][i];
 }
 
-/* F^-1; returns det F. */
-static double invert(double F[3][3], double inverse[3][3]) {
-    double cof[3][3];
-    for (int i = 0; i < 3; i++)
-        rg_reference_cross(F[(i + 1) % 3], F[(i + 2) % 3], cof[i]);
-    double J = rg_reference_dot(F[0], cof[0]);
-    for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++)
-            inverse[i][j] = cof[j][i] / J;
-    return J;
-}
-
 /* G S G^T. */
 static void push(double G[3][3], double S[3][3], double out[3][3]) {
     double half[3][3], turned[3][3];
@@ -292,18 +281,19 @@ rg_reference_de_result rg_reference_de_step(const rg_deshpande_evans *p, double 
                                             double history[RG_DE_HISTORY], double P[3][3]) {
     rg_reference_de_result out;
     double inverse[3][3], b[3][3], e[3][3], mean, mises, damage = rg_de_damage(p, history[RG_DE_GROWTH]);
-    double ekk = log(invert(F, inverse)), eb = strain(F, history + RG_DE_FLOW, b, e);
+    double ekk = log(rg_reference_invert(F, inverse)), eb = strain(F, history + RG_DE_FLOW, b, e);
     out.ekk = ekk;
     out.eb = eb;
     out.regime_before = rg_reference_de_invariants(p, damage, ekk, eb, &mean, &mises);
     double before = rg_reference_de_energy(p, damage, mean, mises);
-    double flow = eb > 0 ? rg_reference_de_flow(p, damage, ekk, eb, history[RG_DE_STRAIN], dt) : 0;
+    double flow = dt > 0 && eb > 0 ? rg_reference_de_flow(p, damage, ekk, eb, history[RG_DE_STRAIN], dt) : 0;
     if (flow > 0)
         flow_history(inverse, b, e, flow / eb, history + RG_DE_FLOW);
     history[RG_DE_STRAIN] += flow;
     rg_reference_de_invariants(p, damage, ekk, eb - flow, &mean, &mises);
     double between = rg_reference_de_energy(p, damage, mean, mises);
-    history[RG_DE_GROWTH] = rg_reference_de_growth(p, history[RG_DE_GROWTH], ekk, eb - flow, dt);
+    if (dt > 0)
+        history[RG_DE_GROWTH] = rg_reference_de_growth(p, history[RG_DE_GROWTH], ekk, eb - flow, dt);
     damage = rg_de_damage(p, history[RG_DE_GROWTH]);
     out.regime = rg_reference_de_invariants(p, damage, ekk, eb - flow, &mean, &mises);
     out.energy = rg_reference_de_energy(p, damage, mean, mises);
@@ -312,4 +302,18 @@ rg_reference_de_result rg_reference_de_step(const rg_deshpande_evans *p, double 
     piola(mean, mises, eb, e, inverse, P);
     out.stiffening = stiffening(p, mean, mises, eb, inverse);
     return out;
+}
+
+void rg_reference_point_deshpande_evans(const rg_material *m, bool advance, double F[3][3], double history[],
+                                        double P[3][3], rg_reference_point *out) {
+    const rg_de_material *de = &m->of.deshpande_evans;
+    double dt = advance ? de->constants.dt : 0;
+    rg_reference_de_result r = rg_reference_de_step(&de->parameters, dt, F, history, P);
+    out->stiffening = r.stiffening;
+    out->energy = r.energy;
+    out->released[RG_RELEASED_PLASTIC] = r.plastic;
+    out->released[RG_RELEASED_DAMAGE] = r.damage;
+    out->internal[RG_INTERNAL_DAMAGE] = rg_de_damage(&de->parameters, history[RG_DE_GROWTH]);
+    out->internal[RG_INTERNAL_REGIME] = r.regime;
+    out->internal[RG_INTERNAL_PLASTIC] = history[RG_DE_STRAIN];
 }

@@ -51,7 +51,7 @@ typedef struct {
     int regime_before;                          /* before flow and growth */
 } rg_reference_de_result;
 
-/* One step of dt (s) ending at F: updates history[RG_DE_HISTORY], gives P (Pa). */
+/* One step of dt (s; 0: at rest) ending at F: updates history[RG_DE_HISTORY], gives P (Pa). */
 rg_reference_de_result rg_reference_de_step(const rg_deshpande_evans *p, double dt, double F[3][3],
                                             double history[RG_DE_HISTORY], double P[3][3]);
 

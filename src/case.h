@@ -6,10 +6,12 @@
 #include <stdint.h>
 #include <stdio.h>
 
+#include "materials.h"
+
 /* A value that may be a number or an expression in x, y, z (reference position, m) and t (s). */
 typedef struct rg_expr rg_expr;
 
-typedef enum { RG_MATERIAL_NEO_HOOKEAN } rg_material_model;
+typedef enum { RG_INTERACTION_THESIS, RG_INTERACTION_DERIVED } rg_interaction;
 typedef enum { RG_FORM_VARIATIONAL, RG_FORM_INCOMPLETE } rg_form;
 typedef enum { RG_PENALTY_ELASTIC, RG_PENALTY_ISOTROPIC } rg_penalty;
 typedef enum { RG_LAW_NONE, RG_LAW_LINEAR } rg_law;
@@ -21,10 +23,15 @@ typedef enum { RG_MASS_CONSISTENT, RG_MASS_LUMPED } rg_mass;
 enum {
     RG_FIELD_DISPLACEMENT = 1,
     RG_FIELD_VELOCITY = 2,
-    RG_FIELD_STRESS = 4,     /* Cauchy stress, mean per element */
-    RG_FIELD_MEAN = 8,       /* mean stress */
-    RG_FIELD_PRINCIPAL = 16, /* principal stresses, largest first */
-    RG_FIELD_CRACK = 32,     /* crack surface */
+    RG_FIELD_STRESS = 4,        /* Cauchy stress, mean per element */
+    RG_FIELD_MEAN = 8,          /* mean stress */
+    RG_FIELD_PRINCIPAL = 16,    /* principal stresses, largest first */
+    RG_FIELD_CRACK = 32,        /* crack surface */
+    RG_FIELD_DAMAGE = 64,       /* of the material: mean per element */
+    RG_FIELD_REGIME = 128,      /* largest of the element's points */
+    RG_FIELD_PLASTIC = 256,     /* equivalent plastic strain: mean per element */
+    RG_FIELD_TRIAXIALITY = 512, /* mean over von Mises stress, of the mean Cauchy stress */
+    RG_FIELDS_COMMON = 63,      /* what every run puts out by default */
 };
 
 typedef struct {
@@ -53,6 +60,8 @@ typedef struct {
     struct {
         rg_material_model model;
         double young, poisson, density;
+        rg_deshpande_evans deshpande_evans; /* but for poisson, density and single_pi */
+        rg_interaction interaction;         /* c3 of the ceramic: as printed, or as one derives it */
     } material;
     struct {
         rg_form form;

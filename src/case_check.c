@@ -157,17 +157,40 @@ static bool check_list(rg_check *ck, const rg_key *key, const rg_node *list, con
     return ck->problems->count == before;
 }
 
+static const char *why_unused(const scan *s, const rg_key *key, char *text, size_t size) {
+    if (key->group == RG_GROUP_BOX) {
+        return "cannot be given together with mesh.file";
+    }
+    if (key->group == RG_GROUP_COHESIVE) {
+        return "not used, because interface.law is none";
+    }
+    char words[160];
+    const rg_key *model = rg_key_find(s->table, "material.model");
+    rg_models_words(key, words, sizeof words);
+    snprintf(text, size, "not used, because material.model is %s; it belongs to %s",
+             model->choice[s->ck->c->material.model], words);
+    return text;
+}
+
 static bool refuse_unused(const scan *s, const rg_key *key, const rg_node *node, const char *path) {
-    char value[64];
+    char value[64], why[256];
     rg_subject subject = {.key = path, .value = rg_node_line(node, value, sizeof value)};
-    rg_problem_add(s->ck->problems, node->key_at, &subject, "%s",
-                   key->group == RG_GROUP_BOX ? "cannot be given together with mesh.file"
-                                              : "not used, because interface.law is none");
+    rg_problem_add(s->ck->problems, node->key_at, &subject, "%s", why_unused(s, key, why, sizeof why));
     return false;
 }
 
+static rg_usage usage_of(const rg_check *ck, const rg_key *key) {
+    if (key->models == 0) {
+        return ck->usage[key->group];
+    }
+    if (!ck->model) {
+        return RG_UNSURE;
+    }
+    return (key->models >> ck->c->material.model & 1U) != 0 ? RG_USED : RG_UNUSED;
+}
+
 static bool check_key(const scan *s, const rg_key *key, const rg_node *node, const char *path, void *base) {
-    rg_usage usage = s->ck->usage[key->group];
+    rg_usage usage = usage_of(s->ck, key);
     if (node == NULL) {
         if (key->need == RG_NEED_REQUIRED && usage == RG_USED) {
             return missing(s, key, path);
@@ -184,8 +207,28 @@ static bool check_key(const scan *s, const rg_key *key, const rg_node *node, con
                                     : rg_value_read(s->ck, key, node, path, base);
 }
 
+/* What the value of a key of the material says about others. */
+static void learn_material(rg_check *ck, const rg_key *key, const rg_node *node, bool good) {
+    size_t at = key->offset;
+    if (at == offsetof(rg_case, material.model)) {
+        ck->model = good;
+        if (good) {
+            rg_model_rule(ck, node);
+        }
+    } else if (at == offsetof(rg_case, material.deshpande_evans.flaw_density)) {
+        ck->flaws = ck->flaws && good;
+        ck->density = node;
+    } else if (at == offsetof(rg_case, material.deshpande_evans.flaw_radius) ||
+               at == offsetof(rg_case, material.deshpande_evans.alpha)) {
+        ck->flaws = ck->flaws && good;
+    } else if (at == offsetof(rg_case, material.deshpande_evans.damage_max) && ck->flaws && good) {
+        rg_flaw_rule(ck);
+    }
+}
+
 /* What the value of a key of the case says about others. */
 static void learn(rg_check *ck, const rg_key *key, const rg_node *node, bool good) {
+    learn_material(ck, key, node, good);
     if (key->offset == offsetof(rg_case, interface.law)) {
         rg_usage usage = ck->c->interface.law == RG_LAW_NONE ? RG_UNUSED : RG_USED;
         ck->usage[RG_GROUP_COHESIVE] = good ? usage : RG_UNSURE;
@@ -197,6 +240,8 @@ static void learn(rg_check *ck, const rg_key *key, const rg_node *node, bool goo
         }
     } else if (key->offset == offsetof(rg_case, mesh.size) || key->offset == offsetof(rg_case, mesh.origin)) {
         ck->box = ck->box && good;
+    } else if (key->offset == offsetof(rg_case, output.fields) && good && ck->model) {
+        rg_fields_rule(ck, key, node);
     }
 }
 
@@ -219,7 +264,7 @@ static bool check_table(rg_check *ck, const rg_key_table *table, const rg_node *
 }
 
 void rg_case_check(rg_check *ck, const rg_node *root) {
-    ck->box = true;
+    ck->box = ck->flaws = true;
     if (root->kind == RG_NODE_MAPPING) {
         check_table(ck, &rg_case_table, root, "", ck->c);
     } else if (root->kind != RG_NODE_BAD) {

@@ -11,7 +11,10 @@ typedef struct {
     rg_problems *problems;
     rg_case *c;
     rg_usage usage[RG_GROUPS];
-    bool box; /* mesh.origin and mesh.size are good */
+    bool box;               /* mesh.origin and mesh.size are good */
+    bool model;             /* material.model is good */
+    bool flaws;             /* what the initial damage follows from is good */
+    const rg_node *density; /* material.flaw_density; NULL: not there */
 } rg_check;
 
 /* Fills ck->c, a zeroed case, from the tree and reports every problem. */
@@ -28,6 +31,13 @@ void rg_value_wrong(rg_check *ck, const rg_key *key, const rg_node *node, const 
 /* Makes mesh.file, given relative to the case file, a path that holds anywhere; reports a file that cannot be
  * read. */
 void rg_mesh_file_rule(rg_check *ck, const rg_node *node);
+
+/* Rules of the material (case_material.c): a model that this build does not have; an initial damage that
+ * leaves nothing to grow, reported at ck->density; output fields that the model has not, or, without `node`,
+ * those that it puts out by default. */
+void rg_model_rule(rg_check *ck, const rg_node *node);
+void rg_flaw_rule(rg_check *ck);
+void rg_fields_rule(rg_check *ck, const rg_key *key, const rg_node *node);
 
 /* Rules that tie several keys together, applied to entry i of a list once its keys are read. `good`: all of
  * them were. An entry that is not is left so that later entries are not compared with it. */

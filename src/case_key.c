@@ -22,9 +22,14 @@
 #define DEFAULT(value) .need = RG_NEED_DEFAULT, .fallback = (value)
 #define BOX            .group = RG_GROUP_BOX
 #define COHESIVE       .group = RG_GROUP_COHESIVE
+#define ELASTIC        .models = RG_MATERIAL_BIT_NEO_HOOKEAN
+#define CERAMIC        .models = RG_MATERIAL_BIT_DESHPANDE_EVANS
+#define FLAWS(member)  CERAMIC, CASE(material.deshpande_evans.member)
 
 /* In the order of the enums they set. */
-static const char *const models[] = {"neo-hookean", NULL};
+#define MODEL_WORD(name, NAME, word, history, inside) word,
+static const char *const models[] = {RG_MATERIALS(MODEL_WORD) NULL};
+static const char *const interactions[] = {"thesis", "derived", NULL};
 static const char *const forms[] = {"variational", "incomplete", NULL};
 static const char *const penalties[] = {"elastic", "isotropic", NULL};
 static const char *const laws[] = {"none", "linear", NULL};
@@ -33,13 +38,9 @@ static const char *const contacts[] = {"penalty", "flux", NULL};
 static const char *const masses[] = {"consistent", "lumped", NULL};
 static const char *const components[] = {"x", "y", "z", NULL};
 static const char *const box_sets[] = {"x-", "x+", "y-", "y+", "z-", "z+", NULL};
-static const char *const fields[] = {"displacement",     "velocity", "stress", "mean_stress",
-                                     "principal_stress", "crack",    NULL};
-
-enum {
-    ALL_FIELDS = RG_FIELD_DISPLACEMENT | RG_FIELD_VELOCITY | RG_FIELD_STRESS | RG_FIELD_MEAN |
-                 RG_FIELD_PRINCIPAL | RG_FIELD_CRACK
-};
+static const char *const fields[] = {"displacement",     "velocity",    "stress", "mean_stress",
+                                     "principal_stress", "crack",       "damage", "regime",
+                                     "plastic_strain",   "triaxiality", NULL};
 
 #define INITIAL(name_, unit_, member)                                                                        \
     { .name = (name_), .unit = (unit_), .type = RG_KEY_EXPR, OPTIONAL, .no_time = true, CASE(initial.member) }
@@ -55,9 +56,29 @@ static const rg_key case_keys[] = {
     {.name = "mesh.weight", .type = RG_KEY_EXPR, OPTIONAL, .no_time = true, CASE(mesh.weight)},
 
     {.name = "material.model", CHOICE(models), REQUIRED, CASE(material.model)},
-    {.name = "material.young", .unit = "Pa", REAL, ABOVE(0), REQUIRED, CASE(material.young)},
+    {.name = "material.young", .unit = "Pa", REAL, ABOVE(0), REQUIRED, ELASTIC, CASE(material.young)},
+    {.name = "material.shear", .unit = "Pa", REAL, ABOVE(0), REQUIRED, FLAWS(shear)},
     {.name = "material.poisson", REAL, FROM_TO(0, 0.5), .high_open = true, REQUIRED, CASE(material.poisson)},
     {.name = "material.density", .unit = "kg/m3", REAL, ABOVE(0), REQUIRED, CASE(material.density)},
+    {.name = "material.flaw_radius", .unit = "m", REAL, ABOVE(0), REQUIRED, FLAWS(flaw_radius)},
+    {.name = "material.flaw_density", .unit = "1/m3", REAL, ABOVE(0), REQUIRED, FLAWS(flaw_density)},
+    {.name = "material.alpha", REAL, FROM_TO(0, 1), .low_open = true, DEFAULT(0.70710678118654752), FLAWS(alpha)},
+    {.name = "material.beta", REAL, ABOVE(0), DEFAULT(0.1), FLAWS(beta)},
+    {.name = "material.gamma", REAL, ABOVE(0), DEFAULT(2), FLAWS(gamma)},
+    {.name = "material.friction", REAL, FROM(0), DEFAULT(0.75), FLAWS(friction)},
+    {.name = "material.toughness", .unit = "Pa sqrt(m)", REAL, ABOVE(0), REQUIRED, FLAWS(toughness)},
+    {.name = "material.growth_speed", .unit = "m/s", REAL, ABOVE(0), DEFAULT(100e-6), FLAWS(growth_speed)},
+    {.name = "material.growth_exponent", REAL, ABOVE(0), DEFAULT(10), FLAWS(growth_exponent)},
+    {.name = "material.interaction", CHOICE(interactions), DEFAULT(RG_INTERACTION_THESIS), CERAMIC,
+     CASE(material.interaction)},
+    {.name = "material.damage_max", REAL, FROM_TO(0, 1), .low_open = true, .high_open = true, DEFAULT(0.999),
+     FLAWS(damage_max)},
+    {.name = "material.yield_stress", .unit = "Pa", REAL, ABOVE(0), REQUIRED, FLAWS(yield_stress)},
+    {.name = "material.yield_strain", REAL, ABOVE(0), DEFAULT(0.002), FLAWS(yield_strain)},
+    {.name = "material.hardening_exponent", REAL, FROM_TO(0, 1), DEFAULT(0.1), FLAWS(hardening_exponent)},
+    {.name = "material.plastic_rate", .unit = "1/s", REAL, ABOVE(0), DEFAULT(0.002), FLAWS(plastic_rate)},
+    {.name = "material.transition_rate", .unit = "1/s", REAL, ABOVE(0), DEFAULT(1e6), FLAWS(transition_rate)},
+    {.name = "material.rate_exponent", REAL, FROM(1), DEFAULT(10), FLAWS(rate_exponent)},
 
     {.name = "interface.form", CHOICE(forms), DEFAULT(RG_FORM_VARIATIONAL), CASE(interface.form)},
     {.name = "interface.beta_s", REAL, ABOVE(0), DEFAULT(4), CASE(interface.beta_s)},
@@ -90,7 +111,7 @@ static const rg_key case_keys[] = {
     {.name = "output.interval", .type = RG_KEY_INTERVAL, OPTIONAL, CASE(output)},
     {.name = "output.probes", .type = RG_KEY_LIST, OPTIONAL, CASE(output.probe), .entry = &rg_probe_table,
      .offset_count = offsetof(rg_case, output.probes)},
-    {.name = "output.fields", .type = RG_KEY_FLAGS, .choice = fields, DEFAULT(ALL_FIELDS), CASE(output.fields)},
+    {.name = "output.fields", .type = RG_KEY_FLAGS, .choice = fields, DEFAULT(RG_FIELDS_COMMON), CASE(output.fields)},
     {.name = "output.energy_limit", REAL, ABOVE(0), DEFAULT(0.05), CASE(output.energy_limit)},
 };
 
@@ -181,9 +202,21 @@ const char *rg_key_allowed(const rg_key *key, char *text, size_t size) {
     return text;
 }
 
+void rg_models_words(const rg_key *key, char *text, size_t size) {
+    int used = 0;
+    for (int m = 0; m < RG_MATERIAL_MODELS && (size_t)used < size; m++) {
+        if ((key->models >> m & 1U) != 0) {
+            used += snprintf(text + used, size - (size_t)used, "%s%s", used > 0 ? ", " : "", models[m]);
+        }
+    }
+}
+
 /* ---- look-up ---- */
 
 bool rg_key_used(const rg_key *key, const void *base) {
+    if (key->models != 0 && (key->models >> ((const rg_case *)base)->material.model & 1U) == 0) {
+        return false;
+    }
     switch (key->group) {
     case RG_GROUP_BOX:
         return ((const rg_case *)base)->mesh.file == NULL;

@@ -49,6 +49,7 @@ typedef struct {
     rg_key_type type;
     rg_key_need need;
     rg_key_group group;
+    unsigned models;           /* materials.h: bits of the models that use it; 0: all */
     int count;                 /* numbers: 1 or 3 */
     double low, high;          /* numbers: range */
     bool low_open, high_open;  /* range without its ends */
@@ -66,13 +67,16 @@ typedef struct rg_key_table {
     size_t size; /* of the structure that the keys fill */
 } rg_key_table;
 
-enum { RG_MAX_KEYS = 64 }; /* at most, in a table */
+enum { RG_MAX_KEYS = 128 }; /* at most, in a table */
 
 /* A key comes after the keys that decide whether its group is used. */
 extern const rg_key_table rg_case_table, rg_boundary_table, rg_probe_table;
 
 /* What a value of the key must be, in words. Returns `text`. */
 const char *rg_key_allowed(const rg_key *key, char *text, size_t size);
+
+/* The models that use the key, in words. */
+void rg_models_words(const rg_key *key, char *text, size_t size);
 
 /* Whether the key is used in the filled structure `base`. */
 bool rg_key_used(const rg_key *key, const void *base);

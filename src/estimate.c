@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "error.h"
+#include "material.h"
 #include "mem.h"
 #include "mesh_info.h"
 
@@ -11,11 +12,11 @@
 
 /* Length of the cohesive zone of mode I, plane strain: (9 pi/32) E/(1 - nu^2) G_c/sigma_c^2 (thesis 2; Rice
  * 1968). */
-static double cohesive_zone(const rg_case *c) {
+static double cohesive_zone(const rg_case *c, const rg_material *m) {
     if (c->interface.law == RG_LAW_NONE) {
         return INFINITY;
     }
-    double modulus = c->material.young / (1 - c->material.poisson * c->material.poisson);
+    double modulus = 4 * m->mu * (m->lambda + m->mu) / (m->lambda + 2 * m->mu); /* E/(1 - nu^2) */
     return 9 * 3.14159265358979324 / 32 * modulus * c->interface.energy /
            (c->interface.strength * c->interface.strength);
 }
@@ -54,8 +55,8 @@ rg_estimate rg_estimate_run(const rg_solver *s) {
     rg_estimate e = {.elements = s->part->total,
                      .interfaces = s->part->interfaces,
                      .dofs = 3 * RG_NODES * s->part->total,
-                     .c_dilatational = sqrt((m->lambda + 2 * m->mu) / m->density),
-                     .c_shear = sqrt(m->mu / m->density),
+                     .c_dilatational = rg_material_dilatational(m),
+                     .c_shear = rg_material_shear(m),
                      .dt_critical = 2 / sqrt(s->omega2)};
     e.dt = c->time.safety * e.dt_critical;
     double steps = ceil(c->time.end / e.dt * (1 - 1e-12));
@@ -70,7 +71,7 @@ rg_estimate rg_estimate_run(const rg_solver *s) {
     e.bytes_per_element = bytes_per_element(s, false);
     e.peak_bytes_per_element = bytes_per_element(s, true);
     e.seconds = 1.3 * s->pass_seconds * (double)e.steps; /* a step is a pass, the update and some output */
-    e.cohesive_zone = cohesive_zone(c);
+    e.cohesive_zone = cohesive_zone(c, m);
     e.largest_edge = largest_edge(s);
     return e;
 }

@@ -100,7 +100,8 @@ static void finish_row(rg_csv *t) {
 
 void rg_csv_energy_header(rg_csv *t) {
     if (t->file != NULL) {
-        fputs("step,time,kinetic,bulk,penalty,cohesive,contact,dissipated,external_work,total,error_rel,"
+        fputs("step,time,kinetic,bulk,penalty,cohesive,contact,dissipated,plastic,damage,external_work,total,"
+              "error_rel,"
               "broken_area,"
               "failed_area,momentum_x,momentum_y,momentum_z,angular_x,angular_y,angular_z",
               t->file);
@@ -119,6 +120,8 @@ void rg_csv_energy(rg_csv *t, const rg_energy *e) {
                           e->cohesive,
                           e->contact,
                           e->dissipated,
+                          e->plastic,
+                          e->damage,
                           e->external,
                           e->total,
                           e->error,

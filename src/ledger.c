@@ -15,7 +15,8 @@ enum {
     INTERFACE,
     DISSIPATED = INTERFACE + RG_E_DISSIPATED,
     EXTERNAL,
-    BROKEN,
+    RELEASED,
+    BROKEN = RELEASED + RG_RELEASED,
     FAILED,
     VOLUME,
     MOMENTUM,
@@ -66,6 +67,10 @@ static void element_energies(rg_solver *s, const rg_tile *t, const rg_workspace 
     add_all(&sum[KINETIC], energy, blocks * RG_LANES);
     for (size_t slot = t->begin * RG_LANES; slot < t->end * RG_LANES; slot++) {
         if (s->domain->id[slot] >= 0) {
+            for (size_t k = 0; s->histories > 0 && k < RG_RELEASED; k++) {
+                size_t row = (size_t)(RG_GAUSS * s->histories) + k;
+                rg_exact_add(&sum[RELEASED + k], s->history[rg_history_index(slot, s->histories, row)]);
+            }
             rg_exact_add(&sum[VOLUME], s->domain->geom[rg_geom_index(slot, RG_GEOM_VOLUME)]);
             add_momentum(sum, s, slot);
         }
@@ -146,12 +151,15 @@ const rg_energy *rg_ledger_take(rg_ledger *l, rg_solver *s) {
                      .cohesive = part[RG_E_COHESIVE],
                      .contact = part[RG_E_CONTACT],
                      .dissipated = part[RG_E_DISSIPATED],
+                     .plastic = v[RELEASED + RG_RELEASED_PLASTIC],
+                     .damage = v[RELEASED + RG_RELEASED_DAMAGE],
                      .external = v[EXTERNAL],
                      .broken_area = v[BROKEN],
                      .failed_area = v[FAILED],
                      .momentum = {v[MOMENTUM], v[MOMENTUM + 1], v[MOMENTUM + 2]},
                      .angular_momentum = {v[ANGULAR], v[ANGULAR + 1], v[ANGULAR + 2]}};
-    double stored = e->kinetic + e->bulk + e->penalty + e->cohesive + e->contact + e->dissipated;
+    double stored =
+        e->kinetic + e->bulk + e->penalty + e->cohesive + e->contact + e->dissipated + e->plastic + e->damage;
     e->total = stored - e->external;
     if (!l->begun) {
         *l = (rg_ledger){.begun = true, .start = e->total, .last = *e};

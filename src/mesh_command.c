@@ -11,6 +11,7 @@
 #include "case.h"
 #include "error.h"
 #include "inp_read.h"
+#include "material.h"
 #include "mem.h"
 #include "mesh_case.h"
 #include "mesh_check.h"
@@ -184,8 +185,8 @@ static int show(const rg_mesh_arguments *a) {
         if (c == NULL) {
             return RG_USAGE;
         }
-        double nu = c->material.poisson; /* speed of dilatational waves */
-        speed = sqrt(c->material.young * (1 - nu) / ((1 + nu) * (1 - 2 * nu) * c->material.density));
+        rg_material m = rg_material_of_case(c);
+        speed = rg_material_dilatational(&m);
         rg_case_free(c);
     }
     rg_mesh *mesh = rg_mesh_file_read(a->input);

@@ -1,5 +1,6 @@
 #include "snapshot.h"
 
+#include <math.h>
 #include <omp.h>
 
 #include "crack_surface.h"
@@ -71,63 +72,119 @@ static void write_nodal(rg_snapshots *w, const rg_solver *s, const char *name, c
     rg_writer_volume(w->writer, name, unit, RG_CENTER_NODE, 3, w->sorted);
 }
 
-/* Mean Cauchy stress, mean stress and principal stresses of an element, from the stresses at its Gauss
- * points: ten values. */
-static void element_stress(const double *cauchy, double out[10]) {
+/* What an element puts out of its state: mean Cauchy stress, mean stress, principal stresses, triaxiality,
+ * damage, regime, plastic strain. */
+enum {
+    STRESS = 0,
+    MEAN = 6,
+    PRINCIPAL = 7,
+    TRIAXIALITY = 10,
+    INTERNAL = 11,
+    STATE = INTERNAL + RG_INTERNAL,
+};
+
+/* Fields made of them. */
+static const struct {
+    unsigned bit;
+    const char *name, *unit;
+    int from, components;
+} state_field[] = {
+    {RG_FIELD_STRESS, "stress", "Pa", STRESS, 6},
+    {RG_FIELD_MEAN, "mean_stress", "Pa", MEAN, 1},
+    {RG_FIELD_PRINCIPAL, "principal_stress", "Pa", PRINCIPAL, 3},
+    {RG_FIELD_DAMAGE, "damage", "1", INTERNAL + RG_INTERNAL_DAMAGE, 1},
+    {RG_FIELD_REGIME, "regime", "1", INTERNAL + RG_INTERNAL_REGIME, 1},
+    {RG_FIELD_PLASTIC, "plastic_strain", "1", INTERNAL + RG_INTERNAL_PLASTIC, 1},
+    {RG_FIELD_TRIAXIALITY, "triaxiality", "1", TRIAXIALITY, 1},
+};
+enum { STATE_FIELDS = sizeof state_field / sizeof *state_field };
+
+/* Mean over von Mises stress; 0 where there is no stress, infinite where there is no shear alone. */
+static double triaxiality(const double s[6], double mean) {
+    double square = 3 * (s[3] * s[3] + s[4] * s[4] + s[5] * s[5]);
+    for (int k = 0; k < 3; k++) {
+        square += 1.5 * (s[k] - mean) * (s[k] - mean);
+    }
+    return mean == 0 ? 0 : mean / sqrt(square);
+}
+
+/* Stresses of an element, from those at its Gauss points. */
+static void element_stress(const double *cauchy, double out[STATE]) {
     for (size_t k = 0; k < 6; k++) {
         out[k] = 0;
         for (size_t g = 0; g < RG_GAUSS; g++) {
             out[k] += cauchy[(g * 6 + k) * RG_LANES] / RG_GAUSS;
         }
     }
-    out[6] = (out[0] + out[1] + out[2]) / 3;
-    rg_principal(out, out + 7);
+    out[MEAN] = (out[0] + out[1] + out[2]) / 3;
+    rg_principal(out, out + PRINCIPAL);
+    out[TRIAXIALITY] = triaxiality(out, out[MEAN]);
 }
 
-/* Stresses of tile t, to its consecutive records. */
-static void tile_stresses(rg_snapshots *w, const rg_solver *s, const rg_tile *t, double *cauchy) {
+/* Internal variables of an element, likewise: means, and the largest regime. */
+static void element_internal(const double *internal, double out[STATE]) {
+    for (size_t k = 0; k < RG_INTERNAL; k++) {
+        double sum = 0, largest = 0;
+        for (size_t g = 0; g < RG_GAUSS; g++) {
+            double x = internal[(g * RG_INTERNAL + k) * RG_LANES];
+            sum += x / RG_GAUSS;
+            largest = fmax(largest, x);
+        }
+        out[INTERNAL + k] = k == RG_INTERNAL_REGIME ? largest : sum;
+    }
+}
+
+/* Room for the state at the Gauss points of a tile. */
+typedef struct {
+    double *cauchy, *internal;
+} gauss_state;
+
+/* State of tile t, to its consecutive records. */
+static void tile_states(rg_snapshots *w, const rg_solver *s, const rg_tile *t, const gauss_state *g) {
     const rg_workspace *work = &s->work[omp_get_thread_num()];
     size_t row = rg_slab_row(w->slab, s->domain, t->first), at = t->begin * RG_LANES;
     rg_bulk_args bulk = rg_tile_bulk(s, t, work);
-    rg_bulk_state_args args = {.bulk = &bulk, .cauchy = cauchy};
+    rg_bulk_state_args args = {.bulk = &bulk, .cauchy = g->cauchy, .internal = g->internal};
     rg_tile_receive(s, t, work);
     s->kernels->bulk_state(&args, 0, rg_tile_eblocks(t));
     for (size_t i = 0; at + i < t->end * RG_LANES && s->domain->id[at + i] >= 0; i++) {
-        element_stress(cauchy + i / RG_LANES * RG_GAUSS * 6 * RG_LANES + i % RG_LANES,
-                       w->record + 10 * (row + i));
+        size_t first = i / RG_LANES * RG_GAUSS, lane = i % RG_LANES;
+        double *record = w->record + STATE * (row + i);
+        element_stress(g->cauchy + first * 6 * RG_LANES + lane, record);
+        element_internal(g->internal + first * RG_INTERNAL * RG_LANES + lane, record);
     }
 }
 
-static void write_part(rg_snapshots *w, const char *name, int components, int from, double *part) {
+static void write_part(rg_snapshots *w, int field, double *part) {
+    size_t components = (size_t)state_field[field].components;
     for (size_t i = 0; i < w->slab->count; i++) {
-        for (int k = 0; k < components; k++) {
-            part[i * (size_t)components + (size_t)k] = w->sorted[i * 10 + (size_t)(from + k)];
+        for (size_t k = 0; k < components; k++) {
+            part[i * components + k] = w->sorted[i * STATE + (size_t)state_field[field].from + k];
         }
     }
-    rg_writer_volume(w->writer, name, "Pa", RG_CENTER_CELL, components, part);
+    rg_writer_volume(w->writer, state_field[field].name, state_field[field].unit, RG_CENTER_CELL,
+                     state_field[field].components, part);
 }
 
-static void write_stresses(rg_snapshots *w, rg_solver *s) {
+static void write_states(rg_snapshots *w, rg_solver *s) {
     const rg_domain *d = s->domain;
 #pragma omp parallel
     {
-        double *cauchy = RG_NEW(double, d->tile_blocks *RG_GAUSS * 6 * RG_LANES);
+        size_t points = d->tile_blocks * RG_GAUSS * RG_LANES;
+        gauss_state g = {RG_NEW(double, points * 6), RG_NEW(double, points *RG_INTERNAL)};
 #pragma omp for schedule(static)
         for (size_t t = 0; t < d->tiles; t++) {
-            tile_stresses(w, s, &d->tile[t], cauchy);
+            tile_states(w, s, &d->tile[t], &g);
         }
-        rg_free(cauchy);
+        rg_free(g.cauchy);
+        rg_free(g.internal);
     }
-    send(w, 10);
-    double *part = w->sorted + 10 * w->slab->count; /* behind the ten values each */
-    if (w->fields & RG_FIELD_STRESS) {
-        write_part(w, "stress", 6, 0, part);
-    }
-    if (w->fields & RG_FIELD_MEAN) {
-        write_part(w, "mean_stress", 1, 6, part);
-    }
-    if (w->fields & RG_FIELD_PRINCIPAL) {
-        write_part(w, "principal_stress", 3, 7, part);
+    send(w, STATE);
+    double *part = w->sorted + STATE * w->slab->count; /* behind the values of the elements */
+    for (int k = 0; k < STATE_FIELDS; k++) {
+        if (w->fields & state_field[k].bit) {
+            write_part(w, k, part);
+        }
     }
 }
 
@@ -162,8 +219,8 @@ void rg_snapshots_write(rg_snapshots *w, rg_solver *s) {
     if (w->fields & RG_FIELD_VELOCITY) {
         write_nodal(w, s, "velocity", "m/s", s->now);
     }
-    if (w->fields & (RG_FIELD_STRESS | RG_FIELD_MEAN | RG_FIELD_PRINCIPAL)) {
-        write_stresses(w, s);
+    if (w->fields & ~(unsigned)(RG_FIELD_DISPLACEMENT | RG_FIELD_VELOCITY | RG_FIELD_CRACK)) {
+        write_states(w, s);
     }
     if (w->fields & RG_FIELD_CRACK) {
         write_cracks(w, s);

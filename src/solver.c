@@ -6,12 +6,17 @@
 
 #include "element.h"
 #include "error.h"
+#include "material.h"
 #include "mem.h"
 #include "mesh_case.h"
 #include "patch.h"
 #include "tile.h"
 
 /* ---- Set-up ---- */
+
+size_t rg_solver_history(const rg_solver *s) {
+    return s->domain->blocks * rg_history_rows(s->histories) * RG_LANES;
+}
 
 static void allocate_fields(rg_solver *s) {
     const rg_domain *d = s->domain;
@@ -23,6 +28,7 @@ static void allocate_fields(rg_solver *s) {
     s->tile_stiffening = RG_NEW(rg_real, d->tiles);
     s->crack = rg_alloc_sparse(d->iblocks * RG_CRACK_BLOCK, sizeof *s->crack);
     s->crack_stride = RG_CRACK_BLOCK;
+    s->history = s->histories > 0 ? RG_NEW(rg_real, rg_solver_history(s)) : NULL;
     s->cracked = RG_NEW(uint8_t, blocks);
     s->broken = RG_NEW(uint8_t, d->iblocks * RG_LANES);
     s->unlinked = RG_NEW(uint8_t, d->iblocks * RG_LANES);
@@ -37,8 +43,12 @@ static void allocate_fields(rg_solver *s) {
 static void place_tile(rg_solver *s, const rg_tile *t) {
     size_t at = t->begin * RG_NODE_BLOCK, bytes = rg_tile_eblocks(t) * RG_NODE_BLOCK * sizeof *s->u;
     size_t seams = rg_tile_seams(t) * RG_LANES * sizeof *s->tractions;
+    size_t history = rg_history_rows(s->histories) * RG_LANES;
     memset(s->u + at, 0, bytes);
     memset(s->velocity + at, 0, bytes);
+    if (history > 0) {
+        memset(s->history + t->begin * history, 0, rg_tile_eblocks(t) * history * sizeof *s->history);
+    }
     memset(s->tractions + t->row * RG_SEAM_ROW, 0, seams * RG_SEAM_ROW);
     for (int k = 0; k < 2; k++) {
         memset(s->rows[k] + t->row * RG_TRACE_ROW, 0, seams * RG_TRACE_ROW);
@@ -61,13 +71,6 @@ static void place_fields(rg_solver *s) {
             place_tile(s, &d->tile[t]);
         }
     }
-}
-
-static rg_material make_material(const rg_case *c) {
-    double e = c->material.young, nu = c->material.poisson;
-    return (rg_material){.lambda = e * nu / ((1 + nu) * (1 - 2 * nu)),
-                         .mu = e / (2 * (1 + nu)),
-                         .density = c->material.density};
 }
 
 static rg_cohesive make_law(const rg_case *c) {
@@ -97,7 +100,8 @@ rg_solver *rg_solver_make_from_part(const rg_case *input, rg_part *part, MPI_Com
                      .threads = omp_get_max_threads(),
                      .part = part,
                      .limiting = -1,
-                     .material = make_material(input),
+                     .material = rg_material_of_case(input),
+                     .histories = rg_material_history(input->material.model),
                      .law = make_law(input),
                      .lift = input->interface.form == RG_FORM_VARIATIONAL,
                      .lumped = input->mass == RG_MASS_LUMPED};
@@ -136,6 +140,7 @@ typedef struct {
     bool move;    /* the step goes on: drift and publish at once */
     bool observe; /* `now` is wanted everywhere */
     bool constrain;
+    bool advance; /* the history of the material goes on by the step that led here: once for each state */
 } impulse;
 
 /* Tells the elements beside broken points, so that the lift leaves those points out. */
@@ -182,6 +187,7 @@ static void inside(rg_solver *s, size_t tile, const rg_workspace *w, const impul
     const rg_tile *t = &s->domain->tile[tile];
     size_t blocks = rg_tile_eblocks(t);
     rg_bulk_args bulk = rg_tile_bulk(s, t, w);
+    bulk.advance = p->advance;
     rg_interface_args interface = rg_tile_interfaces(s, t, w);
     rg_trace_args traces = rg_tile_traces(s, t, w, false);
     s->kernels->receive(&traces, 0, rg_tile_seams(t));
@@ -363,8 +369,12 @@ void rg_solver_start(rg_solver *s) {
 /* What a kick with a step `dt` ahead of it does. */
 static impulse prepare(rg_solver *s, double dt) {
     s->dt_next = dt;
+    if (s->dt > 0) {
+        rg_material_prepare(&s->material, s->dt);
+    }
     rg_constraints_set(s->constraints, s->time, dt, s->step > 0);
-    return (impulse){.velocity = s->velocity, .dt = 0.5 * (s->dt + dt), .constrain = true};
+    return (impulse){
+        .velocity = s->velocity, .dt = 0.5 * (s->dt + dt), .constrain = true, .advance = s->dt > 0};
 }
 
 /* The displacement has moved. */
@@ -423,7 +433,7 @@ void rg_solver_free(rg_solver *s) {
     }
     void *blocks[] = {s->u,         s->velocity, s->now,      s->crack,  s->stiffening, s->tile_stiffening,
                       s->cracked,   s->broken,   s->unlinked, s->active, s->rows[0],    s->rows[1],
-                      s->tractions, s->watched,  s->work};
+                      s->tractions, s->watched,  s->work,     s->history};
     rg_constraints_free(s->constraints);
     rg_halo_free(s->halo_u[0]);
     rg_halo_free(s->halo_u[1]);

@@ -3,7 +3,9 @@
  * A step from state n to n + 1 is a kick and a drift. The kick evaluates the forces of u(n) in two sweeps
  * over the tiles: elements and the interfaces inside them, whose results never leave the cache; then, when
  * the tractions of all tiles are known, the seams. The drift moves u and publishes the traces of the seams.
- */
+ *
+ * A material with a history goes on in the kick, by the step that led to u(n): once for each state. Between
+ * kick and drift stress and energy are those that the forces were made of. */
 #ifndef RG_SOLVER_H
 #define RG_SOLVER_H
 
@@ -39,6 +41,8 @@ struct rg_solver {
     rg_real *u, *velocity, *now; /* layout.h; now: velocity at the time of u, where it was asked for */
     rg_real *crack;
     size_t crack_stride;
+    rg_real *history; /* layout.h: of the material, `histories` values a point; NULL where that is 0 */
+    int histories;
     rg_real *stiffening; /* [blocks][lane] */
     rg_real *tile_stiffening;
     double stiffening_here,
@@ -79,6 +83,9 @@ rg_solver *rg_solver_make_from_part(const rg_case *input, rg_part *part, MPI_Com
 /* Initial displacement and velocity, constraints, stiffening at t = 0. Collective. */
 void rg_solver_start(rg_solver *s);
 
+/* Values of `history` on this rank. */
+size_t rg_solver_history(const rg_solver *s);
+
 /* Forces of the current displacement; velocities go on to the middle of a step `dt`, and `now` becomes the
  * velocity at the current time everywhere, with the constraints. Collective. */
 void rg_solver_kick(rg_solver *s, double dt);
@@ -89,7 +96,8 @@ void rg_solver_drift(rg_solver *s);
 /* Kick and drift at once, tile by tile; `now` is only known to the watcher. Collective. Allocates nothing. */
 void rg_solver_step(rg_solver *s, double dt);
 
-/* velocity += dt M^-1 (all forces of u), without constraints. For the spectrum. Collective. */
+/* velocity += dt M^-1 (all forces of u), without constraints. The history stays. For
+ * the spectrum. Collective. */
 void rg_solver_impulse(rg_solver *s, rg_real *velocity, double dt);
 
 /* Both exchanges of a step with nothing to hide them, as a measurement: the rows are not of one state.

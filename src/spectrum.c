@@ -322,6 +322,8 @@ static void rest(rg_solver *s) {
 void rg_spectrum_whole(rg_solver *s) {
     rg_cohesive law = s->law;
     rg_real *crack = s->crack;
+    rg_material_model model = s->material.model;
+    s->material.model = RG_MATERIAL_NEO_HOOKEAN; /* of the same elastic constants: linear at rest */
     const rg_material *m = &s->material;
     linear_operator op = {.s = s, .height = smallest_height(s)};
     op.scale = (m->lambda + 2 * m->mu) / m->density / (op.height * op.height);
@@ -346,6 +348,7 @@ void rg_spectrum_whole(rg_solver *s) {
     set_state(s, INTACT, shared);
     s->law = law;
     s->crack = crack;
+    s->material.model = model;
     s->crack_stride = RG_CRACK_BLOCK;
     rest(s);
     rg_free(shared);

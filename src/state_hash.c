@@ -17,6 +17,9 @@ static uint64_t element_hash(const rg_solver *s, size_t slot) {
         size_t at = rg_node_index(slot, k / 3, k % 3);
         h = chain(chain(h, s->u[at]), s->now[at]);
     }
+    for (size_t row = 0; row < rg_history_rows(s->histories); row++) {
+        h = chain(h, s->history[rg_history_index(slot, s->histories, row)]);
+    }
     return h;
 }
 

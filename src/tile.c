@@ -15,6 +15,11 @@ rg_trace_args rg_tile_traces(const rg_solver *s, const rg_tile *t, const rg_work
                            .ghost = w->ghost};
 }
 
+static rg_real *history_of(const rg_solver *s, const rg_tile *t) {
+    size_t block = rg_history_rows(s->histories) * RG_LANES;
+    return block == 0 ? NULL : s->history + t->begin * block;
+}
+
 rg_bulk_args rg_tile_bulk(const rg_solver *s, const rg_tile *t, const rg_workspace *w) {
     const rg_domain *d = s->domain;
     return (rg_bulk_args){.material = s->material,
@@ -26,6 +31,7 @@ rg_bulk_args rg_tile_bulk(const rg_solver *s, const rg_tile *t, const rg_workspa
                           .interface = d->interface + t->begin * RG_LINK_BLOCK,
                           .cracked = s->cracked + t->begin,
                           .unlinked = s->unlinked + t->ibegin * RG_LANES,
+                          .history = history_of(s, t),
                           .force = w->force,
                           .traction = w->traction,
                           .stiffening = s->stiffening + t->begin * RG_LANES};

@@ -39,12 +39,12 @@ void RG_ISA_NAME(points_step)(const points *p, size_t blocks) {
 void RG_ISA_NAME(points_at_rest)(const points *p, size_t blocks) {
     for (size_t b = 0; b < blocks; b++) {
         for (size_t lane = 0; lane < RG_LANES; lane += RG_VLEN) {
-            rg_vec F[3][3], P[3][3], history[RG_DE_HISTORY], energy;
+            rg_vec F[3][3], P[3][3], history[RG_DE_HISTORY];
             load(p->F + b * 9 * RG_LANES + lane, 9, F[0]);
             load(p->history + b * RG_DE_HISTORY * RG_LANES + lane, RG_DE_HISTORY, history);
-            rg_de_at_rest(p->constants, F, history, P, &energy);
+            rg_de_result r = rg_de_at_rest(p->constants, F, history, P);
             store(p->P + b * 9 * RG_LANES + lane, 9, P[0]);
-            rg_store(p->result + (b * POINT_RESULT + POINT_ENERGY) * RG_LANES + lane, energy);
+            rg_store(p->result + (b * POINT_RESULT + POINT_ENERGY) * RG_LANES + lane, r.energy);
         }
     }
 }

@@ -337,7 +337,8 @@ input *input_make(input_kind kind, rg_cohesive law, uint64_t seed, uint64_t orde
     input *in = input_alloc(sizeof *in);
     in->seed = seed;
     in->law = law;
-    in->material = (rg_material){young * nu / ((1 + nu) * (1 - 2 * nu)), young / (2 + 2 * nu), 3690};
+    in->material = (rg_material){
+        .lambda = young * nu / ((1 + nu) * (1 - 2 * nu)), .mu = young / (2 + 2 * nu), .density = 3690};
     allocate(in);
     shuffle(in->element, INPUT_ESLOTS, order ? rg_hash(order, 1) : 0);
     shuffle(in->slot, INPUT_ISLOTS, order ? rg_hash(order, 2) : 0);

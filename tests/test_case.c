@@ -14,6 +14,7 @@
 
 #include "../src/case.h"
 #include "../src/case_key.h"
+#include "../src/material.h"
 
 #ifndef RG_SOURCE_ROOT
 #define RG_SOURCE_ROOT "." /* run from the root of the tree */
@@ -383,10 +384,14 @@ static void test_spall_shows_every_key(void **state) {
 #define ONE_OF   "allowed: exactly one of velocity, displacement\n"
 #define ENTRIES  "allowed: list of {set, component, velocity or displacement}\n"
 #define INTERVAL "allowed: integer >= 1 (steps), or number > 0 and < 1 (simulated seconds)\n"
-#define FIELDS   "allowed: list from displacement, velocity, stress, mean_stress, principal_stress, crack"
-#define NAMES    "allowed: letters, digits, _ and -; unique among the probes\n"
-#define UNUSED   ": not used, because interface.law is none\n"
-#define SPECIAL  ": anchors, aliases and tags are not supported\n"
+#define FIELDS                                                                                               \
+    "allowed: list from displacement, velocity, stress, mean_stress, principal_stress, crack, "              \
+    "damage, regime, plastic_strain, triaxiality"
+#define MODELS  "neo-hookean, deshpande-evans"
+#define CERAMIC ": not used, because material.model is neo-hookean; it belongs to deshpande-evans\n"
+#define NAMES   "allowed: letters, digits, _ and -; unique among the probes\n"
+#define UNUSED  ": not used, because interface.law is none\n"
+#define SPECIAL ": anchors, aliases and tags are not supported\n"
 
 static const struct mistake {
     const char *from, *to, *messages;
@@ -440,7 +445,7 @@ static const struct mistake {
     {"output:\n", "output:\n  interval: often\n", ":18:13: output.interval: often: not a number; " INTERVAL},
     /* words */
     {"neo-hookean", "neohookean",
-     ":5:10: material.model: neohookean: not one of the allowed words; allowed: neo-hookean; "
+     ":5:10: material.model: neohookean: not one of the allowed words; allowed: " MODELS "; "
      "did you mean 'neo-hookean'?\n"},
     {"linear", "lnear",
      ":10:8: interface.law: lnear: not one of the allowed words; allowed: none, linear; did you mean "
@@ -453,6 +458,11 @@ static const struct mistake {
     {"output:\n", "output:\n  fields: [stres, crack, crack]\n",
      ":18:12: output.fields[0]: stres: not one of the allowed words; " FIELDS "; did you mean 'stress'?\n"
      ":18:26: output.fields[2]: crack: given twice; " FIELDS "\n"},
+    {"output:\n", "output:\n  fields: [crack, regime, damage]\n",
+     ":18:11: output.fields: damage: material.model has no such field\n"
+     ":18:11: output.fields: regime: material.model has no such field\n"},
+    {"  poisson: 0.21\n", "  poisson: 0.21\n  shear: 146e9\n  friction: -1\n",
+     ":8:3: material.shear: 146e9" CERAMIC ":9:3: material.friction: -1" CERAMIC},
     {"output:\n", "output:\n  fields: crack\n", ":18:11: output.fields: crack: not a list; " FIELDS "\n"},
     {"mesh:\n", "mesh:\n  file: a.msh\n",
      ":2:9: mesh.file: a.msh: cannot be read: No such file or directory; "
@@ -564,6 +574,74 @@ static void test_override_mistakes(void **state) {
     expect_messages(2, twice, "--set time.end=2e-6: time.end: set twice\n");
 }
 
+static const char elastic[] = "material:\n  model: neo-hookean\n  young: 260e9\n";
+static const char ceramic[] = "material:\n  model: deshpande-evans\n  shear: 146e9\n  flaw_radius: 19e-6\n"
+                              "  flaw_density: 1e12\n  toughness: 3e6\n  yield_stress: 4e9\n";
+
+#ifdef RG_SINGLE
+
+static void test_ceramic(void **state) {
+    (void)state;
+    write_changed(elastic, ceramic);
+    expect_messages(
+        0, NULL,
+        ":5:10: material.model: deshpande-evans: needs double precision, and this program is built "
+        "with -Dprecision=single\n");
+}
+
+#else
+
+/* The smallest ceramic is that of the table; then everything that can be wrong with one at once. */
+static void test_ceramic(void **state) {
+    (void)state;
+    write_changed(elastic, ceramic);
+    rg_case *c = read_good(path, 0, NULL);
+    rg_deshpande_evans table = rg_deshpande_evans_alumina();
+    rg_material m = rg_material_of_case(c);
+    table.poisson = 0.21;
+    table.density = 3690;
+    assert_memory_equal(&m.of.deshpande_evans.parameters, &table, offsetof(rg_deshpande_evans, single_pi));
+    assert_true(!m.of.deshpande_evans.parameters.single_pi && c->output.fields == 1023U && m.mu == 146e9);
+    rg_case_free(c);
+    static const char *const derived[] = {"material.interaction=derived"};
+    check_round_trip(path, 1, derived);
+    write_changed(
+        "material:\n  model: neo-hookean\n",
+        "material:\n  model: deshpande-evans\n  shear: 0\n  flaw_radius: -1\n  alpha: 1.5\n  beta: 0\n"
+        "  gamma: 0\n  friction: -1\n  growth_speed: 0\n  growth_exponent: 0\n  interaction: pi\n"
+        "  damage_max: 1\n  yield_strain: 0\n  hardening_exponent: 2\n  plastic_rate: 0\n"
+        "  transition_rate: 0\n  rate_exponent: 0.5\n");
+    expect_messages(
+        0, NULL,
+        ":5:3: material.flaw_density: missing; allowed: number > 0 (1/m3)\n"
+        ":5:3: material.toughness: missing; allowed: number > 0 (Pa sqrt(m))\n"
+        ":5:3: material.yield_stress: missing; " YOUNG ":6:10: material.shear: 0: out of range; " YOUNG
+        ":7:16: material.flaw_radius: -1: out of range; allowed: number > 0 (m)\n"
+        ":8:10: material.alpha: 1.5: out of range; allowed: number > 0 and <= 1\n"
+        ":9:9: material.beta: 0: out of range; allowed: number > 0\n"
+        ":10:10: material.gamma: 0: out of range; allowed: number > 0\n"
+        ":11:13: material.friction: -1: out of range; allowed: number >= 0\n"
+        ":12:17: material.growth_speed: 0: out of range; allowed: number > 0 (m/s)\n"
+        ":13:20: material.growth_exponent: 0: out of range; allowed: number > 0\n"
+        ":14:16: material.interaction: pi: not one of the allowed words; allowed: thesis, derived\n"
+        ":15:15: material.damage_max: 1: out of range; allowed: number > 0 and < 1\n"
+        ":16:17: material.yield_strain: 0: out of range; allowed: number > 0\n"
+        ":17:23: material.hardening_exponent: 2: out of range; allowed: number >= 0 and <= 1\n"
+        ":18:17: material.plastic_rate: 0: out of range; allowed: number > 0 (1/s)\n"
+        ":19:20: material.transition_rate: 0: out of range; allowed: number > 0 (1/s)\n"
+        ":20:18: material.rate_exponent: 0.5: out of range; allowed: number >= 1\n"
+        ":21:3: material.young: 260e9: not used, because material.model is deshpande-evans; it "
+        "belongs to neo-hookean\n");
+    write_changed(elastic, ceramic);
+    static const char *const many[] = {"material.flaw_density=1e15"};
+    expect_messages(
+        1, many,
+        "--set material.flaw_density=1e15: material.flaw_density: 1e15: the damage to begin with, "
+        "4/3 pi (alpha flaw_radius)^3 flaw_density, is 10.16: not below damage_max, 0.999\n");
+}
+
+#endif
+
 /* One run shows all problems, in the order of the file, those of overrides last. */
 static void test_all_at_once(void **state) {
     (void)state;
@@ -616,6 +694,7 @@ int main(void) {
         cmocka_unit_test(test_nul_byte),
         cmocka_unit_test(test_deep_nesting),
         cmocka_unit_test(test_override_mistakes),
+        cmocka_unit_test(test_ceramic),
         cmocka_unit_test(test_all_at_once),
         cmocka_unit_test(test_unreadable),
     };

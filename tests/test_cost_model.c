@@ -117,7 +117,8 @@ static void bind_elements(call *c) {
     input *in = c->in;
     c->bulk = input_bulk_args(in, c->out[0], c->out[1], c->out[2]);
     c->bulk.lift = v->lift;
-    c->bulk_state = (rg_bulk_state_args){&c->bulk, c->out[0], v->cauchy ? c->out[1] : NULL};
+    c->bulk_state =
+        (rg_bulk_state_args){.bulk = &c->bulk, .energy = c->out[0], .cauchy = v->cauchy ? c->out[1] : NULL};
     c->kick = (rg_kick_args){.density = in->material.density,
                              .lumped = v->lumped,
                              .dt = 1e-9,

@@ -117,8 +117,9 @@ static const range all_elements = {0, INPUT_EBLOCKS}, all_interfaces = {0, INPUT
 /* Rows of state outputs count from the first block of the range; here they go to the block's own place. */
 static void run_elements(const rg_kernels *set, const input *in, range r, output *out) {
     rg_bulk_args bulk = input_bulk_args(in, out->force, out->traction, out->stiffening);
-    rg_bulk_state_args state = {&bulk, out->energy + r.begin * RG_LANES,
-                                out->cauchy + r.begin * 24 * RG_LANES};
+    rg_bulk_state_args state = {.bulk = &bulk,
+                                .energy = out->energy + r.begin * RG_LANES,
+                                .cauchy = out->cauchy + r.begin * 24 * RG_LANES};
     rg_kinetic_args kinetic = {in->material.density, false, in->geom, in->velocity,
                                out->kinetic + r.begin * RG_LANES};
     rg_kick_args kick = {
@@ -413,8 +414,8 @@ static void check_state(const rg_kernels *set, input_kind kind, rg_cohesive law)
     output before = output_make(in);
     rg_bulk_args bulk = input_bulk_args(in, NULL, NULL, NULL);
     rg_interface_args args = input_interface_args(in, in->broken, in->unlinked, in->active, in->crack, NULL);
-    set->bulk_state(&(rg_bulk_state_args){&bulk, before.energy, NULL}, 0, INPUT_EBLOCKS);
-    set->bulk_state(&(rg_bulk_state_args){&bulk, NULL, before.cauchy}, 0, INPUT_EBLOCKS);
+    set->bulk_state(&(rg_bulk_state_args){.bulk = &bulk, .energy = before.energy}, 0, INPUT_EBLOCKS);
+    set->bulk_state(&(rg_bulk_state_args){.bulk = &bulk, .cauchy = before.cauchy}, 0, INPUT_EBLOCKS);
     set->interface_state(&(rg_interface_state_args){&args, before.ienergy}, 0, INPUT_IBLOCKS);
     assert_memory_equal(before.broken, in->broken, INPUT_ISLOTS);
     assert_memory_equal(before.unlinked, in->unlinked, INPUT_ISLOTS);

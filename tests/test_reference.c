@@ -72,7 +72,7 @@ static double evaluate(body *b) {
     interface.traction = b->traction;
     b->set->bulk(&bulk, 0, INPUT_EBLOCKS);
     b->set->interface(&interface, 0, INPUT_IBLOCKS);
-    b->set->bulk_state(&(rg_bulk_state_args){&bulk, b->energy, NULL}, 0, INPUT_EBLOCKS);
+    b->set->bulk_state(&(rg_bulk_state_args){.bulk = &bulk, .energy = b->energy}, 0, INPUT_EBLOCKS);
     for (size_t e = 0; e < INPUT_ELEMENTS; e++)
         sum += b->energy[in->element[e]];
     b->set->interface_state(&(rg_interface_state_args){&interface, b->energy}, 0, INPUT_IBLOCKS);
@@ -226,7 +226,7 @@ static void mean_stress(const body *b, size_t e, double p[9]) {
 /* Energy density of element e. */
 static double density_of(body *b, size_t e) {
     rg_bulk_args bulk = input_bulk_args(b->in, b->force, b->traction, b->stiffening);
-    b->set->bulk_state(&(rg_bulk_state_args){&bulk, b->energy, NULL}, 0, INPUT_EBLOCKS);
+    b->set->bulk_state(&(rg_bulk_state_args){.bulk = &bulk, .energy = b->energy}, 0, INPUT_EBLOCKS);
     return b->energy[b->in->element[e]] / b->in->geom[rg_geom_index(b->in->element[e], RG_GEOM_VOLUME)];
 }
 
@@ -272,7 +272,7 @@ static void check_cauchy(const rg_kernels *set) {
     set_smooth(b.in, 0);
     evaluate(&b);
     rg_bulk_args bulk = input_bulk_args(b.in, b.force, b.traction, b.stiffening);
-    set->bulk_state(&(rg_bulk_state_args){&bulk, NULL, cauchy}, 0, INPUT_EBLOCKS);
+    set->bulk_state(&(rg_bulk_state_args){.bulk = &bulk, .cauchy = cauchy}, 0, INPUT_EBLOCKS);
     for (size_t e = 0; e < INPUT_ELEMENTS; e++) {
         size_t s = b.in->element[e];
         mean_stress(&b, e, p);

@@ -377,7 +377,8 @@ static void run_bulk(const rg_kernels *set, rg_bulk_args args, void *out[BULK]) 
     args.traction = out[TRACTION];
     args.stiffening = out[STIFFENING];
     set->bulk(&args, 0, INPUT_EBLOCKS);
-    set->bulk_state(&(rg_bulk_state_args){&args, out[ENERGY], out[CAUCHY]}, 0, INPUT_EBLOCKS);
+    set->bulk_state(&(rg_bulk_state_args){.bulk = &args, .energy = out[ENERGY], .cauchy = out[CAUCHY]}, 0,
+                    INPUT_EBLOCKS);
 }
 
 static void check_bulk(const rg_kernels *set, input_kind kind, rg_cohesive law) {

@@ -1,0 +1,20 @@
+/* The material of a case, as the kernels take it. */
+#ifndef RG_MATERIAL_H
+#define RG_MATERIAL_H
+
+#include "case.h"
+#include "kernels.h"
+
+/* Elastic constants, density, and what else the model needs, ready for use at rest. */
+rg_material rg_material_of_case(const rg_case *c);
+
+/* Speed of dilatational and of shear waves in the undamaged solid (m/s). */
+double rg_material_dilatational(const rg_material *m);
+double rg_material_shear(const rg_material *m);
+
+/* Fields (case.h) that a run of the model puts out where the case asks for none in particular, and all that
+ * it can put out. */
+unsigned rg_material_default_fields(rg_material_model model);
+unsigned rg_material_possible_fields(rg_material_model model);
+
+#endif

@@ -1,0 +1,101 @@
+"""The Deshpande-Evans ceramic in a run: its elastic limit, the ledger, and the same bits on any layout."""
+
+import numpy as np
+import pytest
+from conftest import CASES, SINGLE
+from test_parallel import LAYOUTS, assert_same_bits
+
+pytestmark = pytest.mark.skipif(SINGLE, reason="the ceramic needs double precision")
+
+CERAMIC = CASES / "ceramic.yaml"
+SHEAR, POISSON = 146e9, 0.2
+INITIAL_DAMAGE = 4 / 3 * np.pi * (19e-6 / np.sqrt(2)) ** 3 * 1e12
+BREAKS = {"interface": {"law": "linear", "strength": 400e6, "energy": 34, "beta": 0}}
+
+
+def collision(speed):
+    return {"initial.velocity.z": f"-{speed}*tanh(z/0.1e-3)"}
+
+
+# ---- Elastic limit ----
+
+ELASTIC = {"time.end": 0.1e-6, "output.interval": 0.1e-6, "output.fields": ["displacement", "stress"]}
+NO_FLAWS = {"material.flaw_density": 1e-3, "material.toughness": 1e9, "material.yield_stress": 1e15}
+NEO_HOOKEAN = {"material": {"model": "neo-hookean", "young": 2 * SHEAR * (1 + POISSON), "poisson": POISSON,
+                            "density": 3700}}
+
+
+def test_without_flaws_and_flow_small_strains_are_those_of_the_elastic_solid(run):
+    def difference(speed):
+        sets = {**ELASTIC, **collision(speed)}
+        ceramic = run(CERAMIC, sets={**sets, **NO_FLAWS}).frames()[-1]
+        elastic = run(CERAMIC, sets={**sets, **NEO_HOOKEAN}).frames()[-1]
+        return np.array([np.abs(ceramic[name] - elastic[name]).max() / np.abs(elastic[name]).max()
+                         for name in ELASTIC["output.fields"]])
+
+    large, small = difference(4.0), difference(0.4)  # strains of 4e-4 and 4e-5
+    assert (large < 2e-3).all() and (small > 1e-7).all()
+    assert np.allclose(large / small, 10, rtol=0.05)  # of first order in the strain
+
+
+# ---- Ledger ----
+
+
+FORMS = {"variational": {}, "incomplete": {"interface.form": "incomplete", "interface.beta_s": 40}}
+
+
+@pytest.fixture(params=FORMS)
+def crushed(request, run):
+    return run(CERAMIC, sets={"time.end": 0.1e-6, **FORMS[request.param]})
+
+
+def test_ledger_closes_where_cracks_grow_and_the_solid_flows(crushed):
+    energy = crushed.energy
+    assert crushed.summary["status"] == "completed"
+    assert crushed.summary["plastic_J"] > 1e-4 * energy["kinetic"][0]
+    assert crushed.summary["damage_J"] > 0.02 * energy["kinetic"][0]
+    assert np.abs(energy["error_rel"]).max() < 5e-3
+    assert (np.diff(energy["plastic"]) >= 0).all()
+    parts = ("kinetic", "bulk", "penalty", "cohesive", "contact", "dissipated", "plastic", "damage")
+    assert np.allclose(sum(energy[name] for name in parts) - energy["external_work"], energy["total"], rtol=1e-12)
+
+
+def test_fields_show_what_the_material_did(crushed):
+    last = crushed.frames()[-1]
+    assert (last["damage"] >= INITIAL_DAMAGE * (1 - 1e-12)).all() and 0.9 < last["damage"].max() < 1
+    assert set(np.unique(last["regime"])) <= {1, 2, 3} and last["plastic_strain"].max() > 5e-4
+    s = last["stress"]  # xx xy xz yy yz zz
+    mean = (s[:, 0] + s[:, 3] + s[:, 5]) / 3
+    mises = np.sqrt(1.5 * ((s[:, [0, 3, 5]] - mean[:, None]) ** 2).sum(axis=1) + 3 * (s[:, [1, 2, 4]] ** 2).sum(axis=1))
+    assert np.allclose(last["triaxiality"].ravel() * mises, mean, rtol=0, atol=1e-9 * np.abs(s).max())
+
+
+def test_fields_of_the_virgin_material(run):
+    first = run(CERAMIC, sets={"time.steps": 1, "output.interval": 1}).frames()[0]
+    assert np.allclose(first["damage"], INITIAL_DAMAGE, rtol=1e-12)
+    for name in ("plastic_strain", "regime", "triaxiality"):
+        assert (first[name] == 0).all()
+
+
+# ---- Bits ----
+
+
+@pytest.mark.parametrize("ranks, threads", LAYOUTS)
+def test_a_ceramic_that_cracks_and_flows_is_the_same_on_any_layout(run, ranks, threads):
+    sets = {**BREAKS, "time.end": 0.1e-6, "output.energy_limit": 1e9}
+    one, other = run(CERAMIC, sets=sets), run(CERAMIC, ranks=ranks, threads=threads, sets=sets)
+    assert one.summary["plastic_J"] > 0 and one.summary["damage_J"] != 0 and one.summary["broken_area_m2"] > 0
+    assert_same_bits(one, other)
+
+
+def test_hash_knows_the_history(run):
+    sets = {"time.end": 2e-8, **collision(100)}
+    one = run(CERAMIC, sets={**sets, "material.growth_speed": 1e-12})
+    other = run(CERAMIC, sets={**sets, "material.growth_speed": 1.0001e-12})
+    assert one.summary["state_hash"] != other.summary["state_hash"]
+
+
+def test_output_does_not_advance_the_history(run):
+    often = run(CERAMIC, sets={"time.end": 5e-8, "output.interval": 1, "output.fields": []})
+    seldom = run(CERAMIC, sets={"time.end": 5e-8, "output.interval": 5e-8, "output.fields": []})
+    assert often.summary["state_hash"] == seldom.summary["state_hash"]
