@@ -314,6 +314,6 @@ void rg_reference_point_deshpande_evans(const rg_material *m, bool advance, doub
     out->released[RG_RELEASED_PLASTIC] = r.plastic;
     out->released[RG_RELEASED_DAMAGE] = r.damage;
     out->internal[RG_INTERNAL_DAMAGE] = rg_de_damage(&de->parameters, history[RG_DE_GROWTH]);
-    out->internal[RG_INTERNAL_REGIME] = r.regime;
+    out->internal[RG_INTERNAL_REGIME] = r.energy > 0 ? r.regime : 0;
     out->internal[RG_INTERNAL_PLASTIC] = history[RG_DE_STRAIN];
 }
