@@ -13,22 +13,28 @@ typedef struct {
     rg_cost_kernel kernel;
     int broken; /* per cent of the faces */
     rg_cost_variant flags;
+    bench_state state; /* of a material with a history */
 } kernel_case;
 
+#define CERAMIC RG_MATERIAL_DESHPANDE_EVANS
+
 static const kernel_case cases[] = {
-    {"bulk lifted", RG_COST_BULK, 0, {.lift = true}},
-    {"bulk lifted, 10 % broken", RG_COST_BULK, 10, {.lift = true}},
-    {"bulk not lifted", RG_COST_BULK, 0, {.lift = false}},
-    {"interface intact", RG_COST_INTERFACE, 0, {.lift = true}},
-    {"interface 10 % broken", RG_COST_INTERFACE, 10, {.lift = true}},
-    {"interface all broken", RG_COST_INTERFACE, 100, {.lift = true}},
-    {"kick consistent", RG_COST_KICK, 0, {.lumped = false}},
-    {"kick lumped", RG_COST_KICK, 0, {.lumped = true}},
-    {"drift", RG_COST_DRIFT, 0, {.lumped = false}},
-    {"bulk state", RG_COST_BULK_STATE, 0, {.lift = true, .cauchy = true}},
-    {"kinetic", RG_COST_KINETIC, 0, {.lumped = false}},
-    {"interface state", RG_COST_INTERFACE_STATE, 0, {.lift = true}},
-    {"interface state, all broken", RG_COST_INTERFACE_STATE, 100, {.lift = true}},
+    {"bulk lifted", RG_COST_BULK, 0, {.lift = true}, BENCH_ROUGH},
+    {"bulk lifted, 10 % broken", RG_COST_BULK, 10, {.lift = true}, BENCH_ROUGH},
+    {"bulk not lifted", RG_COST_BULK, 0, {.lift = false}, BENCH_ROUGH},
+    {"ceramic quiet", RG_COST_BULK, 0, {.lift = true, .model = CERAMIC}, BENCH_QUIET},
+    {"ceramic cracking", RG_COST_BULK, 0, {.lift = true, .model = CERAMIC}, BENCH_CRACKING},
+    {"ceramic flowing", RG_COST_BULK, 0, {.lift = true, .model = CERAMIC}, BENCH_FLOWING},
+    {"interface intact", RG_COST_INTERFACE, 0, {.lift = true}, BENCH_ROUGH},
+    {"interface 10 % broken", RG_COST_INTERFACE, 10, {.lift = true}, BENCH_ROUGH},
+    {"interface all broken", RG_COST_INTERFACE, 100, {.lift = true}, BENCH_ROUGH},
+    {"kick consistent", RG_COST_KICK, 0, {.lumped = false}, BENCH_ROUGH},
+    {"kick lumped", RG_COST_KICK, 0, {.lumped = true}, BENCH_ROUGH},
+    {"drift", RG_COST_DRIFT, 0, {.lumped = false}, BENCH_ROUGH},
+    {"bulk state", RG_COST_BULK_STATE, 0, {.lift = true, .cauchy = true}, BENCH_ROUGH},
+    {"kinetic", RG_COST_KINETIC, 0, {.lumped = false}, BENCH_ROUGH},
+    {"interface state", RG_COST_INTERFACE_STATE, 0, {.lift = true}, BENCH_ROUGH},
+    {"interface state, all broken", RG_COST_INTERFACE_STATE, 100, {.lift = true}, BENCH_ROUGH},
 };
 enum { CASES = sizeof cases / sizeof *cases };
 
@@ -50,7 +56,7 @@ typedef struct {
 
 static rg_bulk_args bulk_args(const job *j) {
     bench_problem *p = j->problem;
-    return (rg_bulk_args){.material = p->material,
+    return (rg_bulk_args){.material = j->what->flags.model == CERAMIC ? p->ceramic : p->material,
                           .lift = j->what->flags.lift,
                           .u = p->u,
                           .geom = p->domain->geom,
@@ -58,6 +64,8 @@ static rg_bulk_args bulk_args(const job *j) {
                           .interface = p->domain->interface,
                           .cracked = p->cracked,
                           .unlinked = p->unlinked,
+                          .history = p->history,
+                          .advance = true,
                           .force = p->force,
                           .traction = p->traction,
                           .stiffening = p->stiffening};
@@ -256,7 +264,7 @@ static void compare_masks(bench *b, const bench_row *row, const char *name, cons
 static void validate(bench *b, const bench_row *row, job *j, const expectation *e) {
     const bench_problem *p = j->problem;
     size_t faces = p->domain->iblocks * RG_LANES;
-    bench_problem_reset(j->problem, j->what->broken);
+    bench_problem_reset(j->problem, j->what->broken, j->what->state);
     call(j, 1);
     for (int k = 0; k < e->fields; k++) {
         bench_compare(b, row, &e->field[k]);
@@ -286,7 +294,7 @@ static void run_case(bench *b, const kernel_case *c, bench_problem *p, bench_siz
     const rg_kernels *sets[BENCH_SETS];
     int count = rg_kernels_available(sets, BENCH_SETS), repeats = b->options.repeats;
     job reference = {c, &rg_kernels_reference, p};
-    bench_problem_reset(p, c->broken);
+    bench_problem_reset(p, c->broken, c->state);
     bench_row *row = add_row(b, &reference, size, threads);
     bench_measure_once(call, &reference, &row->samples);
     expectation e = expect(&reference);

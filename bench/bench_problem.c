@@ -5,11 +5,14 @@
 #include <omp.h>
 #include <string.h>
 
+#include "element.h"
 #include "hash.h"
 #include "mem.h"
 
 #define CELL     1e-4 /* edge of a cube of six tetrahedra (m) */
 #define ROUGH    1e-7 /* displacement (m): strains of about 1e-2 */
+#define SMOOTH   1e-9 /* the same, beside a homogeneous strain */
+#define STEP     1e-9 /* s, of the ceramic */
 #define SPEED    1.0  /* velocity (m/s) */
 #define PULL     0.1  /* nodal and corner forces (N): tractions well below the strength */
 #define STRENGTH 400e6
@@ -67,6 +70,7 @@ static void allocate(bench_problem *p) {
     p->cracked = RG_NEW(uint8_t, blocks);
     p->ipull = RG_NEW(rg_real, faces * RG_IFORCE_BLOCK);
     p->iforce = RG_NEW(rg_real, faces * RG_IFORCE_BLOCK);
+    p->history = RG_NEW(rg_real, blocks * RG_LANES * rg_history_rows(RG_DE_HISTORY));
     p->crack = RG_NEW(rg_real, faces * RG_CRACK_BLOCK);
     p->ienergy = RG_NEW(double, faces *RG_E_INTERFACE *RG_LANES);
     p->broken = RG_NEW(uint8_t, faces * RG_LANES);
@@ -81,6 +85,21 @@ static void fill(rg_real *x, size_t begin, size_t end, int rows, uint64_t field,
             for (size_t l = 0; l < RG_LANES; l++) {
                 x[(b * (size_t)rows + (size_t)r) * RG_LANES + l] =
                     (rg_real)(size * bench_noise(field, (rg_gid)(b * RG_LANES + l), r));
+            }
+        }
+    }
+}
+
+/* Adds to the displacement of all elements what the state's homogeneous strain makes of it. */
+static void strain(bench_problem *p, size_t begin, size_t end, bench_state state) {
+    static const double gradient[BENCH_STATES][3] = {
+        [BENCH_CRACKING] = {4e-4, 4e-4, 4e-4}, [BENCH_FLOWING] = {0, 0, -0.12}};
+    for (size_t e = begin * RG_LANES; e < end * RG_LANES; e++) {
+        for (int n = 0; n < RG_NODES; n++) {
+            double x[3];
+            rg_node_position(p->domain->corner + 12 * e, n, x);
+            for (int c = 0; c < 3; c++) {
+                p->u[rg_node_index(e, n, c)] += (rg_real)(gradient[state][c] * x[c]);
             }
         }
     }
@@ -112,6 +131,10 @@ bench_problem *bench_problem_make(bench_size size, bool quick) {
     const rg_interface_material m = {lambda, mu, 4, RG_PENALTY_ELASTIC};
     bench_problem *p = RG_NEW(bench_problem, 1);
     p->material = (rg_material){.lambda = lambda, .mu = mu, .density = 3690};
+    p->ceramic = (rg_material){.lambda = lambda, .mu = mu, .density = 3690};
+    p->ceramic.model = RG_MATERIAL_DESHPANDE_EVANS;
+    p->ceramic.of.deshpande_evans.parameters = rg_deshpande_evans_alumina();
+    rg_material_prepare(&p->ceramic, STEP);
     p->law = (rg_cohesive){.strength = STRENGTH, .opening = OPENING, .beta = 1};
     p->domain = make_domain(size, quick, &m);
     allocate(p);
@@ -165,7 +188,8 @@ static void spoil(void *x, size_t size, size_t begin, size_t end, size_t per_blo
     memset((char *)x + begin * per_block * size, 0xff, (end - begin) * per_block * size);
 }
 
-void bench_problem_reset(bench_problem *p, int percent) {
+void bench_problem_reset(bench_problem *p, int percent, bench_state state) {
+    size_t history = RG_LANES * rg_history_rows(RG_DE_HISTORY);
 #pragma omp parallel
     {
         size_t begin, end;
@@ -175,7 +199,9 @@ void bench_problem_reset(bench_problem *p, int percent) {
         spoil(p->ienergy, sizeof *p->ienergy, begin, end, RG_E_INTERFACE * RG_LANES);
 #pragma omp barrier
         bench_share(p->domain->blocks, &begin, &end);
-        fill(p->u, begin, end, RG_NODES * 3, KEY_U, ROUGH);
+        fill(p->u, begin, end, RG_NODES * 3, KEY_U, state == BENCH_ROUGH ? ROUGH : SMOOTH);
+        strain(p, begin, end, state);
+        memset(p->history + begin * history, 0, (end - begin) * history * sizeof *p->history);
         fill(p->velocity, begin, end, RG_NODES * 3, KEY_VELOCITY, SPEED);
         rest(p->u, p->domain, begin, end);
         spoil(p->force, sizeof *p->force, begin, end, RG_NODE_BLOCK);
@@ -215,9 +241,10 @@ rg_cost_variant bench_mesh_state(const rg_domain *d, const uint8_t *active, cons
 }
 
 void bench_problem_free(bench_problem *p) {
-    void *blocks[] = {p->pull,       p->itraction, p->ipull,  p->u,        p->velocity, p->crack,
-                      p->cracked,    p->broken,    p->active, p->unlinked, p->force,    p->traction,
-                      p->stiffening, p->iforce,    p->energy, p->cauchy,   p->kinetic,  p->ienergy};
+    void *blocks[] = {p->pull,   p->itraction, p->ipull,      p->u,      p->velocity,
+                      p->crack,  p->cracked,   p->broken,     p->active, p->unlinked,
+                      p->force,  p->traction,  p->stiffening, p->iforce, p->energy,
+                      p->cauchy, p->kinetic,   p->ienergy,    p->history};
     for (size_t k = 0; k < sizeof blocks / sizeof *blocks; k++) {
         rg_free(blocks[k]);
     }

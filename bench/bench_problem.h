@@ -6,12 +6,16 @@
 #include "bench.h"
 #include "domain.h"
 
+/* Strain of a material with a history. */
+typedef enum { BENCH_ROUGH, BENCH_QUIET, BENCH_CRACKING, BENCH_FLOWING, BENCH_STATES } bench_state;
+
 typedef struct {
-    rg_material material;
+    rg_material material, ceramic;
     rg_cohesive law;
     rg_domain *domain;
     rg_real *pull, *itraction, *ipull; /* in: bulk force, corner tractions, interface force */
     rg_real *u, *velocity, *crack;     /* in and out */
+    rg_real *history;                  /* of the ceramic, in and out */
     uint8_t *cracked, *broken, *unlinked, *active;
     rg_real *force, *traction, *stiffening, *iforce; /* out */
     double *energy, *cauchy, *kinetic, *ienergy;     /* out */
@@ -21,9 +25,11 @@ typedef struct {
  * bench_problem_free. */
 bench_problem *bench_problem_make(bench_size size, bool quick);
 
-/* Back to the start: fields random, `percent` of the faces broken at all their points, outputs not numbers
- * (so that a value left out shows). */
-void bench_problem_reset(bench_problem *p, int percent);
+/* Back to the start: fields random, `percent` of the faces broken at all their points, the history virgin,
+ * outputs not numbers (so that a value left out shows). In states other than BENCH_ROUGH all elements have
+ * about the same strain: none to speak of; a tension in which cracks grow, slowly; a compression in which the
+ * solid flows. Both go on for as long as one cares to time them. */
+void bench_problem_reset(bench_problem *p, int percent, bench_state state);
 
 void bench_problem_free(bench_problem *p);
 

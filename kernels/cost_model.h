@@ -7,6 +7,8 @@
 
 #include <stdbool.h>
 
+#include "materials.h"
+
 typedef enum {
     RG_COST_BULK,
     RG_COST_INTERFACE,
@@ -20,6 +22,7 @@ typedef enum {
 
 /* The work asked for and the state of the mesh. Each kernel reads the members that concern it. */
 typedef struct {
+    rg_material_model model; /* bulk, bulk_state */
     bool lift;       /* bulk, bulk_state: variational form */
     bool lumped;     /* kick, kinetic: HRZ mass */
     bool cauchy;     /* bulk_state: writes the stress, not the energy alone */
