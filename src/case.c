@@ -32,17 +32,6 @@ static char *read_file(const char *path, size_t *size) {
     return text;
 }
 
-static void load(rg_problems *problems, const char *path, rg_node *root) {
-    size_t size = 0;
-    char *text = read_file(path, &size);
-    if (text == NULL) {
-        rg_problem_add(problems, (rg_place){0}, &(rg_subject){0}, "cannot be read: %s", strerror(errno));
-        return;
-    }
-    rg_yaml_parse(problems, text, size, NULL, root);
-    rg_free(text);
-}
-
 /* "bench/cases/spall.yaml" -> "spall" */
 static char *case_name(const char *path) {
     const char *slash = strrchr(path, '/');
@@ -61,10 +50,17 @@ static void derive(rg_case *c) {
     }
 }
 
-rg_case *rg_case_read(const char *path, int overrides, const char *const override[], FILE *errors) {
+/* The case in text[0..size); a text that could not be read (NULL) counts as one problem, of which `errno` is
+ * the reason. */
+static rg_case *read_text(const char *path, const char *text, size_t size, int overrides,
+                          const char *const override[], FILE *errors) {
     rg_problems problems = {.file = path};
     rg_node root = {.kind = RG_NODE_BAD};
-    load(&problems, path, &root);
+    if (text != NULL) {
+        rg_yaml_parse(&problems, text, size, NULL, &root);
+    } else {
+        rg_problem_add(&problems, (rg_place){0}, &(rg_subject){0}, "cannot be read: %s", strerror(errno));
+    }
     for (int i = 0; i < overrides; i++) {
         rg_tree_override(&problems, &root, override[i]);
     }
@@ -81,6 +77,19 @@ rg_case *rg_case_read(const char *path, int overrides, const char *const overrid
     }
     derive(c);
     return c;
+}
+
+rg_case *rg_case_read(const char *path, int overrides, const char *const override[], FILE *errors) {
+    size_t size = 0;
+    char *text = read_file(path, &size);
+    rg_case *c = read_text(path, text, size, overrides, override, errors);
+    rg_free(text);
+    return c;
+}
+
+rg_case *rg_case_read_text(const char *name, const char *text, size_t size, int overrides,
+                           const char *const override[], FILE *errors) {
+    return read_text(name, text, size, overrides, override, errors);
 }
 
 void rg_case_free(rg_case *c) {

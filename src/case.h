@@ -101,6 +101,10 @@ typedef struct {
  * `errors`. */
 rg_case *rg_case_read(const char *path, int overrides, const char *const override[], FILE *errors);
 
+/* The same of a case that is in memory: YAML text[0..size), called `name` in messages. */
+rg_case *rg_case_read_text(const char *name, const char *text, size_t size, int overrides,
+                           const char *const override[], FILE *errors);
+
 /* Writes the full set of values used, defaults included, as a YAML case file that reads back to the same
  * case. */
 void rg_case_echo(const rg_case *c, FILE *out);

@@ -11,10 +11,12 @@
 #include "mesh_command.h"
 #include "revision.h"
 #include "run.h"
+#include "verify.h"
 
 static const char usage[] =
     "usage: rhegma run CASE.yaml [options]     run a case\n"
     "       rhegma check CASE.yaml [options]   say what a run would do, without running\n"
+    "       rhegma verify                      check the program on this machine against theory\n"
     "       rhegma mesh IN -o OUT.h5 [options]  make a mesh file; rhegma mesh alone says more\n"
     "       rhegma --version | --help\n"
     "options:\n"
@@ -103,6 +105,13 @@ static int execute(int argc, char **argv, int rank) {
     if (argc == 2 && (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0)) {
         fputs(usage, stdout);
         return RG_OK;
+    }
+    if (argc > 1 && strcmp(argv[1], "verify") == 0) {
+        if (argc > 2) {
+            return complain(rank, "verify takes nothing else; not understood", argv[2]);
+        }
+        rg_flush_denormals();
+        return rg_verify(MPI_COMM_WORLD);
     }
     arguments a = {0};
     if (parse(argc, argv, rank, &a) != RG_OK) {
