@@ -7,8 +7,8 @@
 #define RG_MATERIAL deshpande_evans
 #define RG_HISTORY  RG_DE_HISTORY
 
-RG_INLINE void material_step(const rg_bulk_args *args, rg_vec H[3][3], rg_vec history[], rg_vec P[3][3],
-                             rg_point *out) {
+static __attribute__((noinline)) void material_step(const rg_bulk_args *args, rg_vec H[3][3],
+                                                    rg_vec history[], rg_vec P[3][3], rg_point *out) {
     const rg_de_constants *c = &args->material.of.deshpande_evans.constants;
     rg_vec F[3][3];
     rg_plus_identity(H, F);

@@ -1,5 +1,6 @@
 #include "cost_model.h"
 
+#include "cost_ceramic.h"
 #include "kernels.h"
 
 /* ---- Operations, per lane ---- */
@@ -60,13 +61,24 @@ static double gradient_flops(const rg_cost_variant *v) {
     return sum;
 }
 
+/* The material at a point of the bulk kernel. A ceramic is held against its own guard and, where it advances,
+ * adds up what it sets free. */
+static double point_flops(const rg_cost_variant *v) {
+    if (v->model == RG_MATERIAL_DESHPANDE_EVANS) {
+        return rg_ceramic_flops(v) + FMA + (v->advance ? RG_RELEASED * FMA : 0);
+    }
+    return VOLUME_CHANGE + STRESS + STIFFENING;
+}
+
 static double bulk_flops(const rg_cost_variant *v) {
-    return gradient_flops(v) + RG_GAUSS * (VOLUME_CHANGE + STRESS + STIFFENING + PROJECT) + NODAL_FORCE +
-           CORNER_TRACTION;
+    return gradient_flops(v) + RG_GAUSS * (point_flops(v) + PROJECT) + NODAL_FORCE + CORNER_TRACTION;
 }
 
 static double bulk_state_flops(const rg_cost_variant *v) {
-    return gradient_flops(v) + RG_GAUSS * (VOLUME_CHANGE + ENERGY + (v->cauchy ? STRESS + CAUCHY : 0));
+    double point = v->model == RG_MATERIAL_DESHPANDE_EVANS
+                       ? rg_ceramic_state_flops(v) + FMA + (v->cauchy ? 3 + CAUCHY : 0)
+                       : VOLUME_CHANGE + ENERGY + (v->cauchy ? STRESS + CAUCHY : 0);
+    return gradient_flops(v) + RG_GAUSS * point;
 }
 
 /* ---- Interface ---- */
@@ -148,6 +160,12 @@ typedef struct {
 
 static traffic bulk_traffic(const rg_cost_variant *v, double out) {
     traffic t = {.in = NODAL + RG_GEOM, .out = out};
+    int history = rg_material_history(v->model);
+    if (v->advance) {
+        t.updated = (double)rg_history_rows(history);
+    } else {
+        t.in += history > 0 ? RG_GAUSS * (history - 1) : 0; /* the plastic strain serves to go on alone */
+    }
     if (v->lift) { /* links, one flag; where points are unlinked, interface links and the masks of two sides
                     */
         t.index = LINKS + 1 + (v->unlinked > 0 ? LINKS + v->interfaces * RG_LANES : 0);

@@ -43,7 +43,8 @@ typedef struct {
     rg_kick_args kick;
     rg_drift_args drift;
     rg_kinetic_args kinetic;
-    array list[20];
+    double *history;
+    array list[21];
     size_t arrays;
 } call;
 
@@ -110,6 +111,25 @@ static void list_arrays(call *c) {
     touch(c, in->active, INPUT_IBLOCKS, FLAGS);
     for (size_t k = 0; k < 3; k++)
         touch_real(c, c->out[k], INPUT_IBLOCKS, RG_TRACTION_BLOCK);
+    if (c->history != NULL)
+        touch_real(c, c->history, INPUT_EBLOCKS, rg_history_rows(RG_DE_HISTORY) * RG_LANES);
+}
+
+/* A virgin ceramic with the same strain everywhere, in which nothing happens, or cracks grow, or the solid
+ * flows. */
+static void make_ceramic(call *c) {
+    const rg_cost_variant *v = &c->variant;
+    const double tension[3] = {4e-4, 4e-4, 4e-4}, compression[3] = {-0.05, -0.05, -0.08},
+                 none[3] = {0, 0, 1e-6};
+    const double *gradient = v->growing > 0 ? tension : v->flowing > 0 ? compression : none;
+    input *in = c->in;
+    in->material.model = RG_MATERIAL_DESHPANDE_EVANS;
+    in->material.of.deshpande_evans.parameters = rg_deshpande_evans_alumina();
+    rg_material_prepare(&in->material, 1e-9);
+    c->history = input_alloc(INPUT_EBLOCKS * rg_history_rows(RG_DE_HISTORY) * RG_LANES * sizeof(double));
+    for (size_t e = 0; e < INPUT_ELEMENTS; e++)
+        for (int k = 0; k < 3 * RG_NODES; k++)
+            in->u[rg_node_index(in->element[e], k / 3, k % 3)] = gradient[k % 3] * in->x[e][k / 3][k % 3];
 }
 
 static void bind_elements(call *c) {
@@ -117,6 +137,8 @@ static void bind_elements(call *c) {
     input *in = c->in;
     c->bulk = input_bulk_args(in, c->out[0], c->out[1], c->out[2]);
     c->bulk.lift = v->lift;
+    c->bulk.history = c->history;
+    c->bulk.advance = v->advance;
     c->bulk_state =
         (rg_bulk_state_args){.bulk = &c->bulk, .energy = c->out[0], .cauchy = v->cauchy ? c->out[1] : NULL};
     c->kick = (rg_kick_args){.density = in->material.density,
@@ -163,6 +185,8 @@ static call *make_call(const char *name, rg_cost_kernel kernel, rg_cost_variant 
     c->variant.interfaces = (double)INPUT_IBLOCKS / INPUT_EBLOCKS;
     for (int k = 0; k < 3; k++)
         c->out[k] = input_alloc(INPUT_IBLOCKS * RG_TRACTION_BLOCK * sizeof(double));
+    if (variant.model == RG_MATERIAL_DESHPANDE_EVANS)
+        make_ceramic(c);
     bind_elements(c);
     bind_interfaces(c);
     c->interface.law.strength *= 10;
@@ -175,8 +199,11 @@ static void free_call(call *c) {
     input_free(c->in);
     for (int k = 0; k < 3; k++)
         free(c->out[k]);
+    free(c->history);
     free(c);
 }
+
+#define CERAMIC RG_MATERIAL_DESHPANDE_EVANS
 
 /* Every kernel with every flag. */
 static const struct {
@@ -187,6 +214,12 @@ static const struct {
     {"bulk", RG_COST_BULK, {.lift = false}},
     {"bulk lifted", RG_COST_BULK, {.lift = true}},
     {"bulk lifted, broken", RG_COST_BULK, {.lift = true, .unlinked = 4}},
+    {"ceramic at rest", RG_COST_BULK, {.lift = true, .model = CERAMIC}},
+    {"ceramic quiet", RG_COST_BULK, {.model = CERAMIC, .advance = true}},
+    {"ceramic cracking", RG_COST_BULK, {.model = CERAMIC, .advance = true, .growing = 1, .panels = 1}},
+    {"ceramic flowing", RG_COST_BULK, {.model = CERAMIC, .advance = true, .flowing = 1, .newton = 3}},
+    {"ceramic state, energy", RG_COST_BULK_STATE, {.lift = true, .model = CERAMIC}},
+    {"ceramic state, stress", RG_COST_BULK_STATE, {.model = CERAMIC, .cauchy = true}},
     {"bulk state, energy", RG_COST_BULK_STATE, {.lift = true}},
     {"bulk state, stress", RG_COST_BULK_STATE, {.cauchy = true}},
     {"interface", RG_COST_INTERFACE, {.damaged = 0}},
@@ -384,6 +417,8 @@ static void test_bytes(void **state) {
     (void)state;
     rg_kernels_available(sets, MAX_SETS);
     for (size_t k = 0; k < CASES; k++) {
+        if (cases[k].variant.advance) /* what is written back as it was looks as if it were not */
+            continue;
         call *c = call_of_case(k, sets[0], 0.5); /* with all points broken no traction would matter */
         bool by_interface = c->kernel == RG_COST_INTERFACE || c->kernel == RG_COST_INTERFACE_STATE;
         double blocks = by_interface ? INPUT_IBLOCKS : INPUT_EBLOCKS;
