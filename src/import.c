@@ -21,18 +21,36 @@ static size_t more(size_t room, size_t need) {
 }
 
 void rg_import_node(rg_import *m, size_t number, const double x[3]) {
-    size_t room = more(m->node_room, number + 1);
+    size_t room = more(m->node_room, m->nodes + 1);
     if (room > m->node_room) {
         m->x = rg_realloc(m->x, 3 * room, sizeof *m->x);
-        m->there = rg_realloc(m->there, room, sizeof *m->there);
-        memset(m->there + m->node_room, 0, room - m->node_room);
+        m->number = rg_realloc(m->number, room, sizeof *m->number);
         m->node_room = room;
     }
-    m->nodes = number + 1 > m->nodes ? number + 1 : m->nodes;
-    m->there[number] = 1;
+    m->number[m->nodes] = number;
     for (size_t i = 0; i < 3; i++) {
-        m->x[3 * number + i] = m->scale * x[i];
+        m->x[3 * m->nodes + i] = m->scale * x[i];
     }
+    m->nodes++;
+}
+
+/* Maps all numbers; of rows with the same one the first keeps it and takes the position of the last. */
+static void map_nodes(rg_import *m) {
+    rg_gid_map_free(&m->row);
+    m->row = rg_gid_map_make(m->nodes);
+    for (size_t n = 0; n < m->nodes; n++) {
+        size_t row = (size_t)rg_gid_map_put(&m->row, (rg_gid)m->number[n], (rg_lid)n);
+        memmove(m->x + 3 * row, m->x + 3 * n, 3 * sizeof *m->x);
+    }
+    m->mapped = m->nodes;
+}
+
+size_t rg_import_row(rg_import *m, size_t number) {
+    if (m->mapped < m->nodes) {
+        map_nodes(m);
+    }
+    rg_lid row = m->nodes > 0 ? rg_gid_map_get(&m->row, (rg_gid)number) : -1;
+    return row >= 0 ? (size_t)row : SIZE_MAX;
 }
 
 static void look_at_middles(rg_import *m, const size_t *node) {
@@ -58,17 +76,19 @@ void rg_import_element(rg_import *m, rg_gid name, int nodes, const size_t *node,
         m->region = rg_realloc(m->region, room, sizeof *m->region);
         m->element_room = room;
     }
+    size_t row[10];
     for (int i = 0; i < nodes; i++) {
-        if (node[i] >= m->nodes || !m->there[node[i]]) {
+        row[i] = rg_import_row(m, node[i]);
+        if (row[i] == SIZE_MAX) {
             rg_fatal(RG_USAGE, "%s: element %" PRId64 " has node %zu, which is not there", m->path, name,
                      node[i]);
         }
     }
-    memcpy(m->corner + 4 * m->elements, node, 4 * sizeof *node);
+    memcpy(m->corner + 4 * m->elements, row, 4 * sizeof *row);
     m->name[m->elements] = name;
     m->region[m->elements++] = (int8_t)region;
     if (nodes == 10) {
-        look_at_middles(m, node);
+        look_at_middles(m, row);
     }
 }
 
@@ -83,8 +103,30 @@ void rg_import_add_face(rg_import *m, rg_gid name, const size_t node[3], int set
 
 /* ---- vertices and elements ---- */
 
-/* Numbers the corners in the order of the input's numbers; vertex[node] is -1 for what is no corner. */
-static rg_gid *number_vertices(const rg_import *m, rg_mesh *mesh) {
+struct numbered {
+    size_t number, row;
+};
+
+static int by_number(const void *a, const void *b) {
+    const struct numbered *p = a, *q = b;
+    if (p->number != q->number) {
+        return p->number < q->number ? -1 : 1;
+    }
+    return (p->row > q->row) - (p->row < q->row);
+}
+
+/* The rows in the order of the input's numbers. */
+static struct numbered *sort_nodes(const rg_import *m) {
+    struct numbered *list = RG_NEW(struct numbered, m->nodes);
+    for (size_t n = 0; n < m->nodes; n++) {
+        list[n] = (struct numbered){m->number[n], n};
+    }
+    qsort(list, m->nodes, sizeof *list, by_number);
+    return list;
+}
+
+/* Numbers the corners in the order of the input's numbers; vertex[row] is -1 for what is no corner. */
+static rg_gid *number_vertices(const rg_import *m, const struct numbered *order, rg_mesh *mesh) {
     rg_gid *vertex = RG_NEW(rg_gid, m->nodes);
     for (size_t n = 0; n < m->nodes; n++) {
         vertex[n] = -1;
@@ -93,7 +135,8 @@ static rg_gid *number_vertices(const rg_import *m, rg_mesh *mesh) {
         vertex[m->corner[i]] = 0;
     }
     for (size_t n = 0; n < m->nodes; n++) {
-        vertex[n] = vertex[n] < 0 ? -1 : mesh->vertices++;
+        rg_gid *v = &vertex[order[n].row];
+        *v = *v < 0 ? -1 : mesh->vertices++;
     }
     mesh->x = RG_NEW(double, 3 * (size_t)mesh->vertices);
     for (size_t n = 0; n < m->nodes; n++) {
@@ -129,12 +172,13 @@ static void fill_elements(const rg_import *m, const rg_gid *vertex, rg_mesh *mes
     }
 }
 
-static void tell_nodes(const rg_import *m, const rg_gid *vertex) {
+static void tell_nodes(const rg_import *m, const struct numbered *order, const rg_gid *vertex) {
     int64_t unused = 0;
     size_t first = 0;
     for (size_t n = 0; n < m->nodes; n++) {
-        if (m->there[n] && vertex[n] < 0) {
-            first = unused++ == 0 ? n : first;
+        bool again = n > 0 && order[n].number == order[n - 1].number;
+        if (!again && vertex[order[n].row] < 0) {
+            first = unused++ == 0 ? order[n].row : first;
         }
     }
     if (m->bent > 0) {
@@ -147,7 +191,7 @@ static void tell_nodes(const rg_import *m, const rg_gid *vertex) {
         rg_warn("%s: %" PRId64
                 " nodes belong to no tetrahedron and are left out; the first is node %zu at (%g, "
                 "%g, %g) m",
-                m->path, unused, first, x[0], x[1], x[2]);
+                m->path, unused, m->number[first], x[0], x[1], x[2]);
     }
 }
 
@@ -198,16 +242,16 @@ static void mark_group(const rg_import *m, const struct triangle *t, size_t coun
 }
 
 /* The input's triangles that have corners, then all faces of the mesh. */
-static struct triangle *list_triangles(const rg_import *m, const rg_gid *vertex, const rg_mesh *mesh,
-                                       size_t *count, struct tally *tally) {
+static struct triangle *list_triangles(rg_import *m, const rg_gid *vertex, const rg_mesh *mesh, size_t *count,
+                                       struct tally *tally) {
     struct triangle *list = RG_NEW(struct triangle, m->faces + 4 * (size_t)mesh->elements);
     *count = 0;
     for (size_t i = 0; i < m->faces; i++) {
         struct triangle t = {.name = m->face[i].name, .set = m->face[i].set};
         bool known = true;
         for (int k = 0; k < 3; k++) {
-            size_t n = m->face[i].node[k];
-            t.vertex[k] = n < m->nodes ? vertex[n] : -1;
+            size_t n = rg_import_row(m, m->face[i].node[k]);
+            t.vertex[k] = n < SIZE_MAX ? vertex[n] : -1;
             known = known && t.vertex[k] >= 0;
         }
         qsort(t.vertex, 3, sizeof *t.vertex, ascending);
@@ -225,7 +269,7 @@ static struct triangle *list_triangles(const rg_import *m, const rg_gid *vertex,
     return list;
 }
 
-static void mark_faces(const rg_import *m, const rg_gid *vertex, char *const set_name[], rg_mesh *mesh) {
+static void mark_faces(rg_import *m, const rg_gid *vertex, char *const set_name[], rg_mesh *mesh) {
     struct tally tally = {0, 0};
     size_t count;
     struct triangle *list = list_triangles(m, vertex, mesh, &count, &tally);
@@ -252,12 +296,15 @@ rg_mesh *rg_import_finish(rg_import *m, char *const set_name[]) {
         rg_fatal(RG_USAGE, "%s: no tetrahedra", m->path);
     }
     rg_mesh *mesh = RG_NEW(rg_mesh, 1);
-    rg_gid *vertex = number_vertices(m, mesh);
+    struct numbered *order = sort_nodes(m);
+    rg_gid *vertex = number_vertices(m, order, mesh);
     fill_elements(m, vertex, mesh);
-    tell_nodes(m, vertex);
+    tell_nodes(m, order, vertex);
     mark_faces(m, vertex, set_name, mesh);
     rg_free(vertex);
-    void *blocks[] = {m->x, m->there, m->corner, m->name, m->region, m->face};
+    rg_free(order);
+    rg_gid_map_free(&m->row);
+    void *blocks[] = {m->x, m->number, m->corner, m->name, m->region, m->face};
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) {
         rg_free(blocks[i]);
     }

@@ -5,6 +5,7 @@
 
 #include <stddef.h>
 
+#include "gid_map.h"
 #include "mesh.h"
 
 /* A surface face as the input names it. */
@@ -17,11 +18,13 @@ typedef struct {
 typedef struct {
     const char *path; /* begins the messages */
     double scale;     /* m per unit of the input */
-    size_t nodes;     /* one more than the highest number */
+    size_t nodes;     /* rows below, in the order of the input */
     double *x;        /* [nodes][3] m */
-    int8_t *there;    /* [nodes]: there is such a node */
+    size_t *number;   /* [nodes]: the input's */
+    rg_gid_map row;   /* of a number, among the first `mapped` rows; numbers may be far apart */
+    size_t mapped;
     rg_gid elements;
-    size_t *corner;        /* [elements][4] nodes */
+    size_t *corner;        /* [elements][4] rows of nodes */
     rg_gid *name;          /* [elements] numbers */
     int8_t *region;        /* [elements] volume sets, -1 for none */
     int64_t middles, bent; /* mid-nodes, and those off straight */
@@ -33,6 +36,9 @@ typedef struct {
 
 /* Adds a node with coordinates x in units of the input; a number given twice keeps the last. */
 void rg_import_node(rg_import *m, size_t number, const double x[3]);
+
+/* Row of the node with this number, SIZE_MAX if there is none. */
+size_t rg_import_row(rg_import *m, size_t number);
 
 /* Adds a tetrahedron of 4 or 10 nodes (corners, then the middles of edges 01 12 20 30 23 13), whose nodes
  * must be there already; ends the run with a message if they are not. */

@@ -57,8 +57,7 @@ typedef struct {
     bool generate;
     element pending; /* read in part */
     int have;
-    size_t *slot; /* [slots]: element by number, + 1; 0 for none */
-    size_t slots;
+    rg_gid_map by_number; /* of the elements */
 } reader;
 
 static const int face_corner[4][3] = {{0, 1, 2}, {0, 3, 1}, {1, 3, 2}, {2, 3, 0}}; /* S1 to S4 */
@@ -151,8 +150,14 @@ static size_t need_set(reader *r, const char *name, rank from) {
     return i;
 }
 
+/* A set may name elements that come later, or some twice, but there are limits: sets of sets of sets grow
+ * without bound, and so does one with all numbers there could be. */
 static void add_member(reader *r, size_t set, rg_gid number) {
     elset *s = &r->set[set];
+    size_t most = 16 * r->elements + 65536;
+    if (s->count == most) {
+        refuse(r, "set '%s' has more than %zu members, with %zu elements so far", s->name, most, r->elements);
+    }
     if (s->count == s->room) {
         s->room = 2 * s->room + 64;
         s->member = rg_realloc(s->member, s->room, sizeof *s->member);
@@ -406,22 +411,16 @@ static void read_lines(reader *r) {
 /* ---- sets to regions and faces ---- */
 
 static const element *find_element(const reader *r, rg_gid number) {
-    size_t slot = (size_t)number < r->slots ? r->slot[number] : 0;
-    return slot > 0 ? &r->element[slot - 1] : NULL;
+    rg_lid i = rg_gid_map_get(&r->by_number, number);
+    return i >= 0 ? &r->element[i] : NULL;
 }
 
 static void index_elements(reader *r) {
+    r->by_number = rg_gid_map_make(r->elements);
     for (size_t i = 0; i < r->elements; i++) {
-        size_t need = (size_t)r->element[i].number + 1;
-        r->slots = need > r->slots ? need : r->slots;
-    }
-    r->slot = RG_NEW(size_t, r->slots + 1);
-    for (size_t i = 0; i < r->elements; i++) {
-        size_t *slot = &r->slot[r->element[i].number];
-        if (*slot != 0) {
+        if (rg_gid_map_put(&r->by_number, r->element[i].number, (rg_lid)i) != (rg_lid)i) {
             rg_fatal(RG_USAGE, "%s: element %" PRId64 " is defined twice", r->path, r->element[i].number);
         }
-        *slot = i + 1;
     }
 }
 
@@ -538,6 +537,6 @@ rg_mesh *rg_inp_read(const char *path, double scale) {
     rg_free(r.set);
     rg_free(r.element);
     rg_free(r.patch);
-    rg_free(r.slot);
+    rg_gid_map_free(&r.by_number);
     return mesh;
 }
