@@ -1,0 +1,33 @@
+/* Meshes from Abaqus input: any bytes as the file; then all that `rhegma mesh` does but writing. */
+#include <stdio.h>
+
+#include "../../src/inp_read.h"
+#include "../../src/mesh_check.h"
+#include "../../src/mesh_info.h"
+#include "host.h"
+
+static void body(const uint8_t *data, size_t size) {
+    const char *path = rg_fuzz_scratch();
+    FILE *f = fopen(path, "wb");
+    rg_fuzz_require(f != NULL && fwrite(data, 1, size, f) == size && fclose(f) == 0, "the scratch file");
+    rg_mesh *mesh = rg_inp_read(path, 1e-3);
+    rg_mesh_check_elements(mesh, path);
+    rg_mesh_sort(mesh);
+    rg_mesh_connect(mesh);
+    rg_mesh_check(mesh, path);
+    FILE *nowhere = fopen("/dev/null", "w");
+    rg_mesh_info(mesh, 1, nowhere);
+    fclose(nowhere);
+    rg_mesh_free(mesh);
+}
+
+int LLVMFuzzerInitialize(int *argc, char ***argv) {
+    (void)argc;
+    (void)argv;
+    return 0;
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
+    rg_fuzz_run(body, data, size);
+    return 0;
+}

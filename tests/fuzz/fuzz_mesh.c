@@ -1,0 +1,332 @@
+/* Mesh files: a good one, to which the input is a list of changes. HDF5's and the file's own checksums would
+ * refuse nearly all random bytes; so values are changed with their checksums made right, attributes and the
+ * shapes of datasets through HDF5; and, for the checksums, bytes as they are.
+ *
+ * Input: which mesh, which reader, then changes of five bytes: kind, what, where (2 bytes), value. */
+#include <hdf5.h>
+#include <mpi.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "../../src/mem.h"
+#include "../../src/mesh_file.h"
+#include "../../src/mesh_info.h"
+#include "../../src/mesh_rows.h"
+#include "host.h"
+
+enum { MESHES = 2, FIELDS = 14, ATTRIBUTES = 8, CHANGE = 5, MOST_CHANGES = 16 };
+
+typedef struct {
+    const rg_rows *rows;
+    size_t at, sum;                       /* where its values and checksums begin in the file */
+    size_t width;                         /* of a stored value */
+    int64_t values, blocks, *block_start; /* block_start[blocks + 1]: rows */
+} field;
+
+typedef struct {
+    uint8_t *image;
+    size_t size;
+    int fields;
+    field field[FIELDS];
+} base;
+
+static base bases[MESHES];
+static const char *const attribute[ATTRIBUTES] = {"version",       "vertices", "elements",     "interfaces",
+                                                  "tile_elements", "tiles",    "surface_sets", "volume_sets"};
+static const rg_rows partition = {"partition_2", RG_ROWS_INT32, 1};
+
+/* ---- the good files ---- */
+
+static void write_good(const char *path, const int64_t cells[3]) {
+    static const double origin[3] = {0, 0, 0}, size[3] = {1, 2, 3};
+    rg_mesh *mesh = rg_mesh_box(cells, origin, size, 0, 1);
+    int64_t tile = rg_tile_elements(mesh->elements), tiles = (mesh->elements + tile - 1) / tile;
+    int32_t *owner = RG_NEW(int32_t, (size_t)tiles);
+    for (int64_t t = 0; t < tiles; t++) {
+        owner[t] = t >= tiles / 2;
+    }
+    mesh->region = RG_NEW(int8_t, (size_t)mesh->elements);
+    mesh->region_name[0] = RG_NEW(char, RG_SET_NAME);
+    strcpy(mesh->region_name[mesh->regions++], "all");
+    rg_mesh_file_write(path, mesh, 1, &(rg_tile_partition){2, owner});
+    rg_mesh_free(mesh);
+    rg_free(owner);
+}
+
+static void load(base *b, const char *path) {
+    FILE *f = fopen(path, "rb");
+    rg_fuzz_require(f != NULL, "the good file can be read");
+    b->image = malloc(1 << 20);
+    b->size = fread(b->image, 1, 1 << 20, f);
+    fclose(f);
+}
+
+static size_t offset_of(hid_t file, const char *name, size_t *width, int64_t *values) {
+    hid_t dataset = H5Dopen2(file, name, H5P_DEFAULT), space = H5Dget_space(dataset),
+          type = H5Dget_type(dataset);
+    size_t at = (size_t)H5Dget_offset(dataset);
+    *width = H5Tget_size(type);
+    *values = H5Sget_simple_extent_npoints(space);
+    H5Tclose(type);
+    H5Sclose(space);
+    H5Dclose(dataset);
+    return at;
+}
+
+static int64_t *make_starts(const rg_mesh_header *h, const rg_rows *r, const int64_t *vertex_start,
+                            int64_t rows, int64_t *blocks) {
+    bool by_vertex = r == &rg_rows_vertex || r == &rg_rows_x;
+    bool by_element = r == &rg_rows_corner || r == &rg_rows_neighbour || r == &rg_rows_face ||
+                      r == &rg_rows_set || r == &rg_rows_region || r == &rg_rows_original;
+    *blocks = by_vertex || by_element ? h->tiles : 1;
+    int64_t *start = calloc((size_t)*blocks + 1, sizeof *start);
+    for (int64_t t = 0; t <= *blocks; t++) {
+        int64_t row = t * h->tile_elements;
+        start[t] = by_vertex ? vertex_start[t] : row < h->elements ? row : h->elements;
+    }
+    start[*blocks] = rows;
+    return start;
+}
+
+static void find_fields(base *b, const char *path) {
+    static const rg_rows *const all[FIELDS] = {&rg_rows_surface_sets,
+                                               &rg_rows_volume_sets,
+                                               &rg_rows_corner,
+                                               &rg_rows_neighbour,
+                                               &rg_rows_face,
+                                               &rg_rows_set,
+                                               &rg_rows_region,
+                                               &rg_rows_original,
+                                               &rg_rows_vertex_start,
+                                               &rg_rows_vertex,
+                                               &rg_rows_x,
+                                               &rg_rows_tile_start,
+                                               &rg_rows_tile_neighbour,
+                                               &partition};
+    rg_mesh_file *f = rg_mesh_file_open(path);
+    const rg_mesh_header *h = rg_mesh_file_header(f);
+    hid_t file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
+    int64_t *vertex_start = calloc((size_t)h->tiles + 1, sizeof *vertex_start);
+    hid_t starts = H5Dopen2(file, "vertex_start", H5P_DEFAULT);
+    H5Dread(starts, H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, vertex_start);
+    H5Dclose(starts);
+    for (b->fields = 0; b->fields < FIELDS; b->fields++) {
+        field *p = &b->field[b->fields];
+        char sums[80];
+        size_t width;
+        int64_t count;
+        p->rows = all[b->fields];
+        snprintf(sums, sizeof sums, "checksum/%s", p->rows->name);
+        p->at = offset_of(file, p->rows->name, &p->width, &p->values);
+        p->sum = offset_of(file, sums, &width, &count);
+        p->block_start = make_starts(h, p->rows, vertex_start, p->values / p->rows->columns, &p->blocks);
+    }
+    free(vertex_start);
+    H5Fclose(file);
+    rg_mesh_file_close(f);
+}
+
+/* ---- changes ---- */
+
+/* A value that is near, far, at a limit or not finite. */
+static int64_t integer(uint8_t code) {
+    static const int64_t special[16] = {
+        INT8_MAX,  INT8_MIN,  INT16_MAX, INT32_MAX, INT32_MIN,       INT64_MAX, INT64_MIN,    1 << 20,
+        1LL << 32, 1LL << 40, -1,        1000,      (1LL << 40) + 1, 1LL << 62, -(1LL << 40), 256};
+    return code < 240 ? (int64_t)code - 120 : special[code - 240];
+}
+
+static double real(uint8_t code) {
+    static const double special[8] = {0.0 / 1.0,  1e300,       -1e300, 1e-300,
+                                      1e308 * 10, -1e308 * 10, 0.5,    1 + 1e-12};
+    if (code == 255) {
+        return special[4] - special[4]; /* not a number */
+    }
+    return code < 240 ? 0.0625 * ((int)code - 16) : special[code % 8];
+}
+
+static void set_value(uint8_t *image, const field *p, int64_t i, uint8_t code) {
+    uint8_t *to = image + p->at + (size_t)i * p->width;
+    if (p->rows->type == RG_ROWS_NAME) {
+        memset(to, code, code % 2 == 0 ? RG_SET_NAME : 1);
+    } else if (p->rows->type == RG_ROWS_DOUBLE) {
+        double value = real(code);
+        memcpy(to, &value, sizeof value);
+    } else {
+        int64_t value = integer(code); /* little-endian */
+        memcpy(to, &value, p->width);
+    }
+}
+
+static void repair_sums(uint8_t *image, const field *p) {
+    size_t bytes = rg_rows_bytes(p->rows), per_value = bytes / (size_t)p->rows->columns;
+    uint8_t *values = calloc((size_t)p->values, per_value);
+    for (int64_t i = 0; i < p->values; i++) {
+        const uint8_t *from = image + p->at + (size_t)i * p->width;
+        int32_t narrow;
+        int64_t wide;
+        memcpy(&narrow, from, sizeof narrow < p->width ? sizeof narrow : p->width);
+        wide = narrow;
+        memcpy(values + (size_t)i * per_value, p->width == 4 && per_value == 8 ? (void *)&wide : (void *)from,
+               per_value);
+    }
+    for (int64_t b = 0; b < p->blocks; b++) {
+        uint64_t sum = rg_rows_checksum(p->rows, values + (size_t)p->block_start[b] * bytes,
+                                        p->block_start[b + 1] - p->block_start[b]);
+        memcpy(image + p->sum + (size_t)b * sizeof sum, &sum, sizeof sum);
+    }
+    free(values);
+}
+
+static void change_attribute(hid_t file, const char *name, int64_t value, bool other_type) {
+    if (other_type) {
+        H5Adelete(file, name);
+        hid_t space = H5Screate_simple(1, (hsize_t[]){(hsize_t)(value & 3)}, NULL);
+        hid_t made =
+            H5Acreate2(file, name, value & 4 ? H5T_NATIVE_DOUBLE : H5T_C_S1, space, H5P_DEFAULT, H5P_DEFAULT);
+        H5Aclose(made);
+        H5Sclose(space);
+        return;
+    }
+    hid_t a = H5Aopen(file, name, H5P_DEFAULT);
+    H5Awrite(a, H5T_NATIVE_INT64, &value);
+    H5Aclose(a);
+}
+
+/* Another dataset in place of this one: none, without values, of any size and type. */
+static void change_shape(hid_t file, const char *name, int64_t rows, uint8_t code) {
+    H5Ldelete(file, name, H5P_DEFAULT);
+    if (code == 0) {
+        return;
+    }
+    const hid_t type[4] = {H5T_NATIVE_INT32, H5T_NATIVE_DOUBLE, H5T_C_S1, H5T_NATIVE_INT8};
+    hsize_t size[2] = {rows < 0 ? 0 : (hsize_t)rows, 1 + code % 5u};
+    hid_t space = H5Screate_simple(1 + code % 2, size, NULL);
+    hid_t made = H5Dcreate2(file, name, type[code / 2 % 4], space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+    H5Dclose(made);
+    H5Sclose(space);
+}
+
+/* Kinds 0 to 3 change the image; others the file, later. */
+static void change_image(const base *b, uint8_t *image, size_t *size, const uint8_t *c) {
+    size_t where = (size_t)c[2] + 256 * (size_t)c[3];
+    const field *p = &b->field[c[1] % FIELDS];
+    if (c[0] == 0) {
+        image[where % *size] = c[4];
+    } else if (c[0] == 1) {
+        *size = where % *size + 1;
+    } else if (c[0] == 2 || c[0] == 3) {
+        set_value(image, p, (int64_t)where % p->values, c[4]);
+        repair_sums(image, p);
+    }
+}
+
+static void change_file(const base *b, hid_t file, const uint8_t *c) {
+    int64_t where = c[2] + 256 * c[3];
+    if (c[0] == 4 || c[0] == 5) {
+        change_attribute(file, attribute[c[1] % ATTRIBUTES], integer(c[4]), c[0] == 5);
+    } else if (c[0] == 6) {
+        change_shape(file, b->field[c[1] % FIELDS].rows->name, where == 65535 ? integer(c[1]) : where, c[4]);
+    }
+}
+
+/* ---- reading ---- */
+
+static void read_whole(const char *path) {
+    rg_mesh *mesh = rg_mesh_file_read(path);
+    FILE *nowhere = fopen("/dev/null", "w");
+    rg_mesh_info(mesh, 1, nowhere);
+    rg_mesh_free(mesh);
+    rg_mesh_file *f = rg_mesh_file_open(path);
+    rg_mesh_info_partitions(f, nowhere);
+    rg_mesh_file_close(f);
+    fclose(nowhere);
+}
+
+static void read_pieces(const char *path) {
+    rg_mesh_file *f = rg_mesh_file_open(path);
+    int64_t tiles = rg_mesh_file_header(f)->tiles;
+    for (int64_t t = 0; t < tiles; t += 7) {
+        rg_mesh_slab_free(rg_mesh_file_slab(f, t, t + 1));
+    }
+    rg_mesh_file_close(f);
+}
+
+static void body(const uint8_t *data, size_t size) {
+    const char *path = rg_fuzz_scratch();
+    if (size > 1 && data[1] % 3 == 0) {
+        read_whole(path);
+    } else if (size > 1 && data[1] % 3 == 1) {
+        read_pieces(path);
+    } else {
+        rg_part_free(rg_part_read(path, NULL, MPI_COMM_SELF));
+    }
+}
+
+/* What a reader that refused the file left open. */
+static void close_all(void) {
+    hid_t id[64];
+    ssize_t count = H5Fget_obj_ids(H5F_OBJ_ALL, H5F_OBJ_ALL, 64, id);
+    for (ssize_t i = 0; i < count; i++) {
+        while (H5Iis_valid(id[i]) > 0 && H5Idec_ref(id[i]) >= 0) {
+        }
+    }
+    H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
+}
+
+static void make_file(const base *b, const uint8_t *data, size_t size) {
+    const char *path = rg_fuzz_scratch();
+    uint8_t *image = malloc(b->size);
+    size_t length = b->size;
+    bool later = false;
+    memcpy(image, b->image, b->size);
+    for (size_t at = 2, n = 0; at + CHANGE <= size && n < MOST_CHANGES; at += CHANGE, n++) {
+        change_image(b, image, &length, data + at);
+        later = later || data[at] >= 4;
+    }
+    FILE *f = fopen(path, "wb");
+    rg_fuzz_require(f != NULL && fwrite(image, 1, length, f) == length && fclose(f) == 0, "the scratch file");
+    free(image);
+    hid_t file = later ? H5Fopen(path, H5F_ACC_RDWR, H5P_DEFAULT) : -1;
+    for (size_t at = 2, n = 0; file >= 0 && at + CHANGE <= size && n < MOST_CHANGES; at += CHANGE, n++) {
+        change_file(b, file, data + at);
+    }
+    if (file >= 0) {
+        H5Fclose(file);
+    }
+}
+
+static void make_bases(const uint8_t *data, size_t size) {
+    static const int64_t cells[MESHES][3] = {{2, 1, 1}, {3, 3, 3}};
+    (void)data;
+    (void)size;
+    for (int m = 0; m < MESHES; m++) {
+        write_good(rg_fuzz_scratch(), cells[m]);
+        load(&bases[m], rg_fuzz_scratch());
+        find_fields(&bases[m], rg_fuzz_scratch());
+    }
+}
+
+int LLVMFuzzerInitialize(int *argc, char ***argv) {
+    MPI_Init(argc, argv);
+    rg_fuzz_require(rg_fuzz_run(make_bases, NULL, 0), "the good files");
+    return 0;
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
+    static int count;
+    if (size < 2) {
+        return 0;
+    }
+    H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
+    make_file(&bases[data[0] % 8 == 1], data, size); /* the larger one now and then: it is slow */
+    bool accepted = rg_fuzz_run(body, data, size);
+    rg_fuzz_require(accepted || size >= 2 + CHANGE, "the good file is read");
+    close_all();
+    if (++count % 512 == 0) {
+        H5close(); /* with what is tied to no file */
+    }
+    return 0;
+}
