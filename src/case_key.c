@@ -283,7 +283,7 @@ const char *rg_key_nearest(const rg_key_table *table, const char *name, char *te
     size_t length = strlen(name);
     size_t best = (length - last_part(name, length)) / 3 + 2; /* beyond this nothing is near */
     const char *found = NULL;
-    for (int i = 0; i < table->keys; i++) {
+    for (int i = 0; i < table->keys && length <= RG_LONGEST_WORD; i++) {
         const char *known = table->key[i].name;
         for (size_t end = 1; end <= strlen(known); end++) {
             bool whole = known[end] == '.' || known[end] == '\0';

@@ -118,6 +118,9 @@ size_t rg_edit_distance(const char *a, size_t m, const char *b, size_t n) {
 const char *rg_nearest(const char *word, const char *const list[]) {
     const char *best = NULL;
     size_t limit = strlen(word) / 3 + 1;
+    if (strlen(word) > RG_LONGEST_WORD) {
+        return NULL;
+    }
     for (int i = 0; list[i] != NULL; i++) {
         size_t length = strlen(word) > strlen(list[i]) ? strlen(word) : strlen(list[i]);
         size_t distance = rg_edit_distance(word, strlen(word), list[i], strlen(list[i]));

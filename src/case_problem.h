@@ -39,6 +39,9 @@ void rg_problem_add(rg_problems *all, rg_place at, const rg_subject *subject, co
 /* Prints the problems, one a line, in the order of the file, those of overrides last, and forgets them. */
 void rg_problems_flush(rg_problems *all, FILE *out);
 
+/* Longer than any key or value that could be meant: comparing them would take long, a megabyte forever. */
+enum { RG_LONGEST_WORD = 128 };
+
 /* Edits (insertions, deletions, replacements; letter case is ignored) that turn a[0..m) into b[0..n). */
 size_t rg_edit_distance(const char *a, size_t m, const char *b, size_t n);
 

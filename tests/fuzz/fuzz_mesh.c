@@ -190,8 +190,11 @@ static void change_attribute(hid_t file, const char *name, int64_t value, bool o
         H5Sclose(space);
         return;
     }
-    hid_t a = H5Aopen(file, name, H5P_DEFAULT);
-    H5Awrite(a, H5T_NATIVE_INT64, &value);
+    hid_t a = H5Aopen(file, name, H5P_DEFAULT), space = H5Aget_space(a);
+    if (H5Sget_simple_extent_npoints(space) == 1) { /* not made another before */
+        H5Awrite(a, H5T_NATIVE_INT64, &value);
+    }
+    H5Sclose(space);
     H5Aclose(a);
 }
 
