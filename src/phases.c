@@ -11,8 +11,8 @@ static rg_spread spread(double here, MPI_Comm comm) {
     return (rg_spread){-extreme[0], sum / ranks, extreme[1]};
 }
 
-rg_phases_report rg_phases_gather(const rg_phases *p, const rg_halo *traces, const rg_halo *tractions,
-                                  MPI_Comm comm) {
+rg_phases_report rg_phases_gather(const rg_phases *p, const rg_domain *d, const rg_halo *traces,
+                                  const rg_halo *tractions, MPI_Comm comm) {
     int partners = rg_halo_partners(traces), messages = partners + rg_halo_partners(tractions);
     double bytes = (double)(rg_halo_bytes(traces) + rg_halo_bytes(tractions));
     rg_phases_report r;
@@ -20,6 +20,7 @@ rg_phases_report rg_phases_gather(const rg_phases *p, const rg_halo *traces, con
         r.phase[k] = spread(p->seconds[k], comm);
     }
     r.neighbours = spread(partners, comm);
+    r.inner = spread(1 - (double)d->boundary_tiles / (double)d->tiles, comm);
     r.messages = spread(messages, comm);
     r.bytes = spread(bytes, comm);
     r.message_bytes = spread(messages > 0 ? bytes / messages : 0, comm);
@@ -37,6 +38,7 @@ void rg_phases_write(const rg_phases_report *r, FILE *out) {
     }
     fputs("  },\n", out);
     put(out, "  ", "neighbours", &r->neighbours, ",");
+    put(out, "  ", "inner_share", &r->inner, ",");
     put(out, "  ", "messages_per_step", &r->messages, ",");
     put(out, "  ", "bytes_per_step", &r->bytes, ",");
     put(out, "  ", "bytes_per_message", &r->message_bytes, ",");

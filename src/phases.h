@@ -41,14 +41,15 @@ typedef struct {
 typedef struct {
     rg_spread phase[RG_PHASES]; /* s */
     rg_spread neighbours;       /* of a rank */
+    rg_spread inner;            /* share of a rank's tiles under whose work messages travel */
     rg_spread messages;         /* that a rank sends in a step */
     rg_spread bytes;            /* that a rank sends in a step */
     rg_spread message_bytes;    /* mean of a rank's messages */
 } rg_phases_report;
 
-/* Collective: of the exchanges of a step, `traces` and `tractions`. */
-rg_phases_report rg_phases_gather(const rg_phases *p, const rg_halo *traces, const rg_halo *tractions,
-                                  MPI_Comm comm);
+/* Collective: of a domain and the exchanges of its step, `traces` and `tractions`. */
+rg_phases_report rg_phases_gather(const rg_phases *p, const rg_domain *d, const rg_halo *traces,
+                                  const rg_halo *tractions, MPI_Comm comm);
 
 /* Members of a JSON object, one a line, each [least, mean, most]. */
 void rg_phases_write(const rg_phases_report *r, FILE *out);

@@ -98,7 +98,7 @@ void rg_summary_write(rg_summary *m, rg_solver *s, const rg_ledger *l, const rg_
     MPI_Allreduce(MPI_IN_PLACE, &m->halo_wait_seconds, 1, MPI_DOUBLE, MPI_MAX, s->comm);
     double work = (double)e->elements * (double)s->step;
     m->us_per_tet_step = work > 0 ? 1e6 * m->loop_seconds * s->ranks * s->threads / work : 0;
-    rg_phases_report phases = rg_phases_gather(&s->phases, s->halo_u[0], s->halo_t, s->comm);
+    rg_phases_report phases = rg_phases_gather(&s->phases, s->domain, s->halo_u[0], s->halo_t, s->comm);
     if (s->rank != 0) {
         return;
     }
