@@ -18,7 +18,7 @@ int main(int argc, char **argv) {
         rg_fatal(RG_USAGE, "mesh: --info and --partition are a matter of rhegma mesh");
     }
     rg_mesh *mesh = rg_gmsh_read(a.input, a.scale);
-    rg_mesh_finish(mesh, a.input, a.output);
+    rg_mesh_finish(mesh, &a);
     rg_mesh_free(mesh);
     rg_free(a.override);
     return RG_OK;

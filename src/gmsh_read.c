@@ -122,14 +122,13 @@ static void take_elements(void *context, int type, const size_t *tag, size_t cou
 static void take_faces(void *context, int type, const size_t *tag, size_t count, const size_t *node,
                        int set) {
     rg_import *m = context;
-    if (set < 0) {
-        return;
-    }
-    if (type != TRI3 && type != TRI6) {
+    bool triangles = type == TRI3 || type == TRI6;
+    if (!triangles && set >= 0) {
         refuse_type(m->path, type, count, tag[0]);
     }
-    for (size_t i = 0; i < count; i++) {
-        rg_import_add_face(m, (rg_gid)tag[i], node + (type == TRI3 ? 3 : 6) * i, set);
+    for (size_t i = 0; triangles && i < count; i++) {
+        rg_import_add_face(m, (rg_gid)tag[i], node + (type == TRI3 ? 3 : 6) * i,
+                           set >= 0 ? set : RG_IMPORT_UNNAMED);
     }
 }
 

@@ -197,13 +197,16 @@ static void tell_nodes(const rg_import *m, const struct numbered *order, const r
 
 /* ---- names of faces ---- */
 
+/* A triangle of the input, or (FACE) a face of the mesh. */
+enum { FACE = RG_IMPORT_UNNAMED - 1 };
+
 struct triangle {
     rg_gid vertex[3]; /* ascending */
-    rg_gid name;      /* named by the input: its number; a face: 4 * element + face */
-    int set;          /* named by the input; -1 of a face */
+    rg_gid name;      /* of the input: its number; a face: 4 * element + face */
+    int set;
 };
 
-/* Named ones before the faces that they name; faces in the order of the elements. */
+/* Named ones, unnamed ones, then the faces in the order of the elements. */
 static int by_vertices(const void *a, const void *b) {
     const struct triangle *p = a, *q = b;
     for (int i = 0; i < 3; i++) {
@@ -211,8 +214,9 @@ static int by_vertices(const void *a, const void *b) {
             return p->vertex[i] < q->vertex[i] ? -1 : 1;
         }
     }
-    if ((p->set < 0) != (q->set < 0)) {
-        return p->set < 0 ? 1 : -1;
+    int above = p->set < 0 ? p->set : 0, below = q->set < 0 ? q->set : 0;
+    if (above != below) {
+        return above > below ? -1 : 1;
     }
     return (p->name > q->name) - (p->name < q->name);
 }
@@ -221,23 +225,28 @@ struct tally {
     int64_t inside, nowhere; /* named triangles between two elements; that are no faces */
 };
 
-/* One group of equal triangles: the named ones come first, then the faces. */
+/* One group of equal triangles: the named ones come first, then the unnamed ones, then the faces. */
 static void mark_group(const rg_import *m, const struct triangle *t, size_t count, char *const set_name[],
                        rg_mesh *mesh, struct tally *tally) {
-    size_t names = 0;
-    while (names < count && t[names].set >= 0) {
-        if (t[names].set != t[0].set) {
+    size_t names = 0, triangles = 0;
+    for (size_t i = 0; i < count; i++) {
+        if (t[i].set >= 0 && t[i].set != t[0].set) {
             rg_fatal(RG_USAGE,
                      "%s: %" PRId64 " and %" PRId64
                      " are the same face, in surface sets '%s' and '%s'; it can be in one only",
-                     m->path, t[0].name, t[names].name, set_name[t[0].set], set_name[t[names].set]);
+                     m->path, t[0].name, t[i].name, set_name[t[0].set], set_name[t[i].set]);
         }
-        names++;
+        names += t[i].set >= 0;
+        triangles += t[i].set != FACE;
     }
-    tally->inside += names > 0 && count - names > 1;
-    tally->nowhere += names > 0 && count == names;
-    if (names > 0 && count - names == 1) {
-        mesh->set[t[names].name] = (int8_t)t[0].set;
+    size_t faces = count - triangles;
+    tally->inside += names > 0 && faces > 1;
+    tally->nowhere += names > 0 && faces == 0;
+    if (names > 0 && faces == 1) {
+        mesh->set[t[triangles].name] = (int8_t)t[0].set;
+    }
+    if (triangles > 0 && faces > 1) {
+        memcpy(mesh->inner + 3 * mesh->inners++, t->vertex, sizeof t->vertex);
     }
 }
 
@@ -257,10 +266,10 @@ static struct triangle *list_triangles(rg_import *m, const rg_gid *vertex, const
         qsort(t.vertex, 3, sizeof *t.vertex, ascending);
         list[*count] = t;
         *count += known;
-        tally->nowhere += !known;
+        tally->nowhere += !known && t.set >= 0;
     }
     for (rg_gid slot = 0; slot < 4 * mesh->elements; slot++) {
-        struct triangle t = {.name = slot, .set = -1};
+        struct triangle t = {.name = slot, .set = FACE};
         for (int k = 0; k < 3; k++) {
             t.vertex[k] = mesh->corner[slot / 4 * 4 + rg_face_node[slot % 4][k]];
         }
@@ -273,6 +282,7 @@ static void mark_faces(rg_import *m, const rg_gid *vertex, char *const set_name[
     struct tally tally = {0, 0};
     size_t count;
     struct triangle *list = list_triangles(m, vertex, mesh, &count, &tally);
+    mesh->inner = RG_NEW(rg_gid, 3 * m->faces + 1);
     qsort(list, count, sizeof *list, by_vertices);
     for (size_t i = 0, n; i < count; i += n) {
         for (n = 1; i + n < count && memcmp(list[i].vertex, list[i + n].vertex, sizeof list->vertex) == 0;

@@ -12,8 +12,11 @@
 typedef struct {
     size_t node[3];
     rg_gid name; /* the input's number for it, for messages */
-    int set;
+    int set;     /* or RG_IMPORT_UNNAMED */
 } rg_import_face;
+
+/* Set of a face that is only known to be a place of its own, not by a name. */
+enum { RG_IMPORT_UNNAMED = -1 };
 
 typedef struct {
     const char *path; /* begins the messages */

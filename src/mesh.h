@@ -27,6 +27,9 @@ typedef struct {
     int8_t *region;   /* [elements]: named set of volumes; -1 for none; NULL: none at all */
     int regions;
     char *region_name[RG_MAX_SETS];
+    rg_gid
+        *inner; /* [inners][3]: vertices, ascending, of faces inside that the input names: an import only */
+    size_t inners;
 } rg_mesh;
 
 /* Box of nx ny nz cubes of 6 tetrahedra (Kuhn: all around one main diagonal, so that neighbours match), from

@@ -10,6 +10,7 @@
 
 #include "case.h"
 #include "error.h"
+#include "improve.h"
 #include "inp_read.h"
 #include "material.h"
 #include "mem.h"
@@ -76,6 +77,10 @@ static void check_together(const rg_mesh_arguments *a) {
     if (a->info && a->output != NULL) {
         complain("--info writes nothing; not understood: -o", a->output);
     }
+    if (a->improve && (a->info || a->partition != NULL)) {
+        complain("--improve is for a mesh on its way in; not understood with it",
+                 a->info ? "--info" : "--partition");
+    }
     if (!a->info && a->material != NULL) {
         complain("--case is for --info", "");
     }
@@ -86,6 +91,8 @@ rg_mesh_arguments rg_mesh_arguments_read(int argc, char **argv, int first) {
     for (int i = first; i < argc; i++) {
         if (strcmp(argv[i], "--info") == 0) {
             a.info = true;
+        } else if (strcmp(argv[i], "--improve") == 0) {
+            a.improve = true;
         } else if (argv[i][0] == '-') {
             read_option(&a, argv[i], i + 1 < argc ? argv[i + 1] : NULL);
             i++;
@@ -120,14 +127,28 @@ static void tell_parts(const rg_mesh *mesh, const char *input) {
     rg_free(part);
 }
 
-void rg_mesh_finish(rg_mesh *mesh, const char *input, const char *output) {
-    rg_mesh_check_elements(mesh, input);
+static void improve(rg_mesh *mesh) {
+    rg_gid before = mesh->elements;
+    rg_improvement done = rg_mesh_improve(mesh);
     rg_mesh_sort(mesh);
     rg_mesh_connect(mesh);
-    rg_mesh_check(mesh, input);
-    tell_parts(mesh, input);
-    rg_mesh_file_write(output, mesh, 0, NULL);
-    printf("%s: %" PRId64 " elements, %" PRId64 " vertices, %d surface sets, %d volume sets\n", output,
+    printf("improved: smallest height from %.4g to %.4g m; vertices moved %" PRId64 " times, %" PRId64
+           " edges and %" PRId64 " faces replaced, from %" PRId64 " to %" PRId64 " elements\n",
+           done.before, done.after, done.moves, done.edges, done.faces, before, mesh->elements);
+}
+
+void rg_mesh_finish(rg_mesh *mesh, const rg_mesh_arguments *a) {
+    rg_mesh_check_elements(mesh, a->input);
+    rg_mesh_sort(mesh);
+    rg_mesh_connect(mesh);
+    rg_mesh_check(mesh, a->input);
+    tell_parts(mesh, a->input);
+    if (a->improve) {
+        improve(mesh);
+        rg_mesh_check(mesh, a->input);
+    }
+    rg_mesh_file_write(a->output, mesh, 0, NULL);
+    printf("%s: %" PRId64 " elements, %" PRId64 " vertices, %d surface sets, %d volume sets\n", a->output,
            mesh->elements, mesh->vertices, mesh->sets, mesh->regions);
 }
 
@@ -151,7 +172,7 @@ static int from_case(const rg_mesh_arguments *a) {
 
 static int from_inp(const rg_mesh_arguments *a) {
     rg_mesh *mesh = rg_inp_read(a->input, a->scale);
-    rg_mesh_finish(mesh, a->input, a->output);
+    rg_mesh_finish(mesh, a);
     rg_mesh_free(mesh);
     return RG_OK;
 }

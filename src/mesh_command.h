@@ -11,6 +11,7 @@ typedef struct {
     const char *material; /* --case: a case file with the material for --info */
     double scale;         /* m per unit of the input */
     bool info;
+    bool improve;          /* --improve */
     const char *partition; /* --partition: numbers of ranks, separated by commas */
     int overrides;
     const char **override; /* --set */
@@ -24,8 +25,8 @@ rg_mesh_arguments rg_mesh_arguments_read(int argc, char **argv, int first);
  * mesh file go to the program rhegma-mesh beside this one, which is built where Gmsh is there. */
 int rg_mesh_command(int argc, char **argv);
 
-/* Sorts, connects and checks an imported mesh, tells of what is odd about it, and writes it. `input` begins
- * the messages. */
-void rg_mesh_finish(rg_mesh *mesh, const char *input, const char *output);
+/* Sorts, connects and checks an imported mesh, tells of what is odd about it, improves it if that was asked
+ * for, and writes it. */
+void rg_mesh_finish(rg_mesh *mesh, const rg_mesh_arguments *a);
 
 #endif

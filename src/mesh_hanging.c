@@ -5,6 +5,7 @@
 
 #include "../kernels/layout.h"
 #include "mem.h"
+#include "vector.h"
 #include "mesh_check.h"
 
 static const double near_face = 1e-6; /* of its longest edge */
@@ -114,10 +115,6 @@ static rg_gid first_in(const struct grid *g, int64_t cell) {
     return low;
 }
 
-static double dot(const double a[3], const double b[3]) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 /* Whether point p is within reach of the triangle: of its plane, and of its inside or edges. */
 static bool touches(const struct triangle *t, const double p[3]) {
     double u[3], v[3], w[3], n[3];
@@ -130,10 +127,11 @@ static bool touches(const struct triangle *t, const double p[3]) {
         int j = (i + 1) % 3, k = (i + 2) % 3;
         n[i] = u[j] * v[k] - u[k] * v[j];
     }
-    double uu = dot(u, u), uv = dot(u, v), vv = dot(v, v), wu = dot(w, u), wv = dot(w, v), nn = dot(n, n);
+    double uu = rg_dot(u, u), uv = rg_dot(u, v), vv = rg_dot(v, v), wu = rg_dot(w, u), wv = rg_dot(w, v),
+           nn = rg_dot(n, n);
     double b = (vv * wu - uv * wv) / nn, c = (uu * wv - uv * wu) / nn; /* barycentric coordinates */
     double slack = t->reach * sqrt(fmax(uu, vv) / nn);                 /* the reach over the least height */
-    return fabs(dot(w, n)) <= t->reach * sqrt(nn) && b >= -slack && c >= -slack && b + c <= 1 + slack;
+    return fabs(rg_dot(w, n)) <= t->reach * sqrt(nn) && b >= -slack && c >= -slack && b + c <= 1 + slack;
 }
 
 static bool is_corner(const struct triangle *t, rg_gid vertex) {

@@ -7,6 +7,7 @@
 #include "mem.h"
 #include "mesh_check.h"
 #include "tet.h"
+#include "vector.h"
 
 enum { QUALITY_BINS = 10, ANGLE_BINS = 9, MOST_CLASSES = 32, SMALLEST = 5 };
 
@@ -27,17 +28,6 @@ struct totals {
 
 /* ---- one element ---- */
 
-static double dot(const double a[3], const double b[3]) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static void cross(const double a[3], const double b[3], double out[3]) {
-    for (int i = 0; i < 3; i++) {
-        int j = (i + 1) % 3, k = (i + 2) % 3;
-        out[i] = a[j] * b[k] - a[k] * b[j];
-    }
-}
-
 static void edge(const rg_mesh *mesh, rg_gid e, int from, int to, double out[3]) {
     for (int i = 0; i < 3; i++) {
         out[i] = mesh->x[3 * mesh->corner[4 * e + to] + i] - mesh->x[3 * mesh->corner[4 * e + from] + i];
@@ -50,8 +40,8 @@ static void face_vector(const rg_mesh *mesh, rg_gid e, int f, double out[3]) {
     edge(mesh, e, rg_face_node[f][0], rg_face_node[f][1], u);
     edge(mesh, e, rg_face_node[f][0], rg_face_node[f][2], v);
     edge(mesh, e, rg_face_node[f][0], f, inward);
-    cross(u, v, out);
-    double sign = dot(out, inward) > 0 ? -1 : 1;
+    rg_cross(u, v, out);
+    double sign = rg_dot(out, inward) > 0 ? -1 : 1;
     for (int i = 0; i < 3; i++) {
         out[i] *= sign;
     }
@@ -66,12 +56,12 @@ static double circumradius(const rg_mesh *mesh, rg_gid e, double volume) {
     }
     for (int k = 0; k < 3; k++) {
         double n[3];
-        cross(a[(k + 1) % 3], a[(k + 2) % 3], n);
+        rg_cross(a[(k + 1) % 3], a[(k + 2) % 3], n);
         for (int i = 0; i < 3; i++) {
-            sum[i] += dot(a[k], a[k]) * n[i];
+            sum[i] += rg_dot(a[k], a[k]) * n[i];
         }
     }
-    return sqrt(dot(sum, sum)) / (12 * volume);
+    return sqrt(rg_dot(sum, sum)) / (12 * volume);
 }
 
 static struct shape measure(const rg_mesh *mesh, rg_gid e) {
@@ -82,7 +72,7 @@ static struct shape measure(const rg_mesh *mesh, rg_gid e) {
         fabs(rg_tet_volume(mesh->x + 3 * c[0], mesh->x + 3 * c[1], mesh->x + 3 * c[2], mesh->x + 3 * c[3]));
     for (int f = 0; f < 4; f++) {
         face_vector(mesh, e, f, n[f]);
-        double here = 0.5 * sqrt(dot(n[f], n[f]));
+        double here = 0.5 * sqrt(rg_dot(n[f], n[f]));
         area += here;
         largest = fmax(largest, here);
     }
@@ -90,7 +80,7 @@ static struct shape measure(const rg_mesh *mesh, rg_gid e) {
     s.quality = 3 * (3 * s.volume / area) / circumradius(mesh, e, s.volume);
     for (int f = 1, k = 0; f < 4; f++) {
         for (int g = 0; g < f; g++, k++) {
-            double cosine = -dot(n[f], n[g]) / sqrt(dot(n[f], n[f]) * dot(n[g], n[g]));
+            double cosine = -rg_dot(n[f], n[g]) / sqrt(rg_dot(n[f], n[f]) * rg_dot(n[g], n[g]));
             s.angle[k] = acos(fmax(-1, fmin(1, cosine))) * 180 / PI;
         }
     }
