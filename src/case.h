@@ -18,6 +18,8 @@ typedef enum { RG_LAW_NONE, RG_LAW_LINEAR } rg_law;
 typedef enum { RG_ACTIVATION_CONTINUOUS, RG_ACTIVATION_TOTAL } rg_activation;
 typedef enum { RG_CONTACT_PENALTY, RG_CONTACT_FLUX } rg_contact;
 typedef enum { RG_MASS_CONSISTENT, RG_MASS_LUMPED } rg_mass;
+typedef enum { RG_SHAPE_SPHERE, RG_SHAPE_PLANE, RG_SHAPE_CYLINDER } rg_shape_kind;
+typedef enum { RG_MOTION_FREE, RG_MOTION_PRESCRIBED } rg_motion;
 
 /* output.fields, as bits */
 enum {
@@ -31,6 +33,7 @@ enum {
     RG_FIELD_REGIME = 128,      /* largest of the element's points */
     RG_FIELD_PLASTIC = 256,     /* equivalent plastic strain: mean per element */
     RG_FIELD_TRIAXIALITY = 512, /* mean over von Mises stress, of the mean Cauchy stress */
+    RG_FIELD_RANK = 1024,       /* rank that owns the element, and that speaks for the cracked face */
     RG_FIELDS_COMMON = 63,      /* what every run puts out by default */
 };
 
@@ -45,6 +48,23 @@ typedef struct {
     char *name;   /* column prefix in history.csv */
     double at[3]; /* reference position (m) */
 } rg_probe;
+
+/* A rigid body that the solid's surface touches; it moves without turning. Values that the shape or the
+ * motion has no use for are 0. */
+typedef struct {
+    char *name; /* column prefix in history.csv */
+    rg_shape_kind shape;
+    rg_motion motion;
+    double at[3];         /* centre of the sphere, a point of the plane or of the axis, at the start (m) */
+    double normal[3];     /* of the plane, away from the body; of any length */
+    double axis[3];       /* of the cylinder, which has no ends; of any length */
+    double radius;        /* m */
+    double density, mass; /* kg/m^3, kg: one of them, of a free body */
+    rg_expr *velocity[3]; /* m/s: at the start, or prescribed in time; NULL: zero */
+    int sets;             /* of faces that may touch it; 0: all on the surface */
+    char **set;
+    double penalty; /* contact stiffness times h/(lambda + 2 mu), h the height of an element over its face */
+} rg_body_input;
 
 typedef struct {
     char *path; /* as given on the command line */
@@ -78,6 +98,8 @@ typedef struct {
     } initial;
     int boundaries;
     rg_boundary *boundary;
+    int bodies;
+    rg_body_input *body;
     struct {
         double end;    /* s */
         double safety; /* fraction of the critical time step */
@@ -87,6 +109,8 @@ typedef struct {
         char *dir;
         double interval_time;   /* s; 0 if given in steps */
         int64_t interval_steps; /* 0 if given in time */
+        int times;              /* moments of field output; 0: at every interval */
+        double *time;           /* s, ascending */
         int probes;
         rg_probe *probe;
         unsigned fields;

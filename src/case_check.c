@@ -135,6 +135,8 @@ static void check_entry(rg_check *ck, const rg_key *key, const rg_node *list, co
     }
     if (key->entry == &rg_boundary_table) {
         rg_boundary_rule(ck, list, i, item, good);
+    } else if (key->entry == &rg_body_table) {
+        rg_body_rule(ck, list, i, item, good);
     } else {
         rg_probe_rule(ck, list, i, item, good);
     }
@@ -238,6 +240,8 @@ static void learn(rg_check *ck, const rg_key *key, const rg_node *node, bool goo
         if (good) {
             rg_mesh_file_rule(ck, node);
         }
+    } else if (key->offset == offsetof(rg_case, output.time) && node != NULL && good) {
+        rg_times_rule(ck, node);
     } else if (key->offset == offsetof(rg_case, mesh.size) || key->offset == offsetof(rg_case, mesh.origin)) {
         ck->box = ck->box && good;
     } else if (key->offset == offsetof(rg_case, output.fields) && good && ck->model) {

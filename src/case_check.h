@@ -38,10 +38,17 @@ void rg_mesh_file_rule(rg_check *ck, const rg_node *node);
 void rg_model_rule(rg_check *ck, const rg_node *node);
 void rg_flaw_rule(rg_check *ck);
 void rg_fields_rule(rg_check *ck, const rg_key *key, const rg_node *node);
+/* Reports output times after the end of the run. */
+void rg_times_rule(rg_check *ck, const rg_node *node);
 
 /* Rules that tie several keys together, applied to entry i of a list once its keys are read. `good`: all of
  * them were. An entry that is not is left so that later entries are not compared with it. */
 void rg_boundary_rule(rg_check *ck, const rg_node *list, int i, const char *path, bool good);
+void rg_body_rule(rg_check *ck, const rg_node *list, int i, const char *path, bool good);
 void rg_probe_rule(rg_check *ck, const rg_node *list, int i, const char *path, bool good);
+
+/* Checks the name of a list's entry, which becomes part of column headings: of what letters it is, and that
+ * no body or probe before it has it. */
+void rg_name_rule(rg_check *ck, const rg_node *item, const char *path, const char *name);
 
 #endif

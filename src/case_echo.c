@@ -34,6 +34,27 @@ static void write_numbers(FILE *out, const rg_key *key, const void *value) {
     fputs(key->count == 3 ? "]" : "", out);
 }
 
+static void write_reals(FILE *out, const double *value, int count) {
+    for (int i = 0; i < count; i++) {
+        fprintf(out, "%s%.17g", i > 0 ? ", " : "[", value[i]);
+    }
+    fputc(']', out);
+}
+
+static void write_texts(FILE *out, char *const text[], int count) {
+    for (int i = 0; i < count; i++) {
+        fputs(i > 0 ? ", " : "[", out);
+        write_text(out, text[i]);
+    }
+    fputc(']', out);
+}
+
+static int list_length(const rg_key *key, const void *base) {
+    int count = 0;
+    memcpy(&count, (const char *)base + key->offset_count, sizeof count);
+    return count;
+}
+
 static void write_flags(FILE *out, const rg_key *key, unsigned flags) {
     const char *join = "";
     fputc('[', out);
@@ -80,6 +101,12 @@ static void write_value(FILE *out, const rg_key *key, const void *base) {
     case RG_KEY_TEXT:
         write_text(out, rg_pointer_get(value));
         break;
+    case RG_KEY_TEXTS:
+        write_texts(out, rg_pointer_get(value), list_length(key, base));
+        break;
+    case RG_KEY_REALS:
+        write_reals(out, rg_pointer_get(value), list_length(key, base));
+        break;
     case RG_KEY_EXPR:
         write_expr(out, rg_pointer_get(value));
         break;
@@ -97,6 +124,12 @@ static bool has_interval(const rg_case *c) {
     return c->output.interval_steps > 0 || c->output.interval_time < 1;
 }
 
+/* Absent numbers are 0. */
+static bool is_zero(const rg_key *key, const char *value) {
+    static const char zero[3 * sizeof(double)];
+    return memcmp(value, zero, (size_t)key->count * sizeof(double)) == 0; /* an int64_t is as large */
+}
+
 static bool is_present(const rg_key *key, const void *base) {
     const char *value = (const char *)base + key->offset;
     if (!rg_key_used(key, base)) {
@@ -108,11 +141,10 @@ static bool is_present(const rg_key *key, const void *base) {
     if (key->type == RG_KEY_TEXT || key->type == RG_KEY_EXPR) {
         return rg_pointer_get(value) != NULL;
     }
-    int64_t integer = 1;
-    if (key->type == RG_KEY_INTEGER && key->need == RG_NEED_OPTIONAL) {
-        memcpy(&integer, value, sizeof integer);
+    if (key->type == RG_KEY_TEXTS || key->type == RG_KEY_REALS) {
+        return list_length(key, base) > 0;
     }
-    return integer != 0;
+    return key->need != RG_NEED_OPTIONAL || key->type == RG_KEY_LIST || !is_zero(key, value);
 }
 
 static void write_indent(FILE *out, int indent, bool dash) {
@@ -141,8 +173,7 @@ static int write_sections(FILE *out, const char *before, const char *name, int i
 static void write_table(FILE *out, const rg_key_table *table, const void *base, int indent, bool entry);
 
 static void write_list(FILE *out, const rg_key *key, const char *base, int indent) {
-    int count = 0;
-    memcpy(&count, base + key->offset_count, sizeof count);
+    int count = list_length(key, base);
     const char *list = rg_pointer_get(base + key->offset);
     fputs(count == 0 ? " []\n" : "\n", out);
     for (int i = 0; i < count; i++) {

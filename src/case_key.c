@@ -36,11 +36,13 @@ static const char *const laws[] = {"none", "linear", NULL};
 static const char *const activations[] = {"continuous", "total", NULL};
 static const char *const contacts[] = {"penalty", "flux", NULL};
 static const char *const masses[] = {"consistent", "lumped", NULL};
+static const char *const shapes[] = {"sphere", "plane", "cylinder", NULL};
+static const char *const motions[] = {"free", "prescribed", NULL};
 static const char *const components[] = {"x", "y", "z", NULL};
 static const char *const box_sets[] = {"x-", "x+", "y-", "y+", "z-", "z+", NULL};
 static const char *const fields[] = {"displacement",     "velocity",    "stress", "mean_stress",
                                      "principal_stress", "crack",       "damage", "regime",
-                                     "plastic_strain",   "triaxiality", NULL};
+                                     "plastic_strain",   "triaxiality", "rank",   NULL};
 
 #define INITIAL(name_, unit_, member)                                                                        \
     { .name = (name_), .unit = (unit_), .type = RG_KEY_EXPR, OPTIONAL, .no_time = true, CASE(initial.member) }
@@ -103,12 +105,17 @@ static const rg_key case_keys[] = {
     {.name = "boundary", .type = RG_KEY_LIST, OPTIONAL, CASE(boundary), .entry = &rg_boundary_table,
      .offset_count = offsetof(rg_case, boundaries)},
 
+    {.name = "bodies", .type = RG_KEY_LIST, OPTIONAL, CASE(body), .entry = &rg_body_table,
+     .offset_count = offsetof(rg_case, bodies)},
+
     {.name = "time.end", .unit = "s", REAL, ABOVE(0), REQUIRED, CASE(time.end)},
     {.name = "time.safety", REAL, FROM_TO(0, 1), .low_open = true, DEFAULT(RG_DEFAULT_SAFETY), CASE(time.safety)},
     {.name = "time.steps", INTEGER, FROM(1), OPTIONAL, CASE(time.steps)},
 
     {.name = "output.dir", .type = RG_KEY_TEXT, OPTIONAL, CASE(output.dir)},
     {.name = "output.interval", .type = RG_KEY_INTERVAL, OPTIONAL, CASE(output)},
+    {.name = "output.times", .unit = "s", .type = RG_KEY_REALS, FROM(0), OPTIONAL, CASE(output.time),
+     .offset_count = offsetof(rg_case, output.times)},
     {.name = "output.probes", .type = RG_KEY_LIST, OPTIONAL, CASE(output.probe), .entry = &rg_probe_table,
      .offset_count = offsetof(rg_case, output.probes)},
     {.name = "output.fields", .type = RG_KEY_FLAGS, .choice = fields, DEFAULT(RG_FIELDS_COMMON), CASE(output.fields)},
@@ -124,6 +131,28 @@ static const rg_key boundary_keys[] = {
      .offset = offsetof(rg_boundary, value)},
 };
 
+#define BODY(member) .offset = offsetof(rg_body_input, member)
+#define BODY_VELOCITY(name_, component)                                                                      \
+    { .name = (name_), .unit = "m/s", .type = RG_KEY_EXPR, OPTIONAL, .no_place = true, BODY(velocity[component]) }
+
+static const rg_key body_keys[] = {
+    {.name = "name", .type = RG_KEY_TEXT, REQUIRED, BODY(name)},
+    {.name = "shape", CHOICE(shapes), REQUIRED, BODY(shape)},
+    {.name = "motion", CHOICE(motions), REQUIRED, BODY(motion)},
+    {.name = "at", .unit = "m", REAL3, ANY, REQUIRED, BODY(at)},
+    {.name = "radius", .unit = "m", REAL, ABOVE(0), OPTIONAL, BODY(radius)},
+    {.name = "normal", REAL3, ANY, OPTIONAL, BODY(normal)},
+    {.name = "axis", REAL3, ANY, OPTIONAL, BODY(axis)},
+    {.name = "density", .unit = "kg/m3", REAL, ABOVE(0), OPTIONAL, BODY(density)},
+    {.name = "mass", .unit = "kg", REAL, ABOVE(0), OPTIONAL, BODY(mass)},
+    BODY_VELOCITY("velocity.x", 0),
+    BODY_VELOCITY("velocity.y", 1),
+    BODY_VELOCITY("velocity.z", 2),
+    {.name = "faces", .type = RG_KEY_TEXTS, .choice = box_sets, OPTIONAL, BODY(set),
+     .offset_count = offsetof(rg_body_input, sets)},
+    {.name = "penalty", REAL, ABOVE(0), DEFAULT(4), BODY(penalty)},
+};
+
 static const rg_key probe_keys[] = {
     {.name = "name", .type = RG_KEY_TEXT, REQUIRED, .offset = offsetof(rg_probe, name)},
     {.name = "at", .unit = "m", REAL3, ANY, REQUIRED, .offset = offsetof(rg_probe, at)},
@@ -135,6 +164,7 @@ static const rg_key probe_keys[] = {
 
 const rg_key_table rg_case_table = TABLE(case_keys, rg_case);
 const rg_key_table rg_boundary_table = TABLE(boundary_keys, rg_boundary);
+const rg_key_table rg_body_table = TABLE(body_keys, rg_body_input);
 const rg_key_table rg_probe_table = TABLE(probe_keys, rg_probe);
 
 _Static_assert(sizeof(case_keys) / sizeof(case_keys[0]) <= RG_MAX_KEYS, "RG_MAX_KEYS is too small");
@@ -153,12 +183,14 @@ static int range_words(const rg_key *key, char *text, size_t size) {
         const char *and = low[0] != '\0' ? " and" : "";
         snprintf(high, sizeof high, "%s %s %.10g", and, key->high_open ? "<" : "<=", key->high);
     }
-    return snprintf(text, size, "%s%s%s%s", key->count == 3 ? "[x, y, z], each " : "", noun, low, high);
+    const char *list = key->type == RG_KEY_REALS ? "ascending list, each " : "[x, y, z], each ";
+    return snprintf(text, size, "%s%s%s%s", key->count == 1 ? "" : list, noun, low, high);
 }
 
 /* "none, linear" */
 static int choice_words(const rg_key *key, char *text, size_t size) {
-    int used = snprintf(text, size, "%s", key->type == RG_KEY_FLAGS ? "list from " : "");
+    bool list = key->type == RG_KEY_FLAGS || key->type == RG_KEY_TEXTS;
+    int used = snprintf(text, size, "%s", list ? "list from " : "");
     for (int i = 0; key->choice[i] != NULL && (size_t)used < size; i++) {
         used += snprintf(text + used, size - (size_t)used, "%s%s", i > 0 ? ", " : "", key->choice[i]);
     }
@@ -177,6 +209,7 @@ static int list_words(const rg_key_table *entry, char *text, size_t size) {
 static int type_words(const rg_key *key, char *text, size_t size) {
     switch (key->type) {
     case RG_KEY_REAL:
+    case RG_KEY_REALS:
     case RG_KEY_INTEGER:
         return range_words(key, text, size);
     case RG_KEY_CHOICE:
@@ -184,8 +217,13 @@ static int type_words(const rg_key *key, char *text, size_t size) {
         return choice_words(key, text, size);
     case RG_KEY_TEXT:
         return key->choice != NULL ? choice_words(key, text, size) : snprintf(text, size, "text");
+    case RG_KEY_TEXTS:
+        return choice_words(key, text, size);
     case RG_KEY_EXPR:
-        return snprintf(text, size, "number or expression in x, y, z%s", key->no_time ? "" : ", t");
+        return snprintf(text, size, "number or expression in %s%s", key->no_place ? "" : "x, y, z",
+                        key->no_time    ? ""
+                        : key->no_place ? "t"
+                                        : ", t");
     case RG_KEY_INTERVAL:
         return snprintf(text, size, "integer >= 1 (steps), or number > 0 and < 1 (simulated seconds)");
     case RG_KEY_LIST:
@@ -300,6 +338,17 @@ const char *rg_key_nearest(const rg_key_table *table, const char *name, char *te
 
 /* ---- freeing ---- */
 
+static void free_texts(const rg_key *key, char *base) {
+    char **list = rg_pointer_get(base + key->offset);
+    int count = 0;
+    memcpy(&count, base + key->offset_count, sizeof count);
+    for (int i = 0; i < count; i++) {
+        rg_free(list[i]);
+    }
+    rg_free(list);
+    rg_pointer_set(base + key->offset, NULL);
+}
+
 static void free_list(const rg_key *key, char *base) {
     void *list = rg_pointer_get(base + key->offset);
     int count = 0;
@@ -315,7 +364,7 @@ void rg_keys_free(const rg_key_table *table, void *base) {
     for (int i = 0; i < table->keys; i++) {
         const rg_key *key = &table->key[i];
         void *value = (char *)base + key->offset;
-        if (key->type == RG_KEY_TEXT) {
+        if (key->type == RG_KEY_TEXT || key->type == RG_KEY_REALS) {
             rg_free(rg_pointer_get(value));
             rg_pointer_set(value, NULL);
         } else if (key->type == RG_KEY_EXPR) { /* may be shared by two keys of a group */
@@ -323,6 +372,8 @@ void rg_keys_free(const rg_key_table *table, void *base) {
             rg_pointer_set(value, NULL);
         } else if (key->type == RG_KEY_LIST) {
             free_list(key, base);
+        } else if (key->type == RG_KEY_TEXTS) {
+            free_texts(key, base);
         }
     }
 }

@@ -20,6 +20,8 @@ typedef enum {
     RG_KEY_CHOICE,   /* an enum: position in `choice` */
     RG_KEY_FLAGS,    /* unsigned: list of entries of `choice`, one bit each */
     RG_KEY_TEXT,     /* char *: any text, or one of `choice` if given */
+    RG_KEY_TEXTS,    /* char **: list of such texts */
+    RG_KEY_REALS,    /* double *: list of any length */
     RG_KEY_EXPR,     /* rg_expr *: number or expression */
     RG_KEY_INTERVAL, /* output.interval: steps or seconds, by the kind of number */
     RG_KEY_LIST,     /* array of mappings with the keys of `entry` */
@@ -28,7 +30,7 @@ typedef enum {
 typedef enum {
     RG_NEED_REQUIRED,
     RG_NEED_DEFAULT,  /* `fallback`, in every component */
-    RG_NEED_OPTIONAL, /* absent is 0 or NULL, or derived from other keys */
+    RG_NEED_OPTIONAL, /* absent is 0 (of vectors: all three) or NULL, or derived from other keys */
 } rg_key_need;
 
 /* Keys that are used only in some cases; given in others, they are refused rather than ignored. */
@@ -53,12 +55,12 @@ typedef struct {
     int count;                 /* numbers: 1 or 3 */
     double low, high;          /* numbers: range */
     bool low_open, high_open;  /* range without its ends */
-    bool no_time;              /* expression without t */
+    bool no_time, no_place;    /* expression without t; without x, y, z */
     const char *const *choice; /* NULL-terminated; of a text: with the built-in mesh only */
     double fallback;
     size_t offset;                    /* of the value in the structure */
     const struct rg_key_table *entry; /* of a list */
-    size_t offset_count;              /* of a list: where its length (int) is kept */
+    size_t offset_count;              /* of lists: where their length (int) is kept */
 } rg_key;
 
 typedef struct rg_key_table {
@@ -70,7 +72,7 @@ typedef struct rg_key_table {
 enum { RG_MAX_KEYS = 128 }; /* at most, in a table */
 
 /* A key comes after the keys that decide whether its group is used. */
-extern const rg_key_table rg_case_table, rg_boundary_table, rg_probe_table;
+extern const rg_key_table rg_case_table, rg_boundary_table, rg_body_table, rg_probe_table;
 
 /* What a value of the key must be, in words. Returns `text`. */
 const char *rg_key_allowed(const rg_key *key, char *text, size_t size);

@@ -28,6 +28,15 @@ void rg_mesh_file_rule(rg_check *ck, const rg_node *node) {
     rg_free(path);
 }
 
+void rg_times_rule(rg_check *ck, const rg_node *node) {
+    const rg_case *c = ck->c;
+    int last = c->output.times - 1;
+    if (c->time.end > 0 && c->output.time[last] > c->time.end) {
+        rg_subject subject = {.key = "output.times", .value = node->child[last].text};
+        rg_problem_add(ck->problems, node->child[last].at, &subject, "after time.end, %g s", c->time.end);
+    }
+}
+
 /* ---- boundary: one prescribed motion per entry, one entry per set and component ---- */
 
 static bool one_motion(rg_check *ck, const rg_node *item, const char *path, rg_boundary *b) {
@@ -72,34 +81,47 @@ void rg_boundary_rule(rg_check *ck, const rg_node *list, int i, const char *path
     }
 }
 
-/* ---- probes: unique names fit for a column heading, places inside the box ---- */
+/* ---- names: unique, fit for a column heading ---- */
 
-static const char *wrong_name(const rg_case *c, int i) {
-    static const char allowed[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
-    const char *name = c->output.probe[i].name;
-    if (strspn(name, allowed) != strlen(name)) {
-        return "not a name";
-    }
-    for (int j = 0; j < i; j++) {
-        const char *other = c->output.probe[j].name;
-        if (other != NULL && strcmp(other, name) == 0) {
-            return "the name of an earlier probe";
+static bool is_taken(const rg_case *c, const char *name) {
+    for (int j = 0; j < c->bodies; j++) {
+        const char *other = c->body[j].name;
+        if (other != NULL && other != name && strcmp(other, name) == 0) {
+            return true;
+        }
+        if (other == name) {
+            return false;
         }
     }
-    return NULL;
+    for (int j = 0; j < c->output.probes; j++) {
+        const char *other = c->output.probe[j].name;
+        if (other == name) {
+            return false;
+        }
+        if (other != NULL && strcmp(other, name) == 0) {
+            return true;
+        }
+    }
+    return false;
 }
 
-static void check_name(rg_check *ck, const rg_node *item, const char *path, int i) {
-    const char *wrong = wrong_name(ck->c, i);
+void rg_name_rule(rg_check *ck, const rg_node *item, const char *path, const char *name) {
+    static const char allowed[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
     const rg_node *node = rg_node_find(item, "name", strlen("name"));
+    const char *wrong = strspn(name, allowed) != strlen(name) ? "not a name"
+                        : is_taken(ck->c, name)               ? "the name of an earlier body or probe"
+                                                              : NULL;
     if (wrong != NULL && node != NULL) {
         char *key = rg_text_format("%s.name", path);
-        rg_subject subject = {
-            .key = key, .value = node->text, .allowed = "letters, digits, _ and -; unique among the probes"};
+        rg_subject subject = {.key = key,
+                              .value = node->text,
+                              .allowed = "letters, digits, _ and -; unique among bodies and probes"};
         rg_problem_add(ck->problems, node->at, &subject, "%s", wrong);
         rg_free(key);
     }
 }
+
+/* ---- probes: places inside the box ---- */
 
 static void check_place(rg_check *ck, const rg_node *item, const char *path, const rg_probe *probe) {
     const rg_node *node = rg_node_find(item, "at", strlen("at"));
@@ -119,7 +141,7 @@ static void check_place(rg_check *ck, const rg_node *item, const char *path, con
 void rg_probe_rule(rg_check *ck, const rg_node *list, int i, const char *path, bool good) {
     const rg_node *item = &list->child[i];
     if (ck->c->output.probe[i].name != NULL) {
-        check_name(ck, item, path, i);
+        rg_name_rule(ck, item, path, ck->c->output.probe[i].name);
     }
     if (good && ck->box) {
         check_place(ck, item, path, &ck->c->output.probe[i]);

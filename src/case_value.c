@@ -187,6 +187,52 @@ static bool read_text(rg_check *ck, const rg_key *key, const rg_node *node, cons
     return true;
 }
 
+/* ---- lists of any length ---- */
+
+typedef bool read_item(rg_check *ck, const rg_key *key, const rg_node *node, const char *path, void *value);
+
+static bool read_real_item(rg_check *ck, const rg_key *key, const rg_node *node, const char *path,
+                           void *value) {
+    return read_number(ck, key, node, path, value, 0);
+}
+
+/* Makes the array that the key's pointer in `base` leads to, with an item of `size` bytes for each entry. */
+static bool read_items(rg_check *ck, const rg_key *key, const rg_node *node, const char *path, char *base,
+                       size_t size, read_item *read) {
+    if (node->kind != RG_NODE_LIST || node->children == 0) {
+        rg_value_wrong(ck, key, node, path, NULL,
+                       node->kind == RG_NODE_LIST ? "an empty list" : "not a list");
+        return false;
+    }
+    rg_key single = *key;
+    single.count = 1;
+    single.type = key->type == RG_KEY_REALS ? RG_KEY_REAL : RG_KEY_TEXT;
+    char *items = rg_alloc((size_t)node->children, size);
+    rg_pointer_set(base + key->offset, items);
+    memcpy(base + key->offset_count, &node->children, sizeof node->children);
+    bool good = true;
+    for (int i = 0; i < node->children; i++) {
+        char *item = rg_text_format("%s[%d]", path, i);
+        good = read(ck, &single, &node->child[i], item, items + (size_t)i * size) && good;
+        rg_free(item);
+    }
+    return good;
+}
+
+static bool read_reals(rg_check *ck, const rg_key *key, const rg_node *node, const char *path, char *base) {
+    if (!read_items(ck, key, node, path, base, sizeof(double), read_real_item)) {
+        return false;
+    }
+    const double *value = rg_pointer_get(base + key->offset);
+    for (int i = 1; i < node->children; i++) {
+        if (value[i] <= value[i - 1]) {
+            rg_value_wrong(ck, key, node, path, NULL, "not ascending");
+            return false;
+        }
+    }
+    return true;
+}
+
 /* ---- expressions and the output interval ---- */
 
 static bool read_expr(rg_check *ck, const rg_key *key, const rg_node *node, const char *path, void *value) {
@@ -204,6 +250,11 @@ static bool read_expr(rg_check *ck, const rg_key *key, const rg_node *node, cons
     }
     if (key->no_time && rg_expr_uses_time(e)) {
         rg_value_wrong(ck, key, node, path, NULL, "depends on t, but this is the state at the start");
+        rg_expr_free(e);
+        return false;
+    }
+    if (key->no_place && rg_expr_uses_position(e)) {
+        rg_value_wrong(ck, key, node, path, NULL, "depends on x, y or z, but this is the same everywhere");
         rg_expr_free(e);
         return false;
     }
@@ -240,6 +291,10 @@ bool rg_value_read(rg_check *ck, const rg_key *key, const rg_node *node, const c
         return read_flags(ck, key, node, path, value);
     case RG_KEY_TEXT:
         return read_text(ck, key, node, path, value);
+    case RG_KEY_TEXTS:
+        return read_items(ck, key, node, path, base, sizeof(char *), read_text);
+    case RG_KEY_REALS:
+        return read_reals(ck, key, node, path, base);
     case RG_KEY_EXPR:
         return read_expr(ck, key, node, path, value);
     case RG_KEY_INTERVAL:

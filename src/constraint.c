@@ -106,12 +106,11 @@ static const pattern *pattern_of(rg_constraints *k, unsigned mask) {
 /* ---- Set-up ---- */
 
 static int set_number(const rg_part *part, const char *name) {
-    for (int i = 0; i < part->sets; i++) {
-        if (strcmp(part->set_name[i], name) == 0) {
-            return i;
-        }
+    int set = rg_part_set(part, name);
+    if (set < 0) {
+        rg_fatal(RG_USAGE, "boundary: the mesh has no set named '%s'", name);
     }
-    rg_fatal(RG_USAGE, "boundary: the mesh has no set named '%s'", name);
+    return set;
 }
 
 /* Boundary that prescribes component c of each node of an element, -1 for none; returns the mask of those

@@ -89,6 +89,10 @@ void rg_estimate_print(const rg_solver *s, const rg_estimate *e, FILE *out) {
             "time step      %.4g s = %.3g of the critical %.4g s, set by element %" PRId64
             " with its faces %s\n",
             e->dt, c->time.safety, e->dt_critical, s->limiting, s->limiting_state);
+    if (s->bodies->omega2 > 0) {
+        fprintf(out, "               shorter by %.2g %% for what may touch bodies\n",
+                100 * (1 - sqrt(1 - s->bodies->omega2 / s->omega2)));
+    }
     fprintf(out, "steps          %" PRId64 " to %.4g s\n", e->steps,
             fmin(c->time.end, (double)e->steps * e->dt));
     fprintf(

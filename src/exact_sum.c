@@ -78,6 +78,14 @@ double rg_exact_value(rg_exact_sum *sum) {
     return sign * value;
 }
 
+void rg_exact_start_allreduce(rg_exact_sum *sums, int count, MPI_Comm comm, MPI_Request *request) {
+    for (int i = 0; i < count; i++) {
+        carry(&sums[i]);
+    }
+    MPI_Iallreduce(MPI_IN_PLACE, sums, count * (int)(sizeof *sums / sizeof(int64_t)), MPI_INT64_T, MPI_SUM,
+                   comm, request);
+}
+
 void rg_exact_allreduce(rg_exact_sum *sums, int count, MPI_Comm comm) {
     for (int i = 0; i < count; i++) {
         carry(&sums[i]);

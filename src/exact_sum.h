@@ -30,4 +30,7 @@ double rg_exact_value(rg_exact_sum *sum);
 /* Collective: replaces sums[count] by their totals over the ranks. */
 void rg_exact_allreduce(rg_exact_sum *sums, int count, MPI_Comm comm);
 
+/* The same, under way when it returns: `sums` is the library's until `request` is done. */
+void rg_exact_start_allreduce(rg_exact_sum *sums, int count, MPI_Comm comm, MPI_Request *request);
+
 #endif

@@ -100,7 +100,8 @@ static void finish_row(rg_csv *t) {
 
 void rg_csv_energy_header(rg_csv *t) {
     if (t->file != NULL) {
-        fputs("step,time,kinetic,bulk,penalty,cohesive,contact,dissipated,plastic,damage,external_work,total,"
+        fputs("step,time,kinetic,bodies,bulk,penalty,cohesive,contact,dissipated,plastic,damage,external_"
+              "work,total,"
               "error_rel,"
               "broken_area,"
               "failed_area,momentum_x,momentum_y,momentum_z,angular_x,angular_y,angular_z",
@@ -115,6 +116,7 @@ void rg_csv_energy(rg_csv *t, const rg_energy *e) {
     }
     const double row[] = {e->time,
                           e->kinetic,
+                          e->bodies,
                           e->bulk,
                           e->penalty,
                           e->cohesive,

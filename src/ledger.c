@@ -123,6 +123,7 @@ static void sum_up(rg_solver *s, rg_exact_sum sum[SUMS]) {
             rg_tile_receive(s, &d->tile[t], w);
             element_energies(s, &d->tile[t], w, energy, mine);
             interface_energies(s, &d->tile[t], w, energy, mine);
+            rg_bodies_energy(s->bodies, t, s->u, &mine[INTERFACE + RG_E_CONTACT]);
         }
         rg_free(energy);
 #pragma omp critical
@@ -142,10 +143,12 @@ const rg_energy *rg_ledger_take(rg_ledger *l, rg_solver *s) {
         v[k] = rg_exact_value(&sum[k]);
     }
     const double *part = v + INTERFACE;
+    rg_bodies_account bodies = rg_bodies_take(s->bodies);
     rg_energy *e = &l->last;
     *e = (rg_energy){.step = s->step,
                      .time = s->time,
                      .kinetic = v[KINETIC],
+                     .bodies = bodies.kinetic,
                      .bulk = v[BULK],
                      .penalty = part[RG_E_PENALTY],
                      .cohesive = part[RG_E_COHESIVE],
@@ -153,13 +156,17 @@ const rg_energy *rg_ledger_take(rg_ledger *l, rg_solver *s) {
                      .dissipated = part[RG_E_DISSIPATED],
                      .plastic = v[RELEASED + RG_RELEASED_PLASTIC],
                      .damage = v[RELEASED + RG_RELEASED_DAMAGE],
-                     .external = v[EXTERNAL],
+                     .external = v[EXTERNAL] + bodies.work,
                      .broken_area = v[BROKEN],
                      .failed_area = v[FAILED],
                      .momentum = {v[MOMENTUM], v[MOMENTUM + 1], v[MOMENTUM + 2]},
                      .angular_momentum = {v[ANGULAR], v[ANGULAR + 1], v[ANGULAR + 2]}};
-    double stored =
-        e->kinetic + e->bulk + e->penalty + e->cohesive + e->contact + e->dissipated + e->plastic + e->damage;
+    for (int c = 0; c < 3; c++) {
+        e->momentum[c] += bodies.momentum[c];
+        e->angular_momentum[c] += bodies.angular_momentum[c];
+    }
+    double stored = e->kinetic + e->bodies + e->bulk + e->penalty + e->cohesive + e->contact + e->dissipated +
+                    e->plastic + e->damage;
     e->total = stored - e->external;
     if (!l->begun) {
         *l = (rg_ledger){.begun = true, .start = e->total, .last = *e};

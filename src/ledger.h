@@ -8,17 +8,18 @@
 typedef struct {
     int64_t step;
     double time;
-    double kinetic, bulk, penalty, cohesive, contact; /* J */
-    double dissipated;                                /* by cracks between elements (J) */
+    double kinetic, bodies, bulk, penalty, cohesive, contact; /* J; kinetic: of the solid, bodies: of free
+ rigid ones; contact: of cracks and of bodies */
+    double dissipated;                                        /* by cracks between elements (J) */
     double plastic, damage; /* set free in the bulk by plastic flow and by growing microcracks (J); the latter
                          can be negative, where growth raises the stored energy (deshpande_evans_model.h) */
-    double external;        /* work done on the body (J) */
+    double external;        /* work done by prescribed motions (J) */
     double total;           /* sum of the parts less the external work (J) */
     double error;           /* change of the total since the start, over the largest energy seen (or what
                              * rounding of F makes of the energy, if that is more: 1000 eps mu V) */
     double broken_area;     /* of the points that switched (m^2) */
     double failed_area;     /* of those that carry nothing any more (m^2) */
-    double momentum[3], angular_momentum[3]; /* kg m/s, kg m^2/s about the origin */
+    double momentum[3], angular_momentum[3]; /* with free bodies: kg m/s, kg m^2/s about the origin */
 } rg_energy;
 
 typedef struct {

@@ -50,5 +50,5 @@ unsigned rg_material_default_fields(rg_material_model model) {
 }
 
 unsigned rg_material_possible_fields(rg_material_model model) {
-    return RG_FIELDS_COMMON | RG_FIELD_TRIAXIALITY | internal_fields(model);
+    return RG_FIELDS_COMMON | RG_FIELD_RANK | RG_FIELD_TRIAXIALITY | internal_fields(model);
 }

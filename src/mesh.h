@@ -126,6 +126,9 @@ rg_part *rg_part_distribute_weighted(const rg_mesh *mesh, int tile, double *weig
  * caller owns the result. */
 rg_part *rg_part_read(const char *path, double *weight, MPI_Comm comm);
 
+/* Number of the surface set of that name; -1 if the mesh has none. */
+int rg_part_set(const rg_part *part, const char *name);
+
 void rg_part_free(rg_part *part);
 
 #endif

@@ -152,6 +152,15 @@ rg_part *rg_part_distribute(const rg_mesh *mesh, int tile, MPI_Comm comm) {
     return rg_part_distribute_weighted(mesh, tile, NULL, comm);
 }
 
+int rg_part_set(const rg_part *part, const char *name) {
+    for (int i = 0; i < part->sets; i++) {
+        if (strcmp(part->set_name[i], name) == 0) {
+            return i;
+        }
+    }
+    return -1;
+}
+
 void rg_part_free(rg_part *part) {
     if (part == NULL) {
         return;

@@ -13,17 +13,21 @@
 #include "quadrature.h"
 #include "tile.h"
 
-enum { VALUES = 12, CAPACITY = 256 }; /* per probe and sample; samples between two flushes */
+enum { VALUES = 12, BODY = 9, CAPACITY = 256 }; /* per probe, body and sample; samples between two flushes */
 
 static const char *const column[VALUES] = {"ux",  "uy",  "uz",  "vx",  "vy",  "vz",
                                            "sxx", "syy", "szz", "syz", "sxz", "sxy"};
 
+static const char *const body_column[BODY] = {"x", "y", "z", "vx", "vy", "vz", "fx", "fy", "fz"};
+
 struct rg_probes {
     MPI_Comm comm;
     int rank, probes, samples;
+    int row; /* values of a sample: of the probes, then of the bodies */
+    const rg_bodies *bodies;
     rg_lid *slot;                 /* [probes]; -1 where another rank has it */
     double (*at)[4];              /* [probes]: barycentric coordinates */
-    double *time, *value, *total; /* [CAPACITY], [CAPACITY][probes][VALUES]; total: on rank 0 */
+    double *time, *value, *total; /* [CAPACITY], [CAPACITY][row]; total: on rank 0 */
     FILE *file;
 };
 
@@ -65,6 +69,9 @@ static void write_header(rg_probes *p, const rg_case *c) {
             fprintf(p->file, ",%s_%s", c->output.probe[i].name, column[k]);
         }
     }
+    for (int i = 0; i < c->bodies * BODY; i++) {
+        fprintf(p->file, ",%s_%s", c->body[i / BODY].name, body_column[i % BODY]);
+    }
     fputc('\n', p->file);
 }
 
@@ -104,14 +111,19 @@ static void watch(void *context, rg_solver *s, size_t tile, const rg_workspace *
     rg_probes *p = context;
     for (int i = 0; i < p->probes; i++) {
         if (p->slot[i] >= 0 && (size_t)p->slot[i] / RG_LANES / s->domain->tile_blocks == tile) {
-            sample(s, w, (size_t)p->slot[i], p->at[i], p->value + (p->samples * p->probes + i) * VALUES);
+            sample(s, w, (size_t)p->slot[i], p->at[i], p->value + p->samples * p->row + i * VALUES);
         }
     }
 }
 
 rg_probes *rg_probes_find(const rg_solver *s) {
     rg_probes *p = RG_NEW(rg_probes, 1);
-    *p = (rg_probes){.comm = s->comm, .rank = s->rank, .probes = s->input->output.probes};
+    int probes = s->input->output.probes;
+    *p = (rg_probes){.comm = s->comm,
+                     .rank = s->rank,
+                     .probes = probes,
+                     .row = probes * VALUES + s->bodies->count * BODY,
+                     .bodies = s->bodies};
     p->slot = RG_NEW(rg_lid, (size_t)p->probes + 1);
     p->at = rg_alloc((size_t)p->probes + 1, sizeof *p->at);
     for (int i = 0; i < p->probes; i++) {
@@ -121,7 +133,7 @@ rg_probes *rg_probes_find(const rg_solver *s) {
 }
 
 void rg_probes_open(rg_probes *p, rg_solver *s) {
-    size_t size = CAPACITY * (size_t)p->probes * VALUES + 1;
+    size_t size = CAPACITY * (size_t)p->row + 1;
     p->time = RG_NEW(double, CAPACITY);
     p->value = RG_NEW(double, size);
     p->total = RG_NEW(double, size);
@@ -132,15 +144,26 @@ void rg_probes_open(rg_probes *p, rg_solver *s) {
     }
     s->watch = watch;
     s->watch_context = p;
-    if (p->rank == 0 && p->probes > 0) {
+    if (p->rank == 0 && p->row > 0) {
         write_header(p, s->input);
     }
 }
 
+/* All ranks know the bodies; one says where they are. */
+static void sample_bodies(const rg_probes *p, double *out) {
+    for (int i = 0; p->rank == 0 && i < p->bodies->count; i++) {
+        const rg_body_seen *seen = &p->bodies->body[i].seen;
+        memcpy(out + i * BODY, seen->x, sizeof seen->x);
+        memcpy(out + i * BODY + 3, seen->v, sizeof seen->v);
+        memcpy(out + i * BODY + 6, seen->force, sizeof seen->force);
+    }
+}
+
 void rg_probes_next(rg_probes *p, double time) {
-    if (p->probes == 0) {
+    if (p->row == 0) {
         return;
     }
+    sample_bodies(p, p->value + p->samples * p->row + p->probes * VALUES);
     p->time[p->samples] = time;
     if (++p->samples == CAPACITY) {
         rg_probes_flush(p);
@@ -148,7 +171,7 @@ void rg_probes_next(rg_probes *p, double time) {
 }
 
 void rg_probes_flush(rg_probes *p) {
-    int count = p->samples * p->probes * VALUES;
+    int count = p->samples * p->row;
     if (count == 0) {
         return;
     }
@@ -156,8 +179,8 @@ void rg_probes_flush(rg_probes *p) {
     MPI_Reduce(p->value, p->total, count, MPI_DOUBLE, MPI_SUM, 0, p->comm);
     for (int k = 0; p->rank == 0 && k < p->samples; k++) {
         fprintf(p->file, "%.17g", p->time[k]);
-        for (int i = 0; i < p->probes * VALUES; i++) {
-            fprintf(p->file, ",%.17g", p->total[k * p->probes * VALUES + i]);
+        for (int i = 0; i < p->row; i++) {
+            fprintf(p->file, ",%.17g", p->total[k * p->row + i]);
         }
         fputc('\n', p->file);
     }

@@ -32,6 +32,7 @@ typedef struct {
     rg_summary summary;
     rg_csv *energy;
     double dt_reference, next_output;
+    int frame;        /* next of output.times */
     double good_time; /* of the last output that was in order (s) */
     char failure[400];
 } run;
@@ -42,6 +43,10 @@ static double step_size(const run *r, double stiffening) {
     double dt = r->dt_reference;
     if (stiffening > STIFFENING_FREE) {
         dt /= sqrt(exp2(ceil(4 * log2(stiffening)) / 4));
+    }
+    if (r->frame < r->input->output.times) { /* equal steps that end at the next frame */
+        double there = r->input->output.time[r->frame] - r->solver->time;
+        dt = there > 0 ? there / ceil(there / dt * (1 - 1e-9)) : dt;
     }
     double left = r->input->time.end - r->solver->time;
     return left > 0 && left < dt * (1 + 1e-9) ? left : dt;
@@ -85,6 +90,16 @@ static bool output_due(run *r) {
     return true;
 }
 
+/* Whether fields of the present state are to be written. */
+static bool frame_due(run *r) {
+    const rg_case *c = r->input;
+    if (r->frame == c->output.times || r->solver->time < c->output.time[r->frame] * (1 - 1e-12)) {
+        return false;
+    }
+    r->frame++;
+    return true;
+}
+
 static bool done(const run *r) {
     const rg_case *c = r->input;
     return r->solver->time >= c->time.end * (1 - 1e-12) ||
@@ -92,7 +107,7 @@ static bool done(const run *r) {
 }
 
 /* Ledger, fields and progress of the current state. */
-static void output(run *r) {
+static void output(run *r, bool fields) {
     const rg_energy *e = rg_ledger_take(&r->ledger, r->solver);
     rg_csv_energy(r->energy, e);
     if (r->failure[0] == '\0' && !(r->ledger.worst <= r->input->output.energy_limit)) {
@@ -107,7 +122,9 @@ static void output(run *r) {
         r->good_time = e->time;
     }
     rg_probes_flush(r->probes);
-    rg_snapshots_write(r->snapshots, r->solver);
+    if (fields) {
+        rg_snapshots_write(r->snapshots, r->solver);
+    }
     rg_progress_show(&r->progress, r->solver, e);
 }
 
@@ -116,9 +133,10 @@ static void output(run *r) {
  * change by more than any sensible safety. Returns whether to go on. */
 static bool advance(run *r, double *other) {
     rg_solver *s = r->solver;
+    bool last = done(r), due = output_due(r) || last;
+    bool frame = frame_due(r) || (due && r->input->output.times == 0), fresh = due || frame;
     double dt = step_size(r, s->stiffening_anywhere), time = s->time;
     int64_t step = s->step;
-    bool last = done(r), fresh = output_due(r) || last;
     if (fresh) {
         rg_solver_kick(s, dt);
     } else {
@@ -130,7 +148,7 @@ static bool advance(run *r, double *other) {
     }
     if (fresh) {
         double begin = MPI_Wtime();
-        output(r);
+        output(r, frame);
         *other += MPI_Wtime() - begin;
     }
     if (r->failure[0] != '\0' || last) {

@@ -188,6 +188,14 @@ static void write_states(rg_snapshots *w, rg_solver *s) {
     }
 }
 
+static void write_ranks(rg_snapshots *w, const rg_solver *s) {
+    for (size_t i = 0; i < w->slab->own; i++) {
+        w->record[i] = s->rank;
+    }
+    send(w, 1);
+    rg_writer_volume(w->writer, "rank", "1", RG_CENTER_CELL, 1, w->sorted);
+}
+
 static void write_cracks(rg_snapshots *w, const rg_solver *s) {
     rg_crack_face *face;
     size_t count = rg_crack_surface(s, &face);
@@ -204,6 +212,12 @@ static void write_cracks(rg_snapshots *w, const rg_solver *s) {
         }
         rg_writer_surface_field(w->writer, name[k], unit[k], 1, column);
     }
+    for (size_t i = 0; i < count; i++) {
+        column[i] = s->rank;
+    }
+    if (w->fields & RG_FIELD_RANK) {
+        rg_writer_surface_field(w->writer, "rank", "1", 1, column);
+    }
     rg_free(column);
     rg_free(face);
 }
@@ -219,8 +233,12 @@ void rg_snapshots_write(rg_snapshots *w, rg_solver *s) {
     if (w->fields & RG_FIELD_VELOCITY) {
         write_nodal(w, s, "velocity", "m/s", s->now);
     }
-    if (w->fields & ~(unsigned)(RG_FIELD_DISPLACEMENT | RG_FIELD_VELOCITY | RG_FIELD_CRACK)) {
+    const unsigned others = RG_FIELD_DISPLACEMENT | RG_FIELD_VELOCITY | RG_FIELD_CRACK | RG_FIELD_RANK;
+    if (w->fields & ~others) {
         write_states(w, s);
+    }
+    if (w->fields & RG_FIELD_RANK) {
+        write_ranks(w, s);
     }
     if (w->fields & RG_FIELD_CRACK) {
         write_cracks(w, s);

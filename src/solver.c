@@ -114,6 +114,7 @@ rg_solver *rg_solver_make_from_part(const rg_case *input, rg_part *part, MPI_Com
     rg_free(s->part->element);
     s->part->element = NULL;
     s->constraints = rg_constraints_make(input, s->domain, s->part);
+    s->bodies = rg_bodies_make(input, s->domain, s->part, &s->material, s->threads, comm);
     allocate_fields(s);
     place_fields(s);
     for (int k = 0; k < 2; k++) {
@@ -137,10 +138,10 @@ rg_solver *rg_solver_make(const rg_case *input, MPI_Comm comm) {
 typedef struct {
     rg_real *velocity;
     double dt;
-    bool move;    /* the step goes on: drift and publish at once */
-    bool observe; /* `now` is wanted everywhere */
-    bool constrain;
-    bool advance; /* the history of the material goes on by the step that led here: once for each state */
+    bool move;      /* the step goes on: drift and publish at once */
+    bool observe;   /* `now` is wanted everywhere */
+    bool constrain; /* prescribed motions and bodies act */
+    bool advance;   /* the history of the material goes on by the step that led here: once for each state */
 } impulse;
 
 /* Tells the elements beside broken points, so that the lift leaves those points out. */
@@ -172,6 +173,12 @@ static void kick(rg_solver *s, size_t tile, const rg_workspace *w, const impulse
     s->kernels->kick(&args, 0, rg_tile_eblocks(t));
 }
 
+static void touch(rg_solver *s, size_t tile, const impulse *p) {
+    bool now = p->observe || s->watched[tile];
+    rg_contact_kick k = {p->dt, 0.5 * s->dt, p->velocity, now ? s->now : NULL};
+    rg_bodies_touch(s->bodies, tile, s->u, &k);
+}
+
 /* Largest value; not a number if one is not (a maximum forgets it). */
 static rg_real largest(const rg_real *x, size_t count) {
     rg_real m = 0, bad = 0;
@@ -196,6 +203,9 @@ static void inside(rg_solver *s, size_t tile, const rg_workspace *w, const impul
     s->kernels->interface(&interface, 0, rg_tile_inside(t));
     mark_cracked(s, t, t->ibegin, t->sbegin);
     kick(s, tile, w, p, false);
+    if (p->constrain) {
+        touch(s, tile, p);
+    }
     s->tile_stiffening[tile] = largest(bulk.stiffening, blocks * RG_LANES);
 }
 
@@ -275,6 +285,14 @@ static void start_stiffening(rg_solver *s) {
     mark(s, RG_PHASE_REDUCE);
 }
 
+/* The forces on the bodies, likewise. */
+static void start_bodies(rg_solver *s, const impulse *p) {
+#pragma omp master
+    if (p->constrain) {
+        rg_bodies_sum(s->bodies);
+    }
+}
+
 /* All forces. The traces of the displacement, sent at the end of the last drift, arrive under the first sweep
  * of the tiles that touch no other rank; the tractions under the second. */
 static void evaluate(rg_solver *s, const impulse *p) {
@@ -290,6 +308,7 @@ static void evaluate(rg_solver *s, const impulse *p) {
         mark(s, RG_PHASE_COMPUTE);
         start(s, s->halo_t);
         start_stiffening(s);
+        start_bodies(s, p);
         sweep(s, across, p, outer, all, s->halo_t);
         mark(s, RG_PHASE_JUMP);
         finish(s, s->halo_t);
@@ -300,6 +319,9 @@ static void evaluate(rg_solver *s, const impulse *p) {
         }
     }
     MPI_Wait(&s->stiffening_request, MPI_STATUS_IGNORE);
+    if (p->constrain) {
+        rg_bodies_kick(s->bodies, s->time, s->dt, s->dt_next);
+    }
     rg_phases_mark(&s->phases, RG_PHASE_REDUCE);
 }
 
@@ -379,6 +401,7 @@ static impulse prepare(rg_solver *s, double dt) {
 
 /* The displacement has moved. */
 static void advance(rg_solver *s) {
+    rg_bodies_drift(s->bodies, s->dt_next);
     s->current = 1 - s->current;
     s->time += s->dt_next;
     s->dt = s->dt_next;
@@ -435,6 +458,7 @@ void rg_solver_free(rg_solver *s) {
                       s->cracked,   s->broken,   s->unlinked, s->active, s->rows[0],    s->rows[1],
                       s->tractions, s->watched,  s->work,     s->history};
     rg_constraints_free(s->constraints);
+    rg_bodies_free(s->bodies);
     rg_halo_free(s->halo_u[0]);
     rg_halo_free(s->halo_u[1]);
     rg_halo_free(s->halo_t);

@@ -11,6 +11,7 @@
 
 #include <mpi.h>
 
+#include "body.h"
 #include "case.h"
 #include "constraint.h"
 #include "domain.h"
@@ -54,6 +55,7 @@ struct rg_solver {
     rg_halo *halo_u[2], *halo_t;
     rg_workspace *work; /* [threads] */
     rg_constraints *constraints;
+    rg_bodies *bodies;
     rg_watcher *watch;
     void *watch_context;
     uint8_t *watched; /* [tiles] */
@@ -62,7 +64,7 @@ struct rg_solver {
     rg_cohesive law;
     bool lift, lumped;
 
-    double omega2;   /* largest squared frequency, faces intact or closed (1/s^2) */
+    double omega2;   /* largest squared frequency, faces intact or closed, bodies in contact (1/s^2) */
     rg_gid limiting; /* element that sets it */
     const char *limiting_state;
     double pass_seconds;     /* of one evaluation of all forces, as measured at set-up */

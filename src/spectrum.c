@@ -360,6 +360,7 @@ void rg_spectrum_whole(rg_solver *s) {
 static void patch_spectrum(rg_solver *s) {
     rg_case input = *s->input;
     input.boundaries = 0; /* their sets are not on the patch, and the operator is that of a free body */
+    input.bodies = 0;     /* what they add to it is known */
     omp_set_num_threads(1);
     rg_solver *local = rg_solver_make_from_part(&input, s->patch, MPI_COMM_SELF);
     s->patch = NULL;
@@ -380,6 +381,7 @@ void rg_spectrum(rg_solver *s) {
     MPI_Bcast(&s->limiting, 1, MPI_INT64_T, 0, s->comm);
     MPI_Bcast(&which, 1, MPI_INT, 0, s->comm);
     s->limiting_state = state_name[which];
+    s->omega2 += s->bodies->omega2;
     double begin = MPI_Wtime();
     rg_solver_impulse(s, s->now, 0);
     s->pass_seconds = MPI_Wtime() - begin;

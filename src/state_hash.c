@@ -33,6 +33,14 @@ static uint64_t interface_hash(const rg_solver *s, const rg_tile *t, size_t i) {
     return h;
 }
 
+static uint64_t body_hash(const rg_body *b, int number) {
+    uint64_t h = rg_hash(3, (uint64_t)number);
+    for (int c = 0; c < 3; c++) {
+        h = chain(chain(h, b->seen.x[c]), b->seen.v[c]);
+    }
+    return h;
+}
+
 uint64_t rg_state_hash(const rg_solver *s) {
     const rg_domain *d = s->domain;
     uint64_t sum = 0;
@@ -43,6 +51,9 @@ uint64_t rg_state_hash(const rg_solver *s) {
         for (size_t i = d->tile[t].ibegin * RG_LANES; i < d->tile[t].iend * RG_LANES; i++) {
             sum += s->broken[i] && d->counted[i] ? interface_hash(s, &d->tile[t], i) : 0;
         }
+    }
+    for (int i = 0; s->rank == 0 && i < s->bodies->count; i++) {
+        sum += body_hash(&s->bodies->body[i], i);
     }
     MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPI_UINT64_T, MPI_SUM, s->comm);
     return sum;

@@ -47,6 +47,21 @@ static void vector(FILE *f, const char *key, const double value[3]) {
     fputs("],\n", f);
 }
 
+static void write_bodies(FILE *f, const rg_bodies *b) {
+    if (b->count == 0) {
+        return;
+    }
+    fputs("  \"bodies\": [\n", f);
+    for (int i = 0; i < b->count; i++) {
+        const rg_body_seen *seen = &b->body[i].seen;
+        fputs("  {\n", f);
+        vector(f, "position", seen->x);
+        vector(f, "velocity", seen->v);
+        vector(f, "force", seen->force);
+        fprintf(f, "  \"name\": \"%s\"}%s\n", b->body[i].input->name, i + 1 < b->count ? "," : "],");
+    }
+}
+
 static void write_run(FILE *f, const rg_summary *m, const rg_solver *s, const rg_estimate *e) {
     text(f, "case", s->input->name);
     integer(f, "elements", e->elements);
@@ -108,6 +123,7 @@ void rg_summary_write(rg_summary *m, rg_solver *s, const rg_ledger *l, const rg_
     number(f, "exchange_alone_s", s->exchange_seconds);
     rg_phases_write(&phases, f);
     write_physics(f, m, l);
+    write_bodies(f, s->bodies);
     number(f, "bytes_per_tet", e->bytes_per_element);
     fprintf(f, "  \"state_hash\": \"%016" PRIx64 "\",\n  \"revision\": \"%s\"\n}\n", hash, RG_REVISION);
     if (fclose(f) != 0) {
@@ -123,6 +139,11 @@ void rg_summary_print(const rg_summary *m, const rg_solver *s, const rg_ledger *
     if (isfinite(m->first_fracture)) {
         fprintf(out, "first fracture at %.5g s; broken %.4g m2, dissipated %.4g J\n", m->first_fracture,
                 l->last.broken_area, l->last.dissipated);
+    }
+    for (int i = 0; i < s->bodies->count; i++) {
+        const rg_body_seen *b = &s->bodies->body[i].seen;
+        fprintf(out, "%s: at (%.4g, %.4g, %.4g) m, velocity (%.4g, %.4g, %.4g) m/s\n",
+                s->bodies->body[i].input->name, b->x[0], b->x[1], b->x[2], b->v[0], b->v[1], b->v[2]);
     }
     fprintf(out, "results in %s\n", s->input->output.dir);
 }

@@ -242,6 +242,28 @@ static void same_expr(const rg_expr *a, const rg_expr *b) {
     }
 }
 
+static void same_bodies(const rg_case *a, const rg_case *b) {
+    assert_int_equal(a->bodies, b->bodies);
+    for (int i = 0; i < a->bodies; i++) {
+        const rg_body_input *p = &a->body[i], *q = &b->body[i];
+        const double of_p[] = {p->radius, p->density, p->mass, p->penalty};
+        const double of_q[] = {q->radius, q->density, q->mass, q->penalty};
+        assert_string_equal(p->name, q->name);
+        assert_true(p->shape == q->shape && p->motion == q->motion);
+        assert_memory_equal(of_p, of_q, sizeof of_p);
+        assert_memory_equal(p->at, q->at, sizeof p->at);
+        assert_memory_equal(p->normal, q->normal, sizeof p->normal);
+        assert_memory_equal(p->axis, q->axis, sizeof p->axis);
+        assert_int_equal(p->sets, q->sets);
+        for (int k = 0; k < p->sets; k++) {
+            assert_string_equal(p->set[k], q->set[k]);
+        }
+        for (int k = 0; k < 3; k++) {
+            same_expr(p->velocity[k], q->velocity[k]);
+        }
+    }
+}
+
 static void same_lists(const rg_case *a, const rg_case *b) {
     assert_int_equal(a->boundaries, b->boundaries);
     for (int i = 0; i < a->boundaries; i++) {
@@ -249,6 +271,11 @@ static void same_lists(const rg_case *a, const rg_case *b) {
         assert_int_equal(a->boundary[i].component, b->boundary[i].component);
         assert_int_equal(a->boundary[i].is_displacement, b->boundary[i].is_displacement);
         same_expr(a->boundary[i].value, b->boundary[i].value);
+    }
+    same_bodies(a, b);
+    assert_int_equal(a->output.times, b->output.times);
+    if (a->output.times > 0) {
+        assert_memory_equal(a->output.time, b->output.time, (size_t)a->output.times * sizeof(double));
     }
     assert_int_equal(a->output.probes, b->output.probes);
     for (int i = 0; i < a->output.probes; i++) {
@@ -320,8 +347,14 @@ static void test_round_trip_of_everything(void **state) {
         "initial.displacement={x: 1e-6*x, z: -0}",
         "initial.velocity={y: 'sin(x) + 1'}",
         "boundary=[{set: x-, component: y, displacement: 'x >= 0 ? t : 1'}]",
+        "bodies=[{name: b1, shape: sphere, motion: free, at: [0, -0.0, 0.1], radius: 0.3, density: 1e3,"
+        "velocity: {x: 0, z: -1/3}, faces: [z+, x-], penalty: 0.1}, {name: b2, shape: plane, motion: "
+        "prescribed,"
+        "at: [0, 0, -1], normal: [0, 0, 2], velocity: {z: sin(t)}}, {name: b3, shape: cylinder, motion: free,"
+        "at: [0, 0, -1], axis: [1, 1, 0], radius: 2, mass: 0.7}]",
         "time.end=1e-7",
         "time.steps=3",
+        "output.times=[0, 0.3e-7, 1e-7]",
         "output.dir=\"a \\\"b\\\" \\\\ \\t: # \\u00e9\"",
         "output.interval=3",
         "output.probes=[{name: a-B_1, at: [0.1, 0, 0]}, {name: b, at: [0.1, 0, 1e-3]}]",
@@ -386,10 +419,10 @@ static void test_spall_shows_every_key(void **state) {
 #define INTERVAL "allowed: integer >= 1 (steps), or number > 0 and < 1 (simulated seconds)\n"
 #define FIELDS                                                                                               \
     "allowed: list from displacement, velocity, stress, mean_stress, principal_stress, crack, "              \
-    "damage, regime, plastic_strain, triaxiality"
+    "damage, regime, plastic_strain, triaxiality, rank"
 #define MODELS  "neo-hookean, deshpande-evans"
 #define CERAMIC ": not used, because material.model is neo-hookean; it belongs to deshpande-evans\n"
-#define NAMES   "allowed: letters, digits, _ and -; unique among the probes\n"
+#define NAMES   "allowed: letters, digits, _ and -; unique among bodies and probes\n"
 #define UNUSED  ": not used, because interface.law is none\n"
 #define SPECIAL ": anchors, aliases and tags are not supported\n"
 
@@ -469,6 +502,58 @@ static const struct mistake {
      "allowed: path of a mesh file, relative to the case file\n"
      ":3:3: mesh.cells: [2, 2, 4]: cannot be given together with mesh.file\n"
      ":4:3: mesh.size: [1e-3, 1e-3, 2e-3]: cannot be given together with mesh.file\n"},
+    /* bodies */
+    {"time:\n",
+     "bodies:\n"
+     "  - {name: a b, shape: sphere, motion: free, at: [0, 0, 3e-3]}\n"
+     "  - {name: w, shape: plane, motion: free, at: [0, 0, 3e-3], radius: 1, normal: [0, 0, 0], density: 2, "
+     "velocity: {z: t}}\n"
+     "  - {name: w, shape: cylinder, motion: prescribed, at: [0, 0, 3e-3], radius: 1e-3, mass: 1, normal: "
+     "[0, 0, 1], velocity: {x: x}}\n"
+     "  - {name: c, shape: cylinder, motion: prescribed, at: [0, 0, 3e-3], radius: 1e-3, mass: 1, normal: "
+     "[0, 0, 1]}\n"
+     "  - {name: q, shape: sphere, motion: free, at: [0, 0, 3e-3], radius: -1e-3, mass: 1, density: 3}\n"
+     "  - {name: r, shape: sphere, motion: free, at: [0, 0, 3e-3], radius: 1e-3, mass: 1, density: 3, faces: "
+     "[top], penalty: 0}\n"
+     "  - {name: s, shape: sphere, motion: free, at: [0, 0, 3e-3], radius: 1e-3, mass: 1, density: 3, faces: "
+     "z+}\n"
+     "  - {name: t, shape: sphere, motion: free, at: [0, 0, 3e-3], radius: 1e-3, mass: 1, density: 3, faces: "
+     "[]}\n"
+     "  - {name: u, shape: ball, motion: loose, colour: red}\n"
+     "  - 3\n"
+     "time:\n",
+     ":16:5: bodies[0].radius: missing: spheres and cylinders have one\n"
+     ":16:5: bodies[0].mass: missing: a free body has a mass, or a sphere a density\n"
+     ":16:12: bodies[0].name: a b: not a name; allowed: letters, digits, _ and -; unique among bodies and "
+     "probes\n"
+     ":17:61: bodies[1].radius: not used: a plane has none\n"
+     ":17:80: bodies[1].normal: [0, 0, 0]: has no direction\n"
+     ":17:91: bodies[1].density: not used: only a sphere has a volume; give its mass\n"
+     ":17:113: bodies[1].velocity.z: t: depends on t, but a free body has it at the start alone\n"
+     ":18:12: bodies[2].name: w: the name of an earlier body or probe; allowed: letters, digits, _ and -; "
+     "unique among bodies and probes\n"
+     ":18:126: bodies[2].velocity.x: x: depends on x, y or z, but this is the same everywhere; allowed: "
+     "number or expression in t (m/s)\n"
+     ":19:5: bodies[3].axis: missing: it belongs to a cylinder\n"
+     ":19:84: bodies[3].mass: not used: the motion is prescribed\n"
+     ":19:93: bodies[3].normal: not used: it belongs to a plane\n"
+     ":20:70: bodies[4].radius: -1e-3: out of range; allowed: number > 0 (m)\n"
+     ":21:105: bodies[5].faces[0]: top: not one of the allowed words; allowed: x-, x+, y-, y+, z-, z+\n"
+     ":21:120: bodies[5].penalty: 0: out of range; allowed: number > 0\n"
+     ":22:104: bodies[6].faces: z+: not a list; allowed: list from x-, x+, y-, y+, z-, z+\n"
+     ":23:104: bodies[7].faces: []: an empty list; allowed: list from x-, x+, y-, y+, z-, z+\n"
+     ":24:5: bodies[8].at: missing; allowed: [x, y, z], each number (m)\n"
+     ":24:22: bodies[8].shape: ball: not one of the allowed words; allowed: sphere, plane, cylinder\n"
+     ":24:36: bodies[8].motion: loose: not one of the allowed words; allowed: free, prescribed\n"
+     ":24:43: bodies[8].colour: unknown key\n"
+     ":25:5: bodies[9]: 3: not a mapping of keys; allowed: list of {name, shape, motion, at, radius, normal, "
+     "axis, density, mass, velocity.x, velocity.y, velocity.z, faces, penalty}\n"},
+    {"output:\n", "output:\n  times: [1e-7, 1e-7]\n",
+     ":18:10: output.times: [1e-7, 1e-7]: not ascending; allowed: ascending list, each number >= 0 (s)\n"},
+    {"output:\n", "output:\n  times: [1e-7, 2e-6]\n",
+     ":18:17: output.times: 2e-6: after time.end, 1e-06 s\n"},
+    {"output:\n", "output:\n  times: []\n",
+     ":18:10: output.times: []: an empty list; allowed: ascending list, each number >= 0 (s)\n"},
     /* boundary */
     {"set: z+", "set: z",
      ":14:11: boundary[0].set: z: not one of the allowed words; " SETS "; did you mean 'z-'?\n"},
@@ -503,7 +588,7 @@ static const struct mistake {
     {"1e-3]}", "2.1e-3]}",
      ":19:28: output.probes[0].at[2]: 2.1e-3: outside the box; allowed: number >= 0 and <= 0.002 (m)\n"},
     {"1e-3]}\n", "1e-3]}\n    - {name: p, at: [0, 0]}\n",
-     ":20:14: output.probes[1].name: p: the name of an earlier probe; " NAMES
+     ":20:14: output.probes[1].name: p: the name of an earlier body or probe; " NAMES
      ":20:21: output.probes[1].at: [0, 0]: wrong number of entries; allowed: [x, y, z], each number (m)\n"},
     /* YAML */
     {"mesh:\n", "mesh:\n\tjitter: 0\n",

@@ -33,12 +33,12 @@ def test_dissipation_lies_between_failed_and_broken_area(energy):
 
 
 def test_stored_energies_are_not_negative(energy):
-    for name in ("kinetic", "bulk", "penalty", "cohesive", "contact", "dissipated"):
+    for name in ("kinetic", "bodies", "bulk", "penalty", "cohesive", "contact", "dissipated"):
         assert (energy[name] >= -1e-9 * energy[name].max()).all(), name
 
 
 def test_total_is_the_sum_of_its_parts(energy):
-    parts = sum(energy[name] for name in ("kinetic", "bulk", "penalty", "cohesive", "contact", "dissipated"))
+    parts = sum(energy[name] for name in ("kinetic", "bodies", "bulk", "penalty", "cohesive", "contact", "dissipated"))
     scale = np.abs(energy["external_work"]).max() + parts.max()
     assert np.abs(parts - energy["external_work"] - energy["total"]).max() < 1e-14 * scale
     error = (energy["total"] - energy["total"][0])[1:] / np.maximum.accumulate(parts)[1:]

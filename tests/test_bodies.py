@@ -1,0 +1,225 @@
+"""Rigid bodies against the solid's surface: what must be conserved, and closed forms of contact."""
+
+import math
+
+import numpy as np
+import pytest
+from conftest import CASES, launch, overrides, rounding
+
+YOUNG, NU, DENSITY = 260e9, 0.21, 3690.0
+LAME, MU = YOUNG * NU / ((1 + NU) * (1 - 2 * NU)), YOUNG / (2 * (1 + NU))
+SPEED = math.sqrt((LAME + 2 * MU) / DENSITY)  # of plane waves
+LAYOUTS = [(1, 2), (2, 1), (3, 1)]  # ranks, threads; all compared with (1, 1)
+
+
+# ---- a ball on a free block ----
+
+BALL, BLOCK, FALL = 8000 * 4 / 3 * math.pi * 1e-9, DENSITY * 32e-9, 20.0  # kg, kg, m/s
+
+
+@pytest.fixture(scope="module")
+def bounce(run):
+    return run(CASES / "bounce.yaml", sets={"interface.penalty": "isotropic"})
+
+
+def test_momentum_is_handed_over_to_rounding(bounce):
+    energy, scale = bounce.energy, BALL * FALL
+    assert energy["momentum_z"][0] == pytest.approx(-scale, rel=1e-12)
+    assert max(bounce.history["ball_fz"]) > 100
+    for axis in "xyz":
+        assert np.ptp(energy[f"momentum_{axis}"]) < rounding(1e-13, 1e-6) * scale, axis
+
+
+def test_angular_momentum_is_handed_over(bounce):
+    """A ball is pushed along lines through its centre only."""
+    energy = bounce.energy
+    for axis in "xyz":
+        assert np.ptp(energy[f"angular_{axis}"]) < rounding(1e-12, 1e-5) * BALL * FALL * 1e-3, axis
+
+
+def test_energy_is_handed_over(bounce):
+    energy = bounce.energy
+    assert energy["bodies"][0] == pytest.approx(0.5 * BALL * FALL**2, rel=1e-12)
+    assert energy["contact"].max() > 0.1 * energy["bodies"][0] and energy["contact"][-1] == 0
+    assert bounce.summary["energy_error_rel"] < 1e-4
+
+
+def test_ball_bounces_as_from_a_rigid_block(bounce):
+    """The block's vibrations are over many times before the ball leaves, so they take little energy. It is hit 0.1 mm
+    off its middle and turns."""
+    inertia = BLOCK * (4e-3**2 + 2e-3**2) / 12
+    block = 1 / (1 / BLOCK + 0.1e-3**2 / inertia)
+    assert bounce.history["ball_vz"][-1] == pytest.approx(FALL * (block - BALL) / (block + BALL), rel=0.015)
+    (body,) = bounce.summary["bodies"]
+    assert body["name"] == "ball" and body["velocity"][2] == bounce.history["ball_vz"][-1]
+    assert body["position"] == [bounce.history[f"ball_{axis}"][-1] for axis in "xyz"]
+
+
+def test_force_moves_the_ball(bounce):
+    history = bounce.history
+    impulse = np.sum(0.5 * (history["ball_fz"][1:] + history["ball_fz"][:-1]) * np.diff(history["time"]))
+    assert impulse == pytest.approx(BALL * (history["ball_vz"][-1] + FALL), rel=1e-6)
+
+
+@pytest.mark.parametrize("sets", [{"mass": "lumped"}, {"interface.form": "incomplete", "interface.beta_s": 40}])
+def test_other_discretizations_hand_over_momentum_and_energy(run, sets):
+    other = run(CASES / "bounce.yaml", sets=sets)
+    assert np.ptp(other.energy["momentum_z"]) < rounding(1e-13, 1e-6) * BALL * FALL
+    assert other.summary["energy_error_rel"] < 2e-3
+
+
+@pytest.mark.parametrize("change", [{"penalty": 400}, {"mass": 1e-8}])
+def test_time_step_follows_stiff_contact_and_light_bodies(run, bounce, change):
+    """Both would be unstable at the step of the solid alone."""
+    ball = {"name": "ball", "shape": "sphere", "motion": "free", "at": [0.1e-3, 0, 1e-3], "radius": 1e-3,
+            "mass": BALL, "velocity": {"z": -FALL}, **change}
+    stiff = run(CASES / "bounce.yaml", sets={"bodies": [ball], "time.end": 1e-6})
+    assert stiff.summary["dt_critical"] < 0.5 * bounce.summary["dt_critical"]
+    assert stiff.summary["energy_error_rel"] < 1e-3
+    assert max(stiff.history["ball_fz"]) > 1
+
+
+# ---- a plane wave ----
+
+WALL = {"name": "wall", "motion": "prescribed", "velocity": {"z": -5}, "faces": ["z+"]}
+WALLS = {
+    "plane": {"shape": "plane", "at": [1, 1, 2e-3], "normal": [0, 0, -3]},
+    "ball of 1 km": {"shape": "sphere", "at": [0.1e-3, 0.1e-3, 1e3 + 2e-3], "radius": 1e3},
+    "cylinder of 1 km": {"shape": "cylinder", "at": [0, 0.1e-3, 1e3 + 2e-3], "radius": 1e3, "axis": [-2, 0, 0]},
+}
+
+
+@pytest.mark.parametrize("wall", WALLS)
+def test_wall_sends_a_plane_wave(run, wall):
+    """Behind the front the stress is -rho c V, and so is the force per area on the wall."""
+    push = run(CASES / "push.yaml", sets={"bodies": [{**WALL, **WALLS[wall]}]})
+    history, stress = push.history, -DENSITY * SPEED * 5
+    late = history["time"] > 0.1e-6
+    assert history["p_szz"][late].mean() == pytest.approx(stress, rel=2e-3)
+    assert history["wall_fz"][late].mean() == pytest.approx(-stress * 0.04e-6, rel=2e-3)
+    assert abs(history["wall_fx"]).max() < 1e-6 * abs(stress * 0.04e-6)
+    arrival = history["time"][np.argmax(history["p_szz"] < 0.5 * stress)]
+    assert arrival == pytest.approx(0.5e-3 / SPEED, rel=0.05)
+    work = push.energy["external_work"][-1]
+    assert work == pytest.approx(-stress * 0.04e-6 * 5 * 0.2e-6, rel=0.03)
+    assert push.summary["energy_error_rel"] < 2e-3
+
+
+# ---- Hertz ----
+
+
+def layer_factor(chi):
+    """Force on a sphere pressed into a layer that is bonded to its base, over that on a half-space; chi: contact radius
+    over thickness (Dimitriadis et al., Biophysical Journal 82, 2002, equation 12)."""
+    alpha = -(1.2876 - 1.4678 * NU + 1.3442 * NU**2) / (1 - NU)
+    beta = (0.6387 - 1.0277 * NU + 1.5164 * NU**2) / (1 - NU)
+    pi = math.pi
+    return (1 - 2 * alpha / pi * chi + 4 * alpha**2 / pi**2 * chi**2
+            - 8 / pi**3 * (alpha**3 + 4 * pi**2 / 15 * beta) * chi**3
+            + 16 * alpha / pi**4 * (alpha**3 + 3 * pi**2 / 5 * beta) * chi**4)
+
+
+def test_slow_ball_is_pressed_back_as_hertz_says(run):
+    """Contact radius 0.2 mm, elements of 0.12 mm."""
+    hertz = run(CASES / "hertz.yaml", threads=2)
+    radius, depth, thickness = 20e-3, 2e-6, 1.2e-3
+    held = hertz.history[hertz.history["time"] > 0.8e-6]
+    assert held["ball_z"] == pytest.approx(radius - depth, abs=1e-10)
+    force = 4 / 3 * YOUNG / (1 - NU**2) * math.sqrt(radius) * depth**1.5
+    force *= layer_factor(math.sqrt(radius * depth) / thickness)
+    assert 4 * held["ball_fz"].mean() == pytest.approx(force, rel=0.05)  # a quarter of the layer
+    assert np.ptp(held["ball_fz"]) < 0.1 * held["ball_fz"].mean()
+
+
+# ---- shapes ----
+
+
+def test_cylinder_pushes_across_its_axis_alone(run):
+    """The mesh is the same when x and y change places, so the cylinder may lie along either."""
+    def rolled(axis):
+        body = {"name": "roll", "shape": "cylinder", "motion": "free", "at": [0, 0, 0.5e-3], "radius": 0.5e-3,
+                "axis": axis, "mass": 4e-5, "velocity": {"z": -10}}
+        return run(CASES / "bounce.yaml", sets={"mesh.jitter": 0, "bodies": [body], "time.end": 1e-6})
+
+    along, across = rolled([3, 0, 0]).history, rolled([0, 0.1, 0]).history
+    largest = along["roll_fz"].max()
+    assert largest > 10
+    assert abs(along["roll_fx"]).max() == 0
+    assert along["roll_fz"] == pytest.approx(across["roll_fz"], abs=rounding(1e-9, 1e-3) * largest)
+    assert along["roll_fy"] == pytest.approx(across["roll_fx"], abs=rounding(1e-9, 1e-3) * largest)
+
+
+def test_block_between_two_walls_is_held(run):
+    """Two prescribed planes: the block moves with them."""
+    walls = [{"name": name, "shape": "plane", "motion": "prescribed", "at": [0, 0, at], "normal": [0, 0, n],
+              "velocity": {"z": "5*t/3e-6"}} for name, at, n in (("low", -2e-3, 1), ("high", 0, -1))]
+    held = run(CASES / "bounce.yaml", sets={"bodies": walls})
+    energy = held.energy
+    assert energy["momentum_z"][-1] == pytest.approx(BLOCK * 5, rel=0.25)  # it swings between them
+    impulse = [np.trapz(held.history[f"{name}_fz"], held.history["time"]) for name in ("low", "high")]
+    assert -sum(impulse) == pytest.approx(energy["momentum_z"][-1], rel=1e-6)
+    assert energy["external_work"][-1] > 0.5 * energy["kinetic"][-1]
+    assert abs(energy["error_rel"][-1]) < 1e-3
+
+
+# ---- the same bits on any layout ----
+
+SHATTER = {  # a ball breaks the end of a bar
+    "mesh": {"cells": [2, 2, 24], "size": [0.4e-3, 0.4e-3, 4.8e-3], "origin": [-0.2e-3, -0.2e-3, -4.8e-3], "jitter": 0.1},
+    "interface": {"law": "linear", "strength": 400e6, "energy": 34},
+    "bodies": [{"name": "ball", "shape": "sphere", "motion": "free", "at": [0.05e-3, 0, 0.5e-3], "radius": 0.5e-3,
+                "density": 8000, "velocity": {"z": -100}},
+               {"name": "floor", "shape": "plane", "motion": "prescribed", "at": [0, 0, -4.8e-3], "normal": [0, 0, 1],
+                "velocity": {"z": "1e7*t"}, "faces": ["z-"]}],
+    "time": {"end": 0.4e-6}, "output": {"fields": ["crack", "rank"], "times": [0.4e-6], "interval": 1e-8},
+}
+
+
+@pytest.mark.parametrize("ranks, threads", LAYOUTS)
+def test_same_bits_on_any_layout(run, ranks, threads):
+    one = run(CASES / "bounce.yaml", sets=SHATTER)
+    other = run(CASES / "bounce.yaml", ranks=ranks, threads=threads, sets=SHATTER)
+    assert (other.summary["ranks"], other.summary["threads"]) == (ranks, threads)
+    assert one.summary["broken_area_m2"] > 0 and max(one.history["ball_fz"]) > 50
+    assert one.summary["state_hash"] == other.summary["state_hash"]
+    assert one.summary["bodies"] == other.summary["bodies"]
+    for name in ("energy.csv", "history.csv"):
+        assert (one.dir / name).read_bytes() == (other.dir / name).read_bytes(), name
+
+
+def test_some_rank_touches_nothing(run):
+    """Of three ranks one at least has nothing of the end that the ball breaks."""
+    three = run(CASES / "bounce.yaml", ranks=3, sets=SHATTER)
+    (frame,) = three.frames()
+    z = three.points()[:, 2].reshape(-1, 10)
+    assert len(np.unique(frame["rank"])) == 3
+    assert len(np.unique(frame["rank"].ravel()[z.max(axis=1) > -0.2e-3])) < 3
+
+
+def test_hash_tells_bodies_apart(run):
+    one = run(CASES / "bounce.yaml")
+    far = [{"name": "ball", "shape": "sphere", "motion": "free", "at": [0.1e-3, 0, 1.0000001e-3], "radius": 1e-3,
+            "density": 8000, "velocity": {"z": -20}}]
+    assert run(CASES / "bounce.yaml", sets={"bodies": far}).summary["state_hash"] != one.summary["state_hash"]
+
+
+# ---- output times, bad input ----
+
+
+def test_fields_come_at_the_times_asked_for(run):
+    times = [0, 0.31e-6, 0.777e-6, 1e-6]
+    timed = run(CASES / "bounce.yaml", sets={"output.times": times, "output.fields": ["mean_stress"], "time.end": 1e-6})
+    assert [frame["time"] for frame in timed.frames()] == pytest.approx(times, rel=1e-14)
+    assert set(times) <= set(np.round(timed.energy["time"], 15))
+    assert len(timed.energy) > 50
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_body_inside_the_solid_is_refused(scratch, ranks):
+    out = scratch / f"overlap-{ranks}"
+    body = {"name": "ball", "shape": "sphere", "motion": "free", "at": [0, 0, 0.9e-3], "radius": 1e-3, "mass": 1}
+    process = launch("run", CASES / "bounce.yaml", "-q", "-o", out, *overrides({"bodies": [body]}), ranks=ranks)
+    assert process.returncode == 2
+    assert "bodies[0].at: [0, 0, 0.0009]: ball overlaps the solid at the start, by 0.0001 m" in process.stderr
+    assert process.stderr.count("overlaps") == 1
+    assert not out.exists()
