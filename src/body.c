@@ -1,12 +1,15 @@
 #include "body.h"
 
 #include <math.h>
+#include <stddef.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "element.h"
 #include "error.h"
 #include "mem.h"
 #include "quadrature.h"
+#include "state.h"
 
 /* Of the height of an element: a body this deep in the solid at the start only touches it. */
 #define TOUCH 1e-6
@@ -366,6 +369,16 @@ rg_bodies_account rg_bodies_take(const rg_bodies *b) {
         }
     }
     return a;
+}
+
+void rg_bodies_register(rg_bodies *b, rg_state *st) {
+    enum {
+        VALUES = (offsetof(rg_body, seen) - offsetof(rg_body, x) + sizeof(rg_body_seen)) / sizeof(double)
+    };
+    for (int i = 0; i < b->count; i++) {
+        snprintf(b->body[i].word, sizeof b->body[i].word, "body_%d", i);
+        rg_state_add(st, b->body[i].word, RG_OF_RUN, RG_STATE_DOUBLE, VALUES, b->body[i].x);
+    }
 }
 
 void rg_bodies_free(rg_bodies *b) {

@@ -23,6 +23,8 @@
 #include "exact_sum.h"
 #include "kernels.h"
 
+typedef struct rg_state rg_state; /* state.h */
+
 /* A body as it was seen at a present time, between kick and drift. */
 typedef struct {
     double x[3], v[3], force[3]; /* m, m/s; force of the solid on it (N) */
@@ -37,6 +39,7 @@ typedef struct {
     double v[3];         /* in the middle of the last step, after a kick of the next one (m/s) */
     double work;         /* as in `seen`, up to the middle of the next step (J) */
     rg_body_seen seen;   /* at the last kick */
+    char word[16];       /* its name in a checkpoint */
 } rg_body;
 
 /* A face that may touch a body. */
@@ -108,6 +111,9 @@ typedef struct {
 } rg_bodies_account;
 
 rg_bodies_account rg_bodies_take(const rg_bodies *b);
+
+/* Registers how the bodies move. */
+void rg_bodies_register(rg_bodies *b, rg_state *st);
 
 void rg_bodies_free(rg_bodies *b);
 

@@ -17,6 +17,7 @@ typedef enum { RG_PENALTY_ELASTIC, RG_PENALTY_ISOTROPIC } rg_penalty;
 typedef enum { RG_LAW_NONE, RG_LAW_LINEAR } rg_law;
 typedef enum { RG_ACTIVATION_CONTINUOUS, RG_ACTIVATION_TOTAL } rg_activation;
 typedef enum { RG_CONTACT_PENALTY, RG_CONTACT_FLUX } rg_contact;
+typedef enum { RG_OUTPUT_DOUBLE, RG_OUTPUT_SINGLE } rg_output_precision;
 typedef enum { RG_MASS_CONSISTENT, RG_MASS_LUMPED } rg_mass;
 typedef enum { RG_SHAPE_SPHERE, RG_SHAPE_PLANE, RG_SHAPE_CYLINDER } rg_shape_kind;
 typedef enum { RG_MOTION_FREE, RG_MOTION_PRESCRIBED } rg_motion;
@@ -101,9 +102,10 @@ typedef struct {
     int bodies;
     rg_body_input *body;
     struct {
-        double end;    /* s */
-        double safety; /* fraction of the critical time step */
-        int64_t steps; /* limit on the number of steps; 0: none */
+        double end;      /* s */
+        double safety;   /* fraction of the critical time step */
+        int64_t steps;   /* limit on the number of steps; 0: none */
+        double collapse; /* the run stops when the step falls below this fraction of the one at rest */
     } time;
     struct {
         char *dir;
@@ -114,8 +116,17 @@ typedef struct {
         int probes;
         rg_probe *probe;
         unsigned fields;
-        double energy_limit; /* the run stops when energy_error_rel passes this */
+        rg_expr *region; /* fields of the elements at whose centroid this is not 0; NULL: of all */
+        rg_output_precision precision; /* of the fields on the disk */
+        int64_t compression;           /* of the fields on the disk; 0: none */
+        double energy_limit;           /* the run stops when energy_error_rel passes this */
     } output;
+    struct { /* when to write checkpoints; 0: not for that reason */
+        int64_t steps;
+        double time;      /* simulated (s) */
+        double wall_time; /* s */
+        int64_t keep;     /* of them, the last ones */
+    } checkpoint;
 } rg_case;
 
 /* Reads the case file at `path`, applies `overrides` (each "a.b=value", value in YAML syntax) and checks it

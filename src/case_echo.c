@@ -83,7 +83,7 @@ static void write_interval(FILE *out, const rg_case *c) {
     }
 }
 
-static void write_value(FILE *out, const rg_key *key, const void *base) {
+void rg_key_write(FILE *out, const rg_key *key, const void *base) {
     const void *value = (const char *)base + key->offset;
     int choice = 0;
     switch (key->type) {
@@ -130,7 +130,7 @@ static bool is_zero(const rg_key *key, const char *value) {
     return memcmp(value, zero, (size_t)key->count * sizeof(double)) == 0; /* an int64_t is as large */
 }
 
-static bool is_present(const rg_key *key, const void *base) {
+bool rg_key_present(const rg_key *key, const void *base) {
     const char *value = (const char *)base + key->offset;
     if (!rg_key_used(key, base)) {
         return false;
@@ -187,7 +187,7 @@ static void write_table(FILE *out, const rg_key_table *table, const void *base, 
     for (int i = 0; i < table->keys; i++) {
         const rg_key *key = &table->key[i];
         const char *last = NULL;
-        if (!is_present(key, base)) {
+        if (!rg_key_present(key, base)) {
             continue;
         }
         int inner = write_sections(out, before, key->name, indent, &last);
@@ -197,7 +197,7 @@ static void write_table(FILE *out, const rg_key_table *table, const void *base, 
             write_list(out, key, base, inner);
         } else {
             fputc(' ', out);
-            write_value(out, key, base);
+            rg_key_write(out, key, base);
             fprintf(out, "%s%s\n", key->unit != NULL ? " # " : "", key->unit != NULL ? key->unit : "");
         }
         before = key->name;

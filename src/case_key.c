@@ -25,6 +25,7 @@
 #define ELASTIC        .models = RG_MATERIAL_BIT_NEO_HOOKEAN
 #define CERAMIC        .models = RG_MATERIAL_BIT_DESHPANDE_EVANS
 #define FLAWS(member)  CERAMIC, CASE(material.deshpande_evans.member)
+#define MAY_CHANGE     .may_change = true /* on a restart */
 
 /* In the order of the enums they set. */
 #define MODEL_WORD(name, NAME, word, history, inside) word,
@@ -35,6 +36,7 @@ static const char *const penalties[] = {"elastic", "isotropic", NULL};
 static const char *const laws[] = {"none", "linear", NULL};
 static const char *const activations[] = {"continuous", "total", NULL};
 static const char *const contacts[] = {"penalty", "flux", NULL};
+static const char *const precisions[] = {"double", "single", NULL};
 static const char *const masses[] = {"consistent", "lumped", NULL};
 static const char *const shapes[] = {"sphere", "plane", "cylinder", NULL};
 static const char *const motions[] = {"free", "prescribed", NULL};
@@ -49,13 +51,13 @@ static const char *const fields[] = {"displacement",     "velocity",    "stress"
 
 /* clang-format off */
 static const rg_key case_keys[] = {
-    {.name = "mesh.file", .type = RG_KEY_TEXT, OPTIONAL, CASE(mesh.file)},
+    {.name = "mesh.file", .type = RG_KEY_TEXT, OPTIONAL, MAY_CHANGE, CASE(mesh.file)},
     {.name = "mesh.cells", INTEGER3, FROM_TO(1, 100000), REQUIRED, BOX, CASE(mesh.cells)},
     {.name = "mesh.size", .unit = "m", REAL3, ABOVE(0), REQUIRED, BOX, CASE(mesh.size)},
     {.name = "mesh.origin", .unit = "m", REAL3, ANY, DEFAULT(0), BOX, CASE(mesh.origin)},
     {.name = "mesh.jitter", REAL, FROM_TO(0, 0.3), DEFAULT(0), BOX, CASE(mesh.jitter)},
     {.name = "mesh.seed", INTEGER, FROM(0), DEFAULT(1), BOX, CASE(mesh.seed)},
-    {.name = "mesh.weight", .type = RG_KEY_EXPR, OPTIONAL, .no_time = true, CASE(mesh.weight)},
+    {.name = "mesh.weight", .type = RG_KEY_EXPR, OPTIONAL, .no_time = true, MAY_CHANGE, CASE(mesh.weight)},
 
     {.name = "material.model", CHOICE(models), REQUIRED, CASE(material.model)},
     {.name = "material.young", .unit = "Pa", REAL, ABOVE(0), REQUIRED, ELASTIC, CASE(material.young)},
@@ -108,18 +110,29 @@ static const rg_key case_keys[] = {
     {.name = "bodies", .type = RG_KEY_LIST, OPTIONAL, CASE(body), .entry = &rg_body_table,
      .offset_count = offsetof(rg_case, bodies)},
 
-    {.name = "time.end", .unit = "s", REAL, ABOVE(0), REQUIRED, CASE(time.end)},
-    {.name = "time.safety", REAL, FROM_TO(0, 1), .low_open = true, DEFAULT(RG_DEFAULT_SAFETY), CASE(time.safety)},
-    {.name = "time.steps", INTEGER, FROM(1), OPTIONAL, CASE(time.steps)},
+    {.name = "time.end", .unit = "s", REAL, ABOVE(0), REQUIRED, MAY_CHANGE, CASE(time.end)},
+    {.name = "time.safety", REAL, FROM_TO(0, 1), .low_open = true, DEFAULT(RG_DEFAULT_SAFETY), MAY_CHANGE,
+     CASE(time.safety)},
+    {.name = "time.steps", INTEGER, FROM(1), OPTIONAL, MAY_CHANGE, CASE(time.steps)},
+    {.name = "time.collapse", REAL, FROM_TO(0, 1), .high_open = true, DEFAULT(0.01), MAY_CHANGE, CASE(time.collapse)},
 
-    {.name = "output.dir", .type = RG_KEY_TEXT, OPTIONAL, CASE(output.dir)},
-    {.name = "output.interval", .type = RG_KEY_INTERVAL, OPTIONAL, CASE(output)},
+    {.name = "output.dir", .type = RG_KEY_TEXT, OPTIONAL, MAY_CHANGE, CASE(output.dir)},
+    {.name = "output.interval", .type = RG_KEY_INTERVAL, OPTIONAL, MAY_CHANGE, CASE(output)},
     {.name = "output.times", .unit = "s", .type = RG_KEY_REALS, FROM(0), OPTIONAL, CASE(output.time),
      .offset_count = offsetof(rg_case, output.times)},
     {.name = "output.probes", .type = RG_KEY_LIST, OPTIONAL, CASE(output.probe), .entry = &rg_probe_table,
      .offset_count = offsetof(rg_case, output.probes)},
-    {.name = "output.fields", .type = RG_KEY_FLAGS, .choice = fields, DEFAULT(RG_FIELDS_COMMON), CASE(output.fields)},
-    {.name = "output.energy_limit", REAL, ABOVE(0), DEFAULT(0.05), CASE(output.energy_limit)},
+    {.name = "output.fields", .type = RG_KEY_FLAGS, .choice = fields, DEFAULT(RG_FIELDS_COMMON), MAY_CHANGE,
+     CASE(output.fields)},
+    {.name = "output.region", .type = RG_KEY_EXPR, OPTIONAL, .no_time = true, CASE(output.region)},
+    {.name = "output.precision", CHOICE(precisions), DEFAULT(RG_OUTPUT_DOUBLE), CASE(output.precision)},
+    {.name = "output.compression", INTEGER, FROM_TO(0, 9), DEFAULT(0), MAY_CHANGE, CASE(output.compression)},
+    {.name = "output.energy_limit", REAL, ABOVE(0), DEFAULT(0.05), MAY_CHANGE, CASE(output.energy_limit)},
+
+    {.name = "checkpoint.steps", INTEGER, FROM(0), DEFAULT(0), MAY_CHANGE, CASE(checkpoint.steps)},
+    {.name = "checkpoint.time", .unit = "s", REAL, FROM(0), DEFAULT(0), MAY_CHANGE, CASE(checkpoint.time)},
+    {.name = "checkpoint.wall_time", .unit = "s", REAL, FROM(0), DEFAULT(0), MAY_CHANGE, CASE(checkpoint.wall_time)},
+    {.name = "checkpoint.keep", INTEGER, FROM_TO(1, 1000), DEFAULT(2), MAY_CHANGE, CASE(checkpoint.keep)},
 };
 
 static const rg_key boundary_keys[] = {

@@ -5,6 +5,7 @@
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "case.h"
@@ -56,6 +57,7 @@ typedef struct {
     double low, high;          /* numbers: range */
     bool low_open, high_open;  /* range without its ends */
     bool no_time, no_place;    /* expression without t; without x, y, z */
+    bool may_change;           /* on a restart: nothing that was computed depends on it */
     const char *const *choice; /* NULL-terminated; of a text: with the built-in mesh only */
     double fallback;
     size_t offset;                    /* of the value in the structure */
@@ -102,6 +104,10 @@ static inline void *rg_pointer_get(const void *place) {
 static inline void rg_pointer_set(void *place, const void *pointer) {
     memcpy(place, &pointer, sizeof pointer);
 }
+
+/* Whether the structure `base` has a value of the key to write, and writes it in YAML (no list). */
+bool rg_key_present(const rg_key *key, const void *base);
+void rg_key_write(FILE *out, const rg_key *key, const void *base);
 
 /* Frees what the keys' values own in `base`. */
 void rg_keys_free(const rg_key_table *table, void *base);

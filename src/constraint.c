@@ -8,6 +8,7 @@
 #include "error.h"
 #include "layout.h"
 #include "mem.h"
+#include "state.h"
 
 /* What depends only on which nodes are constrained: c of them, then the free ones. For the mass M / (rho V):
  * impulse[c][c] = (Minv_cc)^-1, follow[f][c] = Minv_fc (Minv_cc)^-1. */
@@ -17,7 +18,17 @@ typedef struct {
     double impulse[RG_NODES][RG_NODES], follow[RG_NODES][RG_NODES];
 } pattern;
 
-/* One component of one element. Arrays run over the constrained nodes of the pattern. */
+/* What a component of an element must remember. Arrays run over the constrained nodes of the pattern. Doubles
+ * only: a checkpoint takes it as a row of them. */
+typedef struct {
+    double work, work_now;    /* of all kicks; up to the present time (J) */
+    double before[RG_NODES];  /* velocity before the kick */
+    double present[RG_NODES]; /* velocity at the time of the kick */
+    double target[RG_NODES];  /* velocity after it */
+    double place[RG_NODES];   /* displacement after it, where that is prescribed */
+} memory;
+
+/* One component of one element. */
 typedef struct {
     rg_lid slot;
     int8_t component;
@@ -25,11 +36,7 @@ typedef struct {
     int16_t boundary[RG_NODES];
     const pattern *pattern;
     double mass;
-    double work, work_now;    /* of all kicks; up to the present time (J) */
-    double before[RG_NODES];  /* velocity before the kick */
-    double present[RG_NODES]; /* velocity at the time of the kick */
-    double target[RG_NODES];  /* velocity after it */
-    double place[RG_NODES];   /* displacement after it, where that is prescribed */
+    memory is;
 } entry;
 
 #define JUMP                                                                                                 \
@@ -38,6 +45,7 @@ typedef struct {
 struct rg_constraints {
     const rg_case *input;
     const rg_domain *domain;
+    int64_t *key;                /* [entries], by which a checkpoint knows them */
     size_t entries, *tile_begin; /* entries of tile t: tile_begin[t] .. tile_begin[t + 1] - 1 */
     entry *entry;
     pattern *patterns[1 << RG_NODES];
@@ -198,9 +206,9 @@ void rg_constraints_start(rg_constraints *k, const rg_real *u, const rg_real *ve
         entry *e = &k->entry[n];
         for (int i = 0; i < e->pattern->constrained; i++) {
             size_t at = rg_node_index((size_t)e->slot, e->pattern->node[i], e->component);
-            e->before[i] = velocity[at];
-            e->place[i] = u[at];
-            e->target[i] = e->present[i] = velocity_at(k, e, i, 0, 0);
+            e->is.before[i] = velocity[at];
+            e->is.place[i] = u[at];
+            e->is.target[i] = e->is.present[i] = velocity_at(k, e, i, 0, 0);
             bool placed = k->input->boundary[e->boundary[i]].is_displacement;
             jumps += placed &&
                      fabs(value_at(k, e, i, 0) - u[at]) > JUMP * cbrt(e->mass / k->input->material.density);
@@ -220,12 +228,12 @@ void rg_constraints_set(rg_constraints *k, double time, double dt, bool moving) 
         for (int i = 0; e->varies && i < e->pattern->constrained; i++) {
             if (k->input->boundary[e->boundary[i]].is_displacement) {
                 double next = value_at(k, e, i, time + dt);
-                e->target[i] = (next - e->place[i]) / dt;
-                e->place[i] = next;
+                e->is.target[i] = (next - e->is.place[i]) / dt;
+                e->is.place[i] = next;
             } else {
-                e->target[i] = value_at(k, e, i, time + 0.5 * dt);
+                e->is.target[i] = value_at(k, e, i, time + 0.5 * dt);
             }
-            e->present[i] = velocity_at(k, e, i, time, dt);
+            e->is.present[i] = velocity_at(k, e, i, time, dt);
         }
     }
 }
@@ -245,7 +253,7 @@ static double correct(const entry *e, const double *target, rg_real *velocity) {
         for (int j = 0; j < p->constrained; j++) {
             impulse += p->impulse[i][j] * change[j];
         }
-        work += 0.5 * e->mass * impulse * (e->before[i] + target[i]);
+        work += 0.5 * e->mass * impulse * (e->is.before[i] + target[i]);
     }
     for (int n = 0; n < RG_NODES; n++) {
         size_t at = rg_node_index((size_t)e->slot, p->node[n], e->component);
@@ -266,10 +274,10 @@ void rg_constraints_kick(rg_constraints *k, size_t tile, rg_real *velocity, rg_r
     for (size_t n = k->tile_begin[tile]; n < k->tile_begin[tile + 1]; n++) {
         entry *e = &k->entry[n];
         if (now != NULL) {
-            e->work_now = e->work + (k->moving ? correct(e, e->present, now) : 0);
+            e->is.work_now = e->is.work + (k->moving ? correct(e, e->is.present, now) : 0);
         }
-        e->work += correct(e, e->target, velocity);
-        memcpy(e->before, e->target, sizeof e->before);
+        e->is.work += correct(e, e->is.target, velocity);
+        memcpy(e->is.before, e->is.target, sizeof e->is.before);
     }
 }
 
@@ -278,7 +286,8 @@ void rg_constraints_place(const rg_constraints *k, size_t tile, rg_real *u) {
         const entry *e = &k->entry[n];
         for (int i = 0; i < e->pattern->constrained; i++) {
             if (k->input->boundary[e->boundary[i]].is_displacement) {
-                u[rg_node_index((size_t)e->slot, e->pattern->node[i], e->component)] = (rg_real)e->place[i];
+                u[rg_node_index((size_t)e->slot, e->pattern->node[i], e->component)] =
+                    (rg_real)e->is.place[i];
             }
         }
     }
@@ -286,8 +295,18 @@ void rg_constraints_place(const rg_constraints *k, size_t tile, rg_real *u) {
 
 void rg_constraints_work(const rg_constraints *k, rg_exact_sum *work) {
     for (size_t n = 0; n < k->entries; n++) {
-        rg_exact_add(work, k->entry[n].work_now);
+        rg_exact_add(work, k->entry[n].is.work_now);
     }
+}
+
+void rg_constraints_register(rg_constraints *k, rg_state *st) {
+    enum { VALUES = sizeof(memory) / sizeof(double) };
+    k->key = rg_realloc(k->key, k->entries + 1, sizeof *k->key);
+    for (size_t n = 0; n < k->entries; n++) {
+        k->key[n] = 4 * k->domain->id[k->entry[n].slot] + k->entry[n].component;
+    }
+    void *first = k->entries == 0 ? NULL : &k->entry[0].is;
+    rg_state_add_list(st, "constraint", RG_STATE_DOUBLE, VALUES, first, sizeof *k->entry, k->entries, k->key);
 }
 
 void rg_constraints_free(rg_constraints *k) {
@@ -298,6 +317,7 @@ void rg_constraints_free(rg_constraints *k) {
         rg_free(k->patterns[i]);
     }
     rg_free(k->entry);
+    rg_free(k->key);
     rg_free(k->tile_begin);
     rg_free(k);
 }

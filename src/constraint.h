@@ -14,6 +14,7 @@
 #include "exact_sum.h"
 
 typedef struct rg_constraints rg_constraints;
+typedef struct rg_state rg_state; /* state.h */
 
 /* The constraints of a case on this rank. Keeps references to `c` and `d`. Free with rg_constraints_free. */
 rg_constraints *rg_constraints_make(const rg_case *c, const rg_domain *d, const rg_part *part);
@@ -35,6 +36,10 @@ void rg_constraints_place(const rg_constraints *k, size_t tile, rg_real *u);
 
 /* Adds the work done up to the last present time at which velocities were asked for (J) to `work`. */
 void rg_constraints_work(const rg_constraints *k, rg_exact_sum *work);
+
+/* Registers what the constraints must remember: all that varies of their entries, keyed by 4 * global number
+ * of the element + component. */
+void rg_constraints_register(rg_constraints *k, rg_state *st);
 
 void rg_constraints_free(rg_constraints *k);
 

@@ -2,7 +2,8 @@
 #ifndef RG_ERROR_H
 #define RG_ERROR_H
 
-enum { RG_OK = 0, RG_FAILURE = 1, RG_USAGE = 2 }; /* exit statuses: fine, run failed, bad input */
+/* Exit statuses: fine; the run failed; bad input; stopped when asked to, with a checkpoint to go on from. */
+enum { RG_OK = 0, RG_FAILURE = 1, RG_USAGE = 2, RG_INTERRUPTED = 3 };
 
 /* Prints "rhegma: " and the message (rank 0 or the failing rank) and ends the whole job with `status`.
  * Never returns. Safe before MPI_Init and on one rank only (aborts the others). */

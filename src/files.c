@@ -1,9 +1,12 @@
 #include "files.h"
 
+#include <dirent.h>
 #include <errno.h>
+#include <fcntl.h>
 #include <inttypes.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "error.h"
 #include "mem.h"
@@ -52,16 +55,80 @@ static void join(char *out, size_t size, const char *dir, const char *name) {
     }
 }
 
-void rg_remove_results(const char *dir, int rank) {
-    static const char *const names[] = {"summary.json", "energy.csv",  "history.csv",
-                                        "case.yaml",    "fields.xdmf", "fields.h5"};
-    for (size_t i = 0; rank == 0 && i < sizeof names / sizeof *names; i++) {
-        char path[1024];
-        join(path, sizeof path, dir, names[i]);
-        if (remove(path) != 0 && errno != ENOENT) {
-            rg_fatal(RG_FAILURE, "%s: an earlier result cannot be removed: %s", path, strerror(errno));
+static void remove_in(const char *dir, const char *name) {
+    char path[1024];
+    join(path, sizeof path, dir, name);
+    if (remove(path) != 0 && errno != ENOENT) {
+        rg_fatal(RG_FAILURE, "%s: an earlier result cannot be removed: %s", path, strerror(errno));
+    }
+}
+
+/* The files of fields/ that a writer made, whole or not. */
+void rg_remove_frames(const char *dir, int rank) {
+    char path[1024];
+    join(path, sizeof path, dir, "fields");
+    DIR *folder = rank == 0 ? opendir(path) : NULL;
+    for (struct dirent *e = folder == NULL ? NULL : readdir(folder); e != NULL; e = readdir(folder)) {
+        if (strstr(e->d_name, ".h5") != NULL) {
+            remove_in(path, e->d_name);
         }
     }
+    if (folder != NULL) {
+        closedir(folder);
+        rmdir(path);
+    }
+}
+
+void rg_remove_endings(const char *dir) {
+    remove_in(dir, "summary.json");
+    remove_in(dir, "autopsy.json");
+}
+
+void rg_remove_results(const char *dir, int rank) {
+    static const char *const names[] = {"summary.json", "energy.csv",  "history.csv", "autopsy.json",
+                                        "case.yaml",    "fields.xdmf", "fields.h5"};
+    for (size_t i = 0; rank == 0 && i < sizeof names / sizeof *names; i++) {
+        remove_in(dir, names[i]);
+    }
+    rg_remove_frames(dir, rank);
+}
+
+bool rg_sync(const char *path) {
+    int file = open(path, O_RDONLY);
+    bool ok = file >= 0 && fsync(file) == 0;
+    int reason = errno;
+    if (file >= 0) {
+        close(file);
+    }
+    errno = reason;
+    return ok;
+}
+
+int64_t rg_settle(FILE *file, const char *name) {
+    struct stat found;
+    if (fflush(file) != 0 || fsync(fileno(file)) != 0 || fstat(fileno(file), &found) != 0) {
+        rg_fatal(RG_FAILURE, "%s: cannot be written: %s", name, strerror(errno));
+    }
+    return (int64_t)found.st_size;
+}
+
+FILE *rg_reopen_in(const char *dir, const char *name, int64_t length) {
+    char path[1024];
+    join(path, sizeof path, dir, name);
+    struct stat found;
+    if (stat(path, &found) != 0) {
+        rg_fatal(RG_USAGE, "%s: cannot go on with it: %s", path, strerror(errno));
+    }
+    if ((int64_t)found.st_size < length) {
+        rg_fatal(RG_USAGE,
+                 "%s: cannot go on with it: it has %" PRId64 " bytes and had %" PRId64 " at the checkpoint",
+                 path, (int64_t)found.st_size, length);
+    }
+    FILE *f = truncate(path, (off_t)length) == 0 ? fopen(path, "a") : NULL;
+    if (f == NULL) {
+        rg_fatal(RG_FAILURE, "%s: cannot be written: %s", path, strerror(errno));
+    }
+    return f;
 }
 
 FILE *rg_open_in(const char *dir, const char *name) {
@@ -78,10 +145,14 @@ void rg_echo_case(const rg_case *c, int rank) {
     if (rank != 0) {
         return;
     }
-    FILE *f = rg_open_in(c->output.dir, "case.yaml");
+    char part[1024], path[1024];
+    join(part, sizeof part, c->output.dir, "case.yaml.part"); /* a restart may come from it */
+    join(path, sizeof path, c->output.dir, "case.yaml");
+    FILE *f = rg_open_in(c->output.dir, "case.yaml.part");
     rg_case_echo(c, f);
-    if (fclose(f) != 0) {
-        rg_fatal(RG_FAILURE, "%s/case.yaml: cannot be written: %s", c->output.dir, strerror(errno));
+    rg_settle(f, path);
+    if (fclose(f) != 0 || rename(part, path) != 0) {
+        rg_fatal(RG_FAILURE, "%s: cannot be written: %s", path, strerror(errno));
     }
 }
 
@@ -90,6 +161,17 @@ rg_csv *rg_csv_open(const char *dir, const char *name, int rank) {
     join(t->path, sizeof t->path, dir, name);
     t->file = rank == 0 ? rg_open_in(dir, name) : NULL;
     return t;
+}
+
+rg_csv *rg_csv_reopen(const char *dir, const char *name, int rank, int64_t length) {
+    rg_csv *t = RG_NEW(rg_csv, 1);
+    join(t->path, sizeof t->path, dir, name);
+    t->file = rank == 0 ? rg_reopen_in(dir, name, length) : NULL;
+    return t;
+}
+
+int64_t rg_csv_settle(rg_csv *t) {
+    return t->file != NULL ? rg_settle(t->file, t->path) : 0;
 }
 
 static void finish_row(rg_csv *t) {

@@ -10,11 +10,28 @@
  */
 void rg_make_directory(const char *path, MPI_Comm comm);
 
+/* Brings a file or directory to the disk; false, with errno set, where that fails. */
+bool rg_sync(const char *path);
+
+/* Length of an open file with all that was written to it, which this brings to the disk. Ends the run with a
+ * message about `name` on failure. */
+int64_t rg_settle(FILE *file, const char *name);
+
 /* Removes what an earlier run left in `dir`, so that results of two runs never mix; rank 0. */
 void rg_remove_results(const char *dir, int rank);
 
+/* Removes what only the end of a run writes: summary and autopsy. */
+void rg_remove_endings(const char *dir);
+
+/* Removes the field files of an earlier run; rank 0. */
+void rg_remove_frames(const char *dir, int rank);
+
 /* Opens dir/name for writing; ends the run with a message on failure. */
 FILE *rg_open_in(const char *dir, const char *name);
+
+/* Opens dir/name to go on with it behind its first `length` bytes; what follows them is removed. Ends the run
+ * with a message if it is not that long. */
+FILE *rg_reopen_in(const char *dir, const char *name, int64_t length);
 
 /* Writes the full set of values used to case.yaml in the output directory; rank 0. */
 void rg_echo_case(const rg_case *c, int rank);
@@ -23,6 +40,12 @@ typedef struct rg_csv rg_csv;
 
 /* A table in dir/name; on ranks other than 0 it takes rows and writes nothing. */
 rg_csv *rg_csv_open(const char *dir, const char *name, int rank);
+/* The same, going on with a table behind its first `length` bytes. */
+rg_csv *rg_csv_reopen(const char *dir, const char *name, int rank, int64_t length);
+
+/* Brings the table to the disk; its length (rank 0; 0 elsewhere). */
+int64_t rg_csv_settle(rg_csv *t);
+
 void rg_csv_energy_header(rg_csv *t);
 void rg_csv_energy(rg_csv *t, const rg_energy *e);
 void rg_csv_close(rg_csv *t);

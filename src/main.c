@@ -6,6 +6,8 @@
 
 #include "denormals.h"
 #include "error.h"
+#include "h5_parallel.h"
+#include "interrupt.h"
 #include "layout.h"
 #include "mem.h"
 #include "mesh_command.h"
@@ -23,13 +25,20 @@ static const char usage[] =
     "  --set a.b=value   override a value of the case file (repeatable)\n"
     "  -o DIR            output directory (output.dir)\n"
     "  -q, --quiet       no progress\n"
+    "  --restart DIR     run: go on with the run in DIR from its newest good checkpoint; CASE.yaml may be "
+    "left out\n"
+    "  --overwrite       run: start anew where an unfinished run left checkpoints\n"
+    "  --walltime H:M:S  run: write a checkpoint and stop (exit status 3) before so much time has passed\n"
+    "signals: USR1 writes a checkpoint; TERM, INT, USR2 write one and stop\n"
     "ranks: mpirun -n N rhegma ...; threads: OMP_NUM_THREADS; instruction set: RHEGMA_ISA\n";
 
 typedef struct {
     const char *command, *path;
     const char **override;
     int overrides;
-    bool quiet;
+    char *restart_case; /* the case file in the directory of --restart */
+    bool has_directory;
+    rg_run_options run;
 } arguments;
 
 static int complain(int rank, const char *what, const char *argument) {
@@ -55,7 +64,8 @@ static char *directory_override(const char *dir) {
 static int parse(int argc, char **argv, int rank, arguments *a) {
     a->override = RG_NEW(const char *, (size_t)argc + 1);
     for (int i = 1; i < argc; i++) {
-        bool takes_value = strcmp(argv[i], "--set") == 0 || strcmp(argv[i], "-o") == 0;
+        bool takes_value = strcmp(argv[i], "--set") == 0 || strcmp(argv[i], "-o") == 0 ||
+                           strcmp(argv[i], "--restart") == 0 || strcmp(argv[i], "--walltime") == 0;
         if (takes_value && i + 1 == argc) {
             return complain(rank, "missing value after", argv[i]);
         }
@@ -63,8 +73,19 @@ static int parse(int argc, char **argv, int rank, arguments *a) {
             a->override[a->overrides++] = argv[++i];
         } else if (strcmp(argv[i], "-o") == 0) {
             a->override[a->overrides++] = directory_override(argv[++i]);
+            a->has_directory = true;
+        } else if (strcmp(argv[i], "--restart") == 0) {
+            a->run.restart = true;
+            a->restart_case = rg_join_path(argv[++i], "case.yaml");
+            a->override[a->overrides++] = directory_override(argv[i]);
+        } else if (strcmp(argv[i], "--walltime") == 0) {
+            if (!rg_interrupt_parse(argv[++i], &a->run.walltime)) {
+                return complain(rank, "--walltime takes H:M:S, not", argv[i]);
+            }
+        } else if (strcmp(argv[i], "--overwrite") == 0) {
+            a->run.overwrite = true;
         } else if (strcmp(argv[i], "-q") == 0 || strcmp(argv[i], "--quiet") == 0) {
-            a->quiet = true;
+            a->run.quiet = true;
         } else if (argv[i][0] == '-') {
             return complain(rank, "unknown option", argv[i]);
         } else if (a->command == NULL) {
@@ -81,6 +102,10 @@ static int parse(int argc, char **argv, int rank, arguments *a) {
     if (strcmp(a->command, "run") != 0 && strcmp(a->command, "check") != 0) {
         return complain(rank, "unknown command", a->command);
     }
+    if (a->run.restart && (a->has_directory || a->run.overwrite)) {
+        return complain(rank, "--restart goes on in its own directory: neither -o nor --overwrite", "");
+    }
+    a->path = a->path == NULL ? a->restart_case : a->path;
     return a->path == NULL ? complain(rank, "no case file given", "") : RG_OK;
 }
 
@@ -123,7 +148,7 @@ static int execute(int argc, char **argv, int rank) {
     }
     rg_flush_denormals();
     int status =
-        strcmp(a.command, "run") == 0 ? rg_run(c, MPI_COMM_WORLD, a.quiet) : rg_check(c, MPI_COMM_WORLD);
+        strcmp(a.command, "run") == 0 ? rg_run(c, MPI_COMM_WORLD, &a.run) : rg_check(c, MPI_COMM_WORLD);
     rg_case_free(c);
     return status;
 }
@@ -135,6 +160,7 @@ int main(int argc, char **argv) {
     /* Open MPI's own I/O layer has been reported to hang or corrupt HDF5's collective writes
      * (HDFGroup/hdf5#1227, open-mpi/ompi#12718): use ROMIO unless the user chose otherwise. */
     setenv("OMPI_MCA_io", "romio321", 0);
+    rg_interrupt_listen();
     int provided, rank;
     MPI_Init_thread(&argc, &argv, MPI_THREAD_FUNNELED, &provided);
     if (provided < MPI_THREAD_FUNNELED) {

@@ -132,7 +132,8 @@ rg_probes *rg_probes_find(const rg_solver *s) {
     return p;
 }
 
-void rg_probes_open(rg_probes *p, rg_solver *s) {
+/* Room for samples, and the solver's kicks fill it. */
+static void begin(rg_probes *p, rg_solver *s) {
     size_t size = CAPACITY * (size_t)p->row + 1;
     p->time = RG_NEW(double, CAPACITY);
     p->value = RG_NEW(double, size);
@@ -144,8 +145,19 @@ void rg_probes_open(rg_probes *p, rg_solver *s) {
     }
     s->watch = watch;
     s->watch_context = p;
+}
+
+void rg_probes_open(rg_probes *p, rg_solver *s) {
+    begin(p, s);
     if (p->rank == 0 && p->row > 0) {
         write_header(p, s->input);
+    }
+}
+
+void rg_probes_reopen(rg_probes *p, rg_solver *s, int64_t length) {
+    begin(p, s);
+    if (p->rank == 0 && p->row > 0) {
+        p->file = rg_reopen_in(s->input->output.dir, "history.csv", length);
     }
 }
 
@@ -189,6 +201,11 @@ void rg_probes_flush(rg_probes *p) {
     }
     memset(p->value, 0, (size_t)count * sizeof(double));
     p->samples = 0;
+}
+
+int64_t rg_probes_settle(rg_probes *p) {
+    rg_probes_flush(p);
+    return p->file != NULL ? rg_settle(p->file, "history.csv") : 0;
 }
 
 void rg_probes_close(rg_probes *p) {

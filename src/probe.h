@@ -15,6 +15,13 @@ rg_probes *rg_probes_find(const rg_solver *s);
  * solver's kicks record what they see there. */
 void rg_probes_open(rg_probes *p, rg_solver *s);
 
+/* The same, going on with history.csv behind its first `length` bytes. */
+void rg_probes_reopen(rg_probes *p, rg_solver *s, int64_t length);
+
+/* Writes what is buffered and brings it to the disk; the length of history.csv (rank 0; 0 elsewhere).
+ * Collective. */
+int64_t rg_probes_settle(rg_probes *p);
+
 /* Closes the record of a kick at `time` (s). Collective only when the buffer is full. */
 void rg_probes_next(rg_probes *p, double time);
 

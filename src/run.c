@@ -6,24 +6,27 @@
 #include <string.h>
 
 #include "affinity.h"
+#include "autopsy.h"
 #include "error.h"
-#include "estimate.h"
-#include "files.h"
-#include "ledger.h"
+#include "interrupt.h"
 #include "mem.h"
-#include "probe.h"
+#include "mesh_case.h"
 #include "progress.h"
-#include "snapshot.h"
+#include "restart.h"
+#include "schedule.h"
 #include "spectrum.h"
-#include "summary.h"
 
 /* Stiffening up to this costs no time step: the spectrum's margin and any sensible safety cover it. */
 #define STIFFENING_FREE 1.05
 
 enum { EXCHANGES = 6 };
 
+/* From this stiffening on an element may turn inside out in a step. */
+#define CAREFUL 2
+
 typedef struct {
     const rg_case *input;
+    const rg_run_options *options;
     rg_solver *solver;
     rg_ledger ledger;
     rg_probes *probes;
@@ -31,51 +34,34 @@ typedef struct {
     rg_progress progress;
     rg_summary summary;
     rg_csv *energy;
-    double dt_reference, next_output;
-    int frame;        /* next of output.times */
-    double good_time; /* of the last output that was in order (s) */
-    char failure[400];
+    rg_state state;
+    rg_restart keep;
+    rg_checkpoints checkpoints;
+    rg_schedule schedule;
+    double dt_reference;
+    bool stopped; /* asked to, with a checkpoint */
+    char failure[RG_FAILURE_WORDS];
 } run;
 
 /* Time step for the current stiffening, in steps of 9 % so that it seldom changes (a leapfrog conserves
  * energy at a constant step). */
-static double step_size(const run *r, double stiffening) {
+static double stable_step(const run *r, double stiffening) {
     double dt = r->dt_reference;
-    if (stiffening > STIFFENING_FREE) {
-        dt /= sqrt(exp2(ceil(4 * log2(stiffening)) / 4));
-    }
-    if (r->frame < r->input->output.times) { /* equal steps that end at the next frame */
-        double there = r->input->output.time[r->frame] - r->solver->time;
+    return stiffening > STIFFENING_FREE ? dt / sqrt(exp2(ceil(4 * log2(stiffening)) / 4)) : dt;
+}
+
+static bool collapsed(const run *r, double stiffening) {
+    return stable_step(r, stiffening) < r->input->time.collapse * r->dt_reference;
+}
+
+static double step_size(const run *r, double stiffening) {
+    double dt = stable_step(r, stiffening);
+    if (r->keep.frame < r->input->output.times) { /* equal steps that end at the next frame */
+        double there = r->input->output.time[r->keep.frame] - r->solver->time;
         dt = there > 0 ? there / ceil(there / dt * (1 - 1e-9)) : dt;
     }
     double left = r->input->time.end - r->solver->time;
     return left > 0 && left < dt * (1 + 1e-9) ? left : dt;
-}
-
-/* The element whose state is not finite, or the lowest-numbered of several. */
-static void locate_failure(run *r, int64_t step, double time) {
-    const rg_solver *s = r->solver;
-    rg_gid id = INT64_MAX, first;
-    double x[3] = {0, 0, 0};
-    for (size_t slot = 0; slot < s->domain->blocks * RG_LANES; slot++) {
-        if (!isfinite(s->stiffening[slot]) && s->domain->id[slot] >= 0 && s->domain->id[slot] < id) {
-            id = s->domain->id[slot];
-            for (int c = 0; c < 3; c++) {
-                const double *p = s->domain->corner + 12 * slot + c;
-                x[c] = 0.25 * (p[0] + p[3] + p[6] + p[9]);
-            }
-        }
-    }
-    MPI_Allreduce(&id, &first, 1, MPI_INT64_T, MPI_MIN, s->comm);
-    for (int c = 0; c < 3; c++) {
-        x[c] = id == first ? x[c] : 0;
-    }
-    MPI_Allreduce(MPI_IN_PLACE, x, 3, MPI_DOUBLE, MPI_SUM, s->comm);
-    snprintf(r->failure, sizeof r->failure,
-             "the state is not finite (or an element is inside out) at step %" PRId64
-             ", time %.6g s, dt %.4g s: element %" PRId64
-             " at (%.4g, %.4g, %.4g) m; last good output at %.6g s",
-             step, time, s->dt, first, x[0], x[1], x[2], r->good_time);
 }
 
 static bool output_due(run *r) {
@@ -83,20 +69,20 @@ static bool output_due(run *r) {
         return r->solver->step % r->input->output.interval_steps == 0;
     }
     double interval = r->input->output.interval_time;
-    if (r->solver->time < r->next_output - 1e-6 * interval) {
+    if (r->solver->time < r->keep.next_output - 1e-6 * interval) {
         return false;
     }
-    r->next_output = (floor(r->solver->time / interval + 1e-6) + 1) * interval;
+    r->keep.next_output = (floor(r->solver->time / interval + 1e-6) + 1) * interval;
     return true;
 }
 
 /* Whether fields of the present state are to be written. */
 static bool frame_due(run *r) {
     const rg_case *c = r->input;
-    if (r->frame == c->output.times || r->solver->time < c->output.time[r->frame] * (1 - 1e-12)) {
+    if (r->keep.frame == c->output.times || r->solver->time < c->output.time[r->keep.frame] * (1 - 1e-12)) {
         return false;
     }
-    r->frame++;
+    r->keep.frame++;
     return true;
 }
 
@@ -112,14 +98,12 @@ static void output(run *r, bool fields) {
     rg_csv_energy(r->energy, e);
     if (r->failure[0] == '\0' && !(r->ledger.worst <= r->input->output.energy_limit)) {
         snprintf(r->failure, sizeof r->failure,
-                 "the energy error %.3g passed the limit %.3g (output.energy_limit) at step %" PRId64
-                 ", time %.6g s; the time step is set by element %" PRId64
-                 "; last good output at %.6g s; a smaller time.safety may help",
-                 e->error, r->input->output.energy_limit, e->step, e->time, r->solver->limiting,
-                 r->good_time);
+                 "the energy error %.3g passed the limit %.3g (output.energy_limit)", e->error,
+                 r->input->output.energy_limit);
+        rg_autopsy_add(r->failure, r->solver, e->step, e->time, r->keep.good_time);
     }
     if (r->failure[0] == '\0') {
-        r->good_time = e->time;
+        r->keep.good_time = e->time;
     }
     rg_probes_flush(r->probes);
     if (fields) {
@@ -128,25 +112,57 @@ static void output(run *r, bool fields) {
     rg_progress_show(&r->progress, r->solver, e);
 }
 
+/* A state that no step can leave: not finite, or such that the step collapses. `dt` is the step tried. */
+static void examine(run *r, int64_t step, double time, double dt) {
+    const rg_solver *s = r->solver;
+    if (!isfinite(s->stiffening_anywhere)) {
+        snprintf(r->failure, sizeof r->failure, "the state is not finite (or an element is inside out)");
+    } else if (collapsed(r, s->stiffening_anywhere)) {
+        snprintf(r->failure, sizeof r->failure,
+                 "the time step collapsed: %.3g s, below %.3g (time.collapse) of the %.3g s at rest", dt,
+                 r->input->time.collapse, r->dt_reference);
+    } else {
+        return;
+    }
+    rg_autopsy_add(r->failure, s, step, time, r->keep.good_time);
+}
+
+/* Writes a checkpoint if it is time for one; returns whether to stop after it. */
+static bool save(run *r) {
+    const rg_solver *s = r->solver;
+    if (!rg_schedule_due(&r->schedule, s, done(r))) {
+        return false;
+    }
+    rg_restart_settle(&r->keep, s, r->energy, r->probes, r->snapshots);
+    rg_checkpoint_write(&r->checkpoints, (int)r->input->checkpoint.keep);
+    rg_schedule_done(&r->schedule, s, r->checkpoints.slowest);
+    r->stopped = s->wish >= RG_WISH_STOP;
+    return r->stopped;
+}
+
 /* Forces of the current state and, where it is to be output, that; then the step to the next one. The time
  * step follows the stiffening of the state before, which all ranks know by now: one step is no time for it to
- * change by more than any sensible safety. Returns whether to go on. */
+ * change by more than any sensible safety. A state that may be the last good one is not left before it is
+ * known that the next can be reached. Returns whether to go on. */
 static bool advance(run *r, double *other) {
     rg_solver *s = r->solver;
     bool last = done(r), due = output_due(r) || last;
     bool frame = frame_due(r) || (due && r->input->output.times == 0), fresh = due || frame;
     double dt = step_size(r, s->stiffening_anywhere), time = s->time;
     int64_t step = s->step;
-    if (fresh) {
+    bool careful = !(s->stiffening_anywhere < CAREFUL);
+    if (fresh || careful) {
         rg_solver_kick(s, dt);
     } else {
         rg_solver_step(s, dt);
     }
     rg_probes_next(r->probes, time);
-    if (!isfinite(s->stiffening_anywhere)) {
-        locate_failure(r, step, time);
+    examine(r, step, time, dt);
+    bool failed = r->failure[0] != '\0';
+    if (failed && !fresh && !careful) {
+        rg_solver_kick(s, dt); /* the fields are those of the state that followed */
     }
-    if (fresh) {
+    if (fresh || failed) {
         double begin = MPI_Wtime();
         output(r, frame);
         *other += MPI_Wtime() - begin;
@@ -154,7 +170,7 @@ static bool advance(run *r, double *other) {
     if (r->failure[0] != '\0' || last) {
         return false;
     }
-    if (fresh) {
+    if (fresh || careful) {
         rg_solver_drift(s);
     }
     if (s->step == 1) {
@@ -177,16 +193,41 @@ static void measure_exchange(rg_solver *s) {
 
 static void time_loop(run *r) {
     double started = MPI_Wtime(), other = 0;
-    while (advance(r, &other)) {
+    r->summary.first_step = r->solver->step;
+    bool on = true;
+    while (on) {
+        double begin = MPI_Wtime();
+        bool stop = save(r);
+        other += MPI_Wtime() - begin;
+        on = !stop && advance(r, &other);
     }
     r->summary.loop_seconds = MPI_Wtime() - started - other;
     r->summary.output_seconds = other;
 }
 
+/* ---- outputs ---- */
+
+/* Results of two runs never mix; but those of days are not lost because of a word forgotten. */
+static void refuse_overwriting(const run *r) {
+    const char *dir = r->input->output.dir;
+    if (r->solver->rank == 0 && !r->options->overwrite && rg_checkpoints_exist(dir) && !rg_completed(dir)) {
+        rg_fatal(
+            RG_USAGE,
+            "%s holds checkpoints of a run that did not end: --restart %s goes on from them, --overwrite "
+            "starts anew without them",
+            dir, dir);
+    }
+    MPI_Barrier(r->solver->comm);
+}
+
 static void open_outputs(run *r) {
     const rg_case *c = r->input;
+    refuse_overwriting(r);
     rg_make_directory(c->output.dir, r->solver->comm);
     rg_remove_results(c->output.dir, r->solver->rank);
+    if (r->solver->rank == 0) {
+        rg_checkpoints_remove(c->output.dir, true);
+    }
     rg_echo_case(c, r->solver->rank);
     r->energy = rg_csv_open(c->output.dir, "energy.csv", r->solver->rank);
     rg_csv_energy_header(r->energy);
@@ -194,47 +235,119 @@ static void open_outputs(run *r) {
     r->snapshots = rg_snapshots_open(r->solver);
 }
 
+/* Takes up the files of the run that wrote the checkpoint, where they stood then. */
+static void reopen_outputs(run *r) {
+    const rg_case *c = r->input;
+    int rank = r->solver->rank;
+    r->energy = rg_csv_reopen(c->output.dir, "energy.csv", rank, r->keep.energy_bytes);
+    rg_probes_reopen(r->probes, r->solver, r->keep.history_bytes);
+    if (r->keep.fields.frames > 0) {
+        r->snapshots = rg_snapshots_reopen(r->solver, &r->keep.fields);
+    } else {
+        rg_remove_frames(c->output.dir, rank);
+        r->snapshots = rg_snapshots_open(r->solver);
+    }
+    if (rank == 0) {
+        rg_checkpoints_remove(c->output.dir, false);
+        rg_remove_endings(c->output.dir);
+    }
+    rg_echo_case(c, rank);
+}
+
 static void close_outputs(run *r) {
     rg_probes_close(r->probes);
     rg_snapshots_close(r->snapshots);
     rg_csv_close(r->energy);
+    rg_checkpoints_close(&r->checkpoints);
 }
 
-int rg_run(const rg_case *c, MPI_Comm comm, bool quiet) {
-    run *r = RG_NEW(run, 1);
-    r->input = c;
-    double begin = MPI_Wtime();
-    r->solver = rg_solver_make(c, comm);
+/* ---- beginning and end ---- */
+
+/* The state, at rest or from a checkpoint, up to where the estimate can be made. */
+static void make_state(run *r, MPI_Comm comm) {
+    const rg_case *c = r->input;
+    r->solver = r->options->restart ? rg_solver_make_from_part(c, rg_part_of_case(c, comm), comm)
+                                    : rg_solver_make(c, comm);
     r->probes = rg_probes_find(r->solver);
-    rg_spectrum(r->solver);
-    rg_estimate estimate = rg_estimate_run(r->solver);
-    r->dt_reference = estimate.dt;
-    r->next_output = c->output.interval_time;
-    bool speaks = r->solver->rank == 0 && !quiet;
-    if (speaks) {
-        rg_estimate_print(r->solver, &estimate, stdout);
+    rg_restart_register(&r->state, &r->keep, r->solver, &r->ledger, &r->summary);
+    rg_checkpoints_open(&r->checkpoints, c->output.dir, r->solver, &r->state);
+    r->keep.next_output = c->output.interval_time;
+    if (!r->options->restart) {
+        rg_spectrum(r->solver);
+        return;
     }
-    if (!quiet) {
+    rg_checkpoint_load(&r->checkpoints);
+    rg_restart_spectrum(&r->keep, r->solver);
+    if (r->keep.interval != c->output.interval_time) { /* outputs are due at its multiples */
+        double interval = c->output.interval_time;
+        r->keep.next_output = (floor(r->solver->time / interval + 1e-6) + 1) * interval;
+    }
+}
+
+static void begin(run *r, MPI_Comm comm) {
+    const rg_case *c = r->input;
+    double started = MPI_Wtime();
+    make_state(r, comm);
+    r->summary.estimate = rg_estimate_run(r->solver);
+    r->dt_reference = r->summary.estimate.dt;
+    bool speaks = r->solver->rank == 0 && !r->options->quiet;
+    if (speaks) {
+        rg_estimate_print(r->solver, &r->summary.estimate, stdout);
+    }
+    if (!r->options->quiet) {
         rg_affinity_print(comm, stdout);
     }
     measure_exchange(r->solver);
-    open_outputs(r);
-    rg_solver_start(r->solver);
+    if (r->options->restart) {
+        reopen_outputs(r);
+        rg_solver_resume(r->solver);
+    } else {
+        open_outputs(r);
+        rg_solver_start(r->solver);
+    }
     r->solver->phases = (rg_phases){.last = 0};
-    rg_progress_begin(&r->progress, speaks, c->time.end, estimate.steps);
-    r->summary.setup_seconds = MPI_Wtime() - begin;
-    time_loop(r);
-    rg_progress_end(&r->progress);
+    if (speaks && r->options->restart) {
+        printf("goes on from step %" PRId64 ", time %.6g s\n", r->solver->step, r->solver->time);
+    }
+    rg_schedule_start(&r->schedule, r->solver, r->options->walltime);
+    rg_progress_begin(&r->progress, speaks, c->time.end, r->summary.estimate.steps);
+    r->summary.setup_seconds = MPI_Wtime() - started;
+}
+
+/* Says how it ended; returns the exit status. */
+static int conclude(run *r) {
+    const rg_solver *s = r->solver;
+    bool failed = r->failure[0] != '\0', speaks = s->rank == 0 && !r->options->quiet;
+    if (r->stopped) {
+        if (s->rank == 0) {
+            fprintf(stderr,
+                    "rhegma: stopped with a checkpoint at step %" PRId64 ", time %.6g s, %s; goes on with: "
+                    "rhegma run --restart %s\n",
+                    s->step, s->time, s->wish == RG_WISH_STOP ? "by a signal" : "before the wall-time limit",
+                    r->input->output.dir);
+        }
+        return RG_INTERRUPTED;
+    }
     r->summary.failure = r->failure;
-    rg_summary_write(&r->summary, r->solver, &r->ledger, &estimate);
-    close_outputs(r);
-    if (r->failure[0] != '\0' && r->solver->rank == 0) {
+    rg_summary_write(&r->summary, r->solver, &r->ledger);
+    if (failed && s->rank == 0) {
         fprintf(stderr, "rhegma: stopped: %s\n", r->failure);
     }
     if (speaks) {
-        rg_summary_print(&r->summary, r->solver, &r->ledger, stdout);
+        rg_summary_print(&r->summary, s, &r->ledger, stdout);
     }
-    int status = r->failure[0] == '\0' ? RG_OK : RG_FAILURE;
+    return failed ? RG_FAILURE : RG_OK;
+}
+
+int rg_run(const rg_case *c, MPI_Comm comm, const rg_run_options *options) {
+    run *r = RG_NEW(run, 1);
+    r->input = c;
+    r->options = options;
+    begin(r, comm);
+    time_loop(r);
+    rg_progress_end(&r->progress);
+    int status = conclude(r);
+    close_outputs(r);
     rg_solver_free(r->solver);
     rg_free(r);
     return status;

@@ -55,7 +55,7 @@ rg_slab *rg_slab_make(const rg_domain *d, rg_gid total, MPI_Comm comm) {
     MPI_Comm_rank(comm, &rank);
     MPI_Comm_size(comm, &ranks);
     rg_slab *s = RG_NEW(rg_slab, 1);
-    *s = (rg_slab){.first = slab_begin(total, ranks, rank), .own = d->elements, .comm = comm};
+    *s = (rg_slab){.total = total, .first = slab_begin(total, ranks, rank), .own = d->elements, .comm = comm};
     s->count = (size_t)(slab_begin(total, ranks, rank + 1) - s->first);
     s->slot = RG_NEW(rg_lid, s->own + 1);
     s->place = RG_NEW(size_t, s->count + 1);
@@ -84,18 +84,43 @@ rg_slab *rg_slab_make(const rg_domain *d, rg_gid total, MPI_Comm comm) {
     return s;
 }
 
-void rg_slab_send(const rg_slab *s, int values, const double *in, double *out) {
+static MPI_Datatype record_type(size_t bytes) {
     MPI_Datatype record;
-    MPI_Type_contiguous(values, MPI_DOUBLE, &record);
+    MPI_Type_contiguous((int)bytes, MPI_BYTE, &record);
     MPI_Type_commit(&record);
-    double *arrived = RG_NEW(double, s->count *(size_t)values + 1);
+    return record;
+}
+
+void rg_slab_send_bytes(const rg_slab *s, size_t bytes, const void *in, void *out) {
+    MPI_Datatype record = record_type(bytes);
+    char *arrived = RG_NEW(char, s->count *bytes + 1);
     MPI_Alltoallv(in, s->send, s->send_at, record, arrived, s->receive, s->receive_at, record, s->comm);
-    size_t bytes = (size_t)values * sizeof(double);
     for (size_t i = 0; i < s->count; i++) {
-        memcpy(out + s->place[i] * (size_t)values, arrived + i * (size_t)values, bytes);
+        memcpy((char *)out + s->place[i] * bytes, arrived + i * bytes, bytes);
     }
     rg_free(arrived);
     MPI_Type_free(&record);
+}
+
+void rg_slab_fetch_bytes(const rg_slab *s, size_t bytes, const void *in, void *out) {
+    MPI_Datatype record = record_type(bytes);
+    char *leaving = RG_NEW(char, s->count *bytes + 1);
+    for (size_t i = 0; i < s->count; i++) {
+        memcpy(leaving + i * bytes, (const char *)in + s->place[i] * bytes, bytes);
+    }
+    MPI_Alltoallv(leaving, s->receive, s->receive_at, record, out, s->send, s->send_at, record, s->comm);
+    rg_free(leaving);
+    MPI_Type_free(&record);
+}
+
+void rg_slab_send(const rg_slab *s, int values, const double *in, double *out) {
+    rg_slab_send_bytes(s, (size_t)values * sizeof(double), in, out);
+}
+
+int rg_slab_owner(const rg_slab *s, rg_gid id) {
+    int ranks;
+    MPI_Comm_size(s->comm, &ranks);
+    return slab_owner(s->total, ranks, id);
 }
 
 size_t rg_slab_row(const rg_slab *s, const rg_domain *d, rg_gid id) {

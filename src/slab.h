@@ -6,6 +6,7 @@
 #include "domain.h"
 
 typedef struct {
+    rg_gid total; /* elements of the mesh */
     rg_gid first; /* this rank's slab */
     size_t count;
     size_t own;    /* own elements, in the order of `slot` */
@@ -20,6 +21,13 @@ rg_slab *rg_slab_make(const rg_domain *d, rg_gid total, MPI_Comm comm);
 
 /* Collective: in[own][values], in the order of `slot`, becomes out[count][values] in global order. */
 void rg_slab_send(const rg_slab *s, int values, const double *in, double *out);
+
+/* The same for records of `bytes` bytes, and back again. */
+void rg_slab_send_bytes(const rg_slab *s, size_t bytes, const void *in, void *out);
+void rg_slab_fetch_bytes(const rg_slab *s, size_t bytes, const void *in, void *out);
+
+/* Rank in whose slab element `id` is. */
+int rg_slab_owner(const rg_slab *s, rg_gid id);
 
 /* Row of own element `id` in the order of `slot`. */
 size_t rg_slab_row(const rg_slab *s, const rg_domain *d, rg_gid id);

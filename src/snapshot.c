@@ -2,9 +2,11 @@
 
 #include <math.h>
 #include <omp.h>
+#include <string.h>
 
 #include "crack_surface.h"
 #include "element.h"
+#include "error.h"
 #include "mem.h"
 #include "principal.h"
 #include "tile.h"
@@ -44,20 +46,92 @@ static void collect_positions(rg_snapshots *w, const rg_solver *s) {
     send(w, NODAL);
 }
 
-rg_snapshots *rg_snapshots_open(const rg_solver *s) {
+/* ---- region ---- */
+
+static bool in_region(const rg_expr *region, const double *points, int count) {
+    double x[3] = {0, 0, 0};
+    for (int i = 0; i < 3 * count; i++) {
+        x[i % 3] += points[i] / count;
+    }
+    return region == NULL || rg_expr_value(region, x, 0) != 0;
+}
+
+/* From the positions in `sorted`: which elements are written, and their numbers among all that are. */
+static void choose(rg_snapshots *w, const rg_solver *s) {
+    w->row = RG_NEW(size_t, w->slab->count + 1);
+    for (size_t i = 0; i < w->slab->count; i++) {
+        if (in_region(s->input->output.region, w->sorted + i * NODAL, 4)) { /* corners: at the centroid */
+            w->row[w->written++] = i;
+        }
+    }
+    int64_t count = (int64_t)w->written;
+    MPI_Scan(&count, &w->first, 1, MPI_INT64_T, MPI_SUM, s->comm);
+    w->first -= count;
+    MPI_Allreduce(&count, &w->total, 1, MPI_INT64_T, MPI_SUM, s->comm);
+    if (w->total == 0 && s->rank > 0) {
+        MPI_Barrier(s->comm); /* rank 0 speaks and ends the job */
+    }
+    if (w->total == 0) {
+        rg_fatal(RG_USAGE, "%s: output.region: %s: no element is in it", s->input->path,
+                 rg_expr_text(s->input->output.region));
+    }
+}
+
+/* Keeps of `values` for each row of the slab those of the elements that are written. */
+static void keep_region(const rg_snapshots *w, size_t values, double *data) {
+    for (size_t i = 0; w->written < w->slab->count && i < w->written; i++) {
+        memmove(data + i * values, data + w->row[i] * values, values * sizeof *data);
+    }
+}
+
+/* ---- files ---- */
+
+static rg_writer_style style_of(const rg_case *c) {
+    return (rg_writer_style){c->output.precision == RG_OUTPUT_SINGLE, (int)c->output.compression};
+}
+
+/* All but the writer; the positions are in `sorted`. */
+static rg_snapshots *prepare(const rg_solver *s) {
     rg_snapshots *w = RG_NEW(rg_snapshots, 1);
     w->fields = s->input->output.fields;
-    if (w->fields == 0) {
-        return w;
+    if (w->fields != 0) {
+        w->slab = rg_slab_make(s->domain, s->part->total, s->comm);
+        w->record = RG_NEW(double, w->slab->own *NODAL + 1);
+        w->sorted = RG_NEW(double, w->slab->count *NODAL + 1);
+        collect_positions(w, s);
+        choose(w, s);
+        keep_region(w, NODAL, w->sorted);
     }
-    w->slab = rg_slab_make(s->domain, s->part->total, s->comm);
-    w->record = RG_NEW(double, w->slab->own *NODAL + 1);
-    w->sorted = RG_NEW(double, w->slab->count *NODAL + 1);
-    collect_positions(w, s);
-    w->writer = rg_writer_open(s->input->output.dir, s->comm, s->part->total, w->slab->first,
-                               (int64_t)w->slab->count, w->sorted);
     return w;
 }
+
+rg_snapshots *rg_snapshots_open(const rg_solver *s) {
+    rg_snapshots *w = prepare(s);
+    if (w->fields != 0) {
+        w->writer = rg_writer_open(s->input->output.dir, s->comm, style_of(s->input), w->total, w->first,
+                                   (int64_t)w->written, w->sorted);
+    }
+    return w;
+}
+
+rg_snapshots *rg_snapshots_reopen(const rg_solver *s, const rg_writer_mark *mark) {
+    rg_snapshots *w = prepare(s);
+    if (w->fields != 0) {
+        w->writer = rg_writer_resume(s->input->output.dir, s->comm, style_of(s->input), w->total, w->first,
+                                     (int64_t)w->written, mark);
+    }
+    return w;
+}
+
+rg_writer_mark rg_snapshots_settle(rg_snapshots *w) {
+    if (w->fields == 0) {
+        return (rg_writer_mark){0};
+    }
+    rg_writer_sync(w->writer);
+    return rg_writer_stand(w->writer);
+}
+
+/* ---- fields ---- */
 
 static void write_nodal(rg_snapshots *w, const rg_solver *s, const char *name, const char *unit,
                         const rg_real *field) {
@@ -69,6 +143,7 @@ static void write_nodal(rg_snapshots *w, const rg_solver *s, const char *name, c
         }
     }
     send(w, NODAL);
+    keep_region(w, NODAL, w->sorted);
     rg_writer_volume(w->writer, name, unit, RG_CENTER_NODE, 3, w->sorted);
 }
 
@@ -157,7 +232,7 @@ static void tile_states(rg_snapshots *w, const rg_solver *s, const rg_tile *t, c
 
 static void write_part(rg_snapshots *w, int field, double *part) {
     size_t components = (size_t)state_field[field].components;
-    for (size_t i = 0; i < w->slab->count; i++) {
+    for (size_t i = 0; i < w->written; i++) {
         for (size_t k = 0; k < components; k++) {
             part[i * components + k] = w->sorted[i * STATE + (size_t)state_field[field].from + k];
         }
@@ -180,6 +255,7 @@ static void write_states(rg_snapshots *w, rg_solver *s) {
         rg_free(g.internal);
     }
     send(w, STATE);
+    keep_region(w, STATE, w->sorted);
     double *part = w->sorted + STATE * w->slab->count; /* behind the values of the elements */
     for (int k = 0; k < STATE_FIELDS; k++) {
         if (w->fields & state_field[k].bit) {
@@ -193,12 +269,25 @@ static void write_ranks(rg_snapshots *w, const rg_solver *s) {
         w->record[i] = s->rank;
     }
     send(w, 1);
+    keep_region(w, 1, w->sorted);
     rg_writer_volume(w->writer, "rank", "1", RG_CENTER_CELL, 1, w->sorted);
+}
+
+/* Faces in the region, by their present place; returns how many. */
+static size_t keep_faces(const rg_expr *region, size_t count, rg_crack_face *face) {
+    size_t kept = 0;
+    for (size_t i = 0; i < count; i++) {
+        if (in_region(region, &face[i].x[0][0], 3)) {
+            face[kept++] = face[i];
+        }
+    }
+    return kept;
 }
 
 static void write_cracks(rg_snapshots *w, const rg_solver *s) {
     rg_crack_face *face;
     size_t count = rg_crack_surface(s, &face);
+    count = keep_faces(s->input->output.region, count, face);
     double *column = RG_NEW(double, 9 * count + 1);
     for (size_t i = 0; i < 9 * count; i++) {
         column[i] = face[i / 9].x[i % 9 / 3][i % 3];
@@ -252,6 +341,7 @@ void rg_snapshots_close(rg_snapshots *w) {
         rg_slab_free(w->slab);
         rg_free(w->record);
         rg_free(w->sorted);
+        rg_free(w->row);
     }
     rg_free(w);
 }

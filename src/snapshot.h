@@ -11,11 +11,20 @@ typedef struct {
     rg_slab *slab;
     rg_writer *writer;
     double *record, *sorted; /* one field of the own elements, and of the slab */
+    size_t written;          /* elements of the slab that are written: those in output.region */
+    size_t *row;             /* [written]: their rows of the slab, ascending */
+    int64_t first, total;    /* of those of all slabs: the first one here, and how many */
 } rg_snapshots;
 
 /* Opens the field file in the case's output directory; does nothing where no fields are asked for.
  * Collective. */
 rg_snapshots *rg_snapshots_open(const rg_solver *s);
+
+/* The same, going on with the files of an earlier run from `mark` (writer.h), which has frames. */
+rg_snapshots *rg_snapshots_reopen(const rg_solver *s, const rg_writer_mark *mark);
+
+/* Brings what was written to the disk; where the files stand now. Collective. */
+rg_writer_mark rg_snapshots_settle(rg_snapshots *w);
 
 /* Writes the current state, between its kick and its drift. Collective. */
 void rg_snapshots_write(rg_snapshots *w, rg_solver *s);

@@ -7,6 +7,7 @@
 #include "element.h"
 #include "error.h"
 #include "material.h"
+#include "interrupt.h"
 #include "mem.h"
 #include "mesh_case.h"
 #include "patch.h"
@@ -278,9 +279,9 @@ static void start_stiffening(rg_solver *s) {
 #pragma omp master
     {
         double here = largest(s->tile_stiffening, s->domain->tiles);
-        s->stiffening_here = isfinite(here) ? here : INFINITY;
-        MPI_Iallreduce(&s->stiffening_here, &s->stiffening_anywhere, 1, MPI_DOUBLE, MPI_MAX, s->comm,
-                       &s->stiffening_request);
+        s->here[0] = isfinite(here) ? here : INFINITY;
+        s->here[1] = rg_interrupt_wish();
+        MPI_Iallreduce(s->here, s->anywhere, 2, MPI_DOUBLE, MPI_MAX, s->comm, &s->stiffening_request);
     }
     mark(s, RG_PHASE_REDUCE);
 }
@@ -319,6 +320,8 @@ static void evaluate(rg_solver *s, const impulse *p) {
         }
     }
     MPI_Wait(&s->stiffening_request, MPI_STATUS_IGNORE);
+    s->stiffening_anywhere = s->anywhere[0];
+    s->wish = (int)s->anywhere[1];
     if (p->constrain) {
         rg_bodies_kick(s->bodies, s->time, s->dt, s->dt_next);
     }
@@ -386,6 +389,19 @@ void rg_solver_start(rg_solver *s) {
     set_initial(s);
     rg_constraints_start(s->constraints, s->u, s->velocity);
     measure(s);
+}
+
+void rg_solver_resume(rg_solver *s) {
+    const rg_domain *d = s->domain;
+    memset(s->active, 0, d->iblocks);
+    memset(s->cracked, 0, d->blocks);
+    for (size_t i = 0; i < d->iblocks * RG_LANES; i++) {
+        s->active[i / RG_LANES] |= s->broken[i] != 0;
+    }
+    for (size_t t = 0; t < d->tiles; t++) {
+        mark_cracked(s, &d->tile[t], d->tile[t].ibegin, d->tile[t].iend);
+    }
+    publish(s);
 }
 
 /* What a kick with a step `dt` ahead of it does. */

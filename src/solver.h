@@ -46,8 +46,9 @@ struct rg_solver {
     int histories;
     rg_real *stiffening; /* [blocks][lane] */
     rg_real *tile_stiffening;
-    double stiffening_here,
-        stiffening_anywhere; /* largest on this rank, on all ranks; infinite if not finite */
+    double stiffening_anywhere;  /* largest on all ranks; infinite if not finite */
+    int wish;                    /* largest of all ranks (interrupt.h) when the forces were last computed */
+    double here[2], anywhere[2]; /* both on their way */
     MPI_Request stiffening_request;
     uint8_t *cracked, *broken, *unlinked, *active;
     rg_real *rows[2], *tractions; /* trace rows, of the current state and of the next; traction rows */
@@ -87,6 +88,9 @@ void rg_solver_start(rg_solver *s);
 
 /* Values of `history` on this rank. */
 size_t rg_solver_history(const rg_solver *s);
+/* In its place where the state comes from a checkpoint (state.h): makes what follows from that. Collective.
+ */
+void rg_solver_resume(rg_solver *s);
 
 /* Forces of the current displacement; velocities go on to the middle of a step `dt`, and `now` becomes the
  * velocity at the current time everywhere, with the constraints. Collective. */

@@ -76,6 +76,7 @@ static void write_run(FILE *f, const rg_summary *m, const rg_solver *s, const rg
     text(f, "instruction_set", s->kernels->name);
     text(f, "precision", RG_PRECISION);
     integer(f, "steps", s->step);
+    integer(f, "restarted_from_step", m->first_step);
     number(f, "time_end", s->time);
     number(f, "dt_critical", e->dt_critical);
     number(f, "dt_first", m->dt_first);
@@ -105,13 +106,14 @@ static void write_physics(FILE *f, const rg_summary *m, const rg_ledger *l) {
     text(f, "status", m->failure[0] == '\0' ? "completed" : m->failure);
 }
 
-void rg_summary_write(rg_summary *m, rg_solver *s, const rg_ledger *l, const rg_estimate *e) {
+void rg_summary_write(rg_summary *m, rg_solver *s, const rg_ledger *l) {
+    const rg_estimate *e = &m->estimate;
     uint64_t hash = rg_state_hash(s);
     m->first_fracture = rg_first_fracture(s);
     m->halo_wait_seconds =
         rg_halo_waited(s->halo_u[0]) + rg_halo_waited(s->halo_u[1]) + rg_halo_waited(s->halo_t);
     MPI_Allreduce(MPI_IN_PLACE, &m->halo_wait_seconds, 1, MPI_DOUBLE, MPI_MAX, s->comm);
-    double work = (double)e->elements * (double)s->step;
+    double work = (double)e->elements * (double)(s->step - m->first_step);
     m->us_per_tet_step = work > 0 ? 1e6 * m->loop_seconds * s->ranks * s->threads / work : 0;
     rg_phases_report phases = rg_phases_gather(&s->phases, s->domain, s->halo_u[0], s->halo_t, s->comm);
     if (s->rank != 0) {
@@ -129,6 +131,20 @@ void rg_summary_write(rg_summary *m, rg_solver *s, const rg_ledger *l, const rg_
     if (fclose(f) != 0) {
         rg_fatal(RG_FAILURE, "%s/summary.json: cannot be written: %s", s->input->output.dir, strerror(errno));
     }
+}
+
+bool rg_completed(const char *dir) {
+    char path[1024], line[256];
+    snprintf(path, sizeof path, "%s/summary.json", dir);
+    FILE *f = fopen(path, "r");
+    bool found = false;
+    while (f != NULL && !found && fgets(line, sizeof line, f) != NULL) {
+        found = strstr(line, "\"status\": \"completed\"") != NULL;
+    }
+    if (f != NULL) {
+        fclose(f);
+    }
+    return found;
 }
 
 void rg_summary_print(const rg_summary *m, const rg_solver *s, const rg_ledger *l, FILE *out) {

@@ -6,6 +6,8 @@
 #include "ledger.h"
 
 typedef struct {
+    rg_estimate estimate;
+    int64_t first_step;       /* that this program did: not 0 after a restart */
     double dt_first;          /* s */
     double setup_seconds;     /* wall time before the time loop */
     double loop_seconds;      /* wall time of the time loop without output */
@@ -17,7 +19,10 @@ typedef struct {
 } rg_summary;
 
 /* Collective; rank 0 writes summary.json in the output directory. */
-void rg_summary_write(rg_summary *m, rg_solver *s, const rg_ledger *l, const rg_estimate *e);
+void rg_summary_write(rg_summary *m, rg_solver *s, const rg_ledger *l);
+
+/* Whether dir/summary.json is that of a run that reached its end. Not collective. */
+bool rg_completed(const char *dir);
 
 /* For a person; after rg_summary_write. Rank 0. */
 void rg_summary_print(const rg_summary *m, const rg_solver *s, const rg_ledger *l, FILE *out);

@@ -31,27 +31,36 @@ def times(collection):
     return [float(grid.find("Time").get("Value")) for grid in collection.findall("Grid")]
 
 
-def path_of(item):
-    file, path = item.text.strip().split(":")
-    assert file == "fields.h5"
-    return path
+def place_of(item):
+    """The file, relative to that of the description, and the dataset in it."""
+    return tuple(item.text.strip().split(":"))
 
 
-def test_every_item_is_in_the_file_with_its_dimensions(xdmf, h5):
+def test_every_item_is_in_its_file_with_its_dimensions(xdmf, spall_run):
     kinds = {"Int": np.dtype("int64"), "Float": np.dtype("float64")}
     items = xdmf.findall(".//DataItem")
     assert items
     for item in items:
-        data = h5[path_of(item)]
-        assert data.shape == tuple(int(n) for n in item.get("Dimensions").split())
-        assert data.dtype == kinds[item.get("NumberType")]
+        file, path = place_of(item)
+        with h5py.File(spall_run / file) as h5:
+            assert h5[path].shape == tuple(int(n) for n in item.get("Dimensions").split())
+            assert h5[path].dtype == kinds[item.get("NumberType")]
 
 
-def test_every_field_of_the_file_is_described(xdmf, h5):
-    described = {path_of(item) for item in xdmf.iter("DataItem")}
+def test_every_field_of_the_files_is_described(xdmf, spall_run):
+    described = {place_of(item) for item in xdmf.iter("DataItem")}
     held = set()
-    h5.visititems(lambda name, node: held.add("/" + name) if isinstance(node, h5py.Dataset) and node.shape[0] else None)
+    for path in (spall_run / "fields").iterdir():
+        file = f"fields/{path.name}"
+        with h5py.File(path) as h5:
+            h5.visititems(lambda name, node: held.add((file, "/" + name))
+                          if isinstance(node, h5py.Dataset) and node.shape[0] else None)
     assert held == described
+
+
+def test_one_file_leads_to_all(h5, spall_run):
+    assert {"mesh", *h5["frames"]} == {path.stem for path in (spall_run / "fields").iterdir()}
+    assert all(h5["frames"][name].file.filename.endswith(f"fields/{name}.h5") for name in h5["frames"])
 
 
 def test_attributes_have_as_many_values_as_their_grid(xdmf):
@@ -94,4 +103,5 @@ def test_fields_are_finite_and_say_their_unit(h5):
             assert "unit" in data.attrs, name
             assert np.isfinite(data[()]).all(), name
 
-    h5["frames"].visititems(check)
+    for frame in h5["frames"].values():
+        frame.visititems(check)

@@ -1,0 +1,98 @@
+#include "case_compare.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "case_key.h"
+#include "case_tree.h"
+#include "error.h"
+#include "mem.h"
+
+static void write_fixed(FILE *out, const rg_key_table *table, const void *base, const char *prefix) {
+    for (int i = 0; i < table->keys; i++) {
+        const rg_key *key = &table->key[i];
+        if (key->may_change || !rg_key_present(key, base)) {
+            continue;
+        }
+        if (key->type != RG_KEY_LIST) {
+            fprintf(out, "%s%s: ", prefix, key->name);
+            rg_key_write(out, key, base);
+            fputc('\n', out);
+            continue;
+        }
+        int count = 0;
+        memcpy(&count, (const char *)base + key->offset_count, sizeof count);
+        const char *list = rg_pointer_get((const char *)base + key->offset);
+        for (int k = 0; k < count; k++) {
+            char *inner = rg_text_format("%s%s[%d].", prefix, key->name, k);
+            write_fixed(out, key->entry, list + (size_t)k * key->entry->size, inner);
+            rg_free(inner);
+        }
+    }
+}
+
+char *rg_case_fixed(const rg_case *c) {
+    char *text = NULL;
+    size_t size = 0;
+    FILE *out = open_memstream(&text, &size);
+    if (out == NULL) {
+        rg_fatal(RG_FAILURE, "out of memory");
+    }
+    write_fixed(out, &rg_case_table, c, "");
+    fclose(out);
+    return text;
+}
+
+/* The line of `text` with the key of `line`; NULL if there is none. */
+static const char *find_line(const char *text, const char *line) {
+    size_t key = strcspn(line, ":") + 1;
+    while (text != NULL && strncmp(text, line, key) != 0) {
+        text = strchr(text, '\n');
+        text = text == NULL || text[1] == '\0' ? NULL : text + 1;
+    }
+    return text;
+}
+
+static const char *next_line(const char *line) {
+    line += strcspn(line, "\n");
+    return *line == '\n' ? line + 1 : line;
+}
+
+static bool same_line(const char *a, const char *b) {
+    size_t n = strcspn(a, "\n");
+    return strcspn(b, "\n") == n && strncmp(a, b, n) == 0;
+}
+
+/* Adds "\n  key: value, in the checkpoint ..." to *words. */
+static void add_change(char **words, const char *here, const char *before) {
+    const char *line = here != NULL ? here : before;
+    int key = (int)strcspn(line, ":");
+    const char *now = here != NULL ? here + key + 2 : "not given";
+    const char *then = before != NULL ? before + key + 2 : "not given";
+    char *longer = rg_text_format("%s\n  %.*s: %.*s; in the checkpoint: %.*s", *words, key, line,
+                                  (int)strcspn(now, "\n"), now, (int)strcspn(then, "\n"), then);
+    rg_free(*words);
+    *words = longer;
+}
+
+char *rg_case_changes(const char *before, const char *here) {
+    char *words = rg_text_format("the case is not that of the checkpoint; a restart may change time.end, "
+                                 "time.steps, time.safety, output and checkpoint, but not");
+    size_t none = strlen(words);
+    for (const char *line = here; *line != '\0'; line = next_line(line)) {
+        const char *then = find_line(before, line);
+        if (then == NULL || !same_line(then, line)) {
+            add_change(&words, line, then);
+        }
+    }
+    for (const char *line = before; *line != '\0'; line = next_line(line)) {
+        if (find_line(here, line) == NULL) {
+            add_change(&words, NULL, line);
+        }
+    }
+    if (strlen(words) == none) {
+        rg_free(words);
+        return NULL;
+    }
+    return words;
+}

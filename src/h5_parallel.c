@@ -1,0 +1,280 @@
+#include "h5_parallel.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <limits.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/statvfs.h>
+#include <unistd.h>
+
+#include "error.h"
+#include "files.h"
+#include "mem.h"
+
+#define LITTLE_ROOM 1e6 /* bytes */
+
+enum { VERIFY_BYTES = 1 << 20, CHUNK_BYTES = 1 << 18 }; /* read back at a time; compressed at a time */
+
+char *rg_join_path(const char *dir, const char *name) {
+    size_t size = strlen(dir) + strlen(name) + 2;
+    char *path = rg_realloc(NULL, size, 1);
+    snprintf(path, size, "%s/%s", dir, name);
+    return path;
+}
+
+/* Whether the disk that holds `path` has hardly any room left. */
+static bool disk_full(const char *path) {
+    char folder[4096];
+    struct statvfs disk;
+    snprintf(folder, sizeof folder, "%s", path);
+    char *slash = strrchr(folder, '/');
+    if (slash != NULL) {
+        *slash = '\0';
+    }
+    return statvfs(slash != NULL ? folder : ".", &disk) == 0 &&
+           (double)disk.f_bavail * (double)disk.f_frsize < LITTLE_ROOM;
+}
+
+void rg_h5_agree_on(const rg_h5_file *f, bool ok, const char *path, const char *verb, const char *reason) {
+    int mine = ok ? INT_MAX : f->rank, failed = INT_MAX;
+    MPI_Allreduce(&mine, &failed, 1, MPI_INT, MPI_MIN, f->comm);
+    if (failed == f->rank) {
+        bool full = disk_full(path); /* MPI-IO does not tell */
+        if (f->part != NULL) {
+            unlink(f->part);
+        }
+        rg_fatal(RG_FAILURE, "%s: cannot %s: %s%s", path, verb, reason, full ? " (the disk is full)" : "");
+    }
+    if (failed != INT_MAX) {
+        MPI_Barrier(f->comm); /* until the failed rank ends the job */
+    }
+}
+
+void rg_h5_agree(const rg_h5_file *f, bool ok, const char *verb, const char *what) {
+    char words[RG_H5_GROUP + 100];
+    snprintf(words, sizeof words, "%s %s%s%s", verb, f->group, what != NULL ? "/" : "",
+             what != NULL ? what : "");
+    bool known = f->reason[0] != '\0';
+    rg_h5_agree_on(f, ok, f->shown, words,
+                   known ? f->reason : "it does not hold what was written (faulty MPI-IO?)");
+}
+
+/* ---- attributes ---- */
+
+bool rg_h5_put_attribute(hid_t object, const char *name, hid_t type, const void *value) {
+    hid_t space = H5Screate(H5S_SCALAR);
+    hid_t attribute = H5Acreate2(object, name, type, space, H5P_DEFAULT, H5P_DEFAULT);
+    bool ok = attribute >= 0 && H5Awrite(attribute, type, value) >= 0;
+    ok = H5Aclose(attribute) >= 0 && ok;
+    H5Sclose(space);
+    return ok;
+}
+
+bool rg_h5_put_text(hid_t object, const char *name, const char *value) {
+    hid_t type = H5Tcopy(H5T_C_S1);
+    bool ok = H5Tset_size(type, strlen(value) + 1) >= 0 && rg_h5_put_attribute(object, name, type, value);
+    H5Tclose(type);
+    return ok;
+}
+
+/* ---- groups and datasets ---- */
+
+hid_t rg_h5_group(rg_h5_file *f, const char *name) {
+    snprintf(f->group, sizeof f->group, "/%s", name);
+    hid_t plan = H5Pcreate(H5P_GROUP_CREATE);
+    H5Pset_obj_track_times(plan, false); /* the same data are the same file */
+    hid_t group = H5Gcreate2(f->file, name, H5P_DEFAULT, plan, H5P_DEFAULT);
+    H5Pclose(plan);
+    rg_h5_agree(f, group >= 0, "create", NULL);
+    return group;
+}
+
+/* Filters want chunks: pieces of rows, none larger than the dataset. */
+static void compress(hid_t plan, const rg_h5_slab *s) {
+    hsize_t rows = CHUNK_BYTES / (H5Tget_size(s->type) * (size_t)s->columns);
+    if (rows > (hsize_t)s->rows) {
+        rows = (hsize_t)s->rows;
+    }
+    H5Pset_chunk(plan, 2, (hsize_t[]){rows, (hsize_t)s->columns});
+    H5Pset_shuffle(plan);
+    H5Pset_deflate(plan, (unsigned)s->deflate);
+}
+
+static hid_t create_dataset(hid_t place, const rg_h5_slab *s) {
+    hid_t plan = H5Pcreate(H5P_DATASET_CREATE);
+    H5Pset_fill_time(plan, H5D_FILL_TIME_NEVER);
+    H5Pset_obj_track_times(plan, false);
+    if (s->deflate > 0 && s->rows > 0) {
+        compress(plan, s);
+    }
+    hid_t space = H5Screate_simple(2, (hsize_t[]){(hsize_t)s->rows, (hsize_t)s->columns}, NULL);
+    hid_t dataset = H5Dcreate2(place, s->name, s->type, space, H5P_DEFAULT, plan, H5P_DEFAULT);
+    H5Sclose(space);
+    H5Pclose(plan);
+    return dataset;
+}
+
+/* Rows [first, first + count) of the dataset. The caller closes the result. */
+static hid_t select_rows(hid_t dataset, int columns, int64_t first, int64_t count) {
+    hid_t space = H5Dget_space(dataset);
+    if (count == 0) {
+        H5Sselect_none(space);
+    } else {
+        H5Sselect_hyperslab(space, H5S_SELECT_SET, (hsize_t[]){(hsize_t)first, 0}, NULL,
+                            (hsize_t[]){(hsize_t)count, (hsize_t)columns}, NULL);
+    }
+    return space;
+}
+
+/* As many rows in memory. A rank without any selects none of one: the chunked collective path of HDF5 1.10
+ * fails on a space without rows. */
+static hid_t rows_here(int columns, int64_t count) {
+    hid_t space = H5Screate_simple(2, (hsize_t[]){count > 0 ? (hsize_t)count : 1, (hsize_t)columns}, NULL);
+    if (count == 0) {
+        H5Sselect_none(space);
+    }
+    return space;
+}
+
+static bool write_slab(const rg_h5_file *f, hid_t dataset, const rg_h5_slab *s, const void *data) {
+    hid_t there = select_rows(dataset, s->columns, s->first, s->count);
+    hid_t here = rows_here(s->columns, s->count);
+    bool ok = H5Dwrite(dataset, s->type, here, there, f->collective, data) >= 0;
+    H5Sclose(here);
+    H5Sclose(there);
+    return ok;
+}
+
+static bool read_rows(hid_t dataset, const rg_h5_slab *s, int64_t first, int64_t count, hid_t transfer,
+                      void *data) {
+    hid_t there = select_rows(dataset, s->columns, first, count);
+    hid_t here = rows_here(s->columns, count);
+    bool ok = H5Dread(dataset, s->type, here, there, transfer, data) >= 0;
+    H5Sclose(here);
+    H5Sclose(there);
+    return ok;
+}
+
+/* Whether this rank's slab reads back as `data`. MPI-IO promises so once all ranks have written. */
+static bool verify_slab(hid_t dataset, const rg_h5_slab *s, const void *data) {
+    size_t row = (size_t)s->columns * H5Tget_size(s->type);
+    int64_t step = (int64_t)(VERIFY_BYTES / row) + 1;
+    char *buffer = rg_realloc(NULL, (size_t)step, row);
+    bool same = true;
+    for (int64_t i = 0; i < s->count && same; i += step) {
+        int64_t n = s->count - i < step ? s->count - i : step;
+        same = read_rows(dataset, s, s->first + i, n, H5P_DEFAULT, buffer) &&
+               memcmp(buffer, (const char *)data + (size_t)i * row, (size_t)n * row) == 0;
+    }
+    rg_free(buffer);
+    return same;
+}
+
+void rg_h5_write(const rg_h5_file *f, hid_t place, const rg_h5_slab *s, const char *unit, const void *data) {
+    hid_t dataset = create_dataset(place, s);
+    rg_h5_agree(f, dataset >= 0, "create", s->name);
+    bool ok = unit == NULL || rg_h5_put_text(dataset, "unit", unit);
+    ok =
+        (s->columns != 6 || unit == NULL || rg_h5_put_text(dataset, "components", "xx xy xz yy yz zz")) && ok;
+    rg_h5_agree(f, ok, "describe", s->name);
+    if (s->rows > 0) {
+        rg_h5_agree(f, write_slab(f, dataset, s, data), "write", s->name);
+        rg_h5_agree(f, verify_slab(dataset, s, data), "read back", s->name);
+    }
+    rg_h5_agree(f, H5Dclose(dataset) >= 0, "close", s->name);
+}
+
+bool rg_h5_read(hid_t place, const rg_h5_slab *s, hid_t transfer, void *data) {
+    hsize_t size[2] = {0, 0};
+    hid_t dataset = H5Dopen2(place, s->name, H5P_DEFAULT);
+    hid_t space = dataset < 0 ? -1 : H5Dget_space(dataset);
+    bool ok = space >= 0 && H5Sget_simple_extent_ndims(space) == 2 &&
+              H5Sget_simple_extent_dims(space, size, NULL) == 2 && size[0] == (hsize_t)s->rows &&
+              size[1] == (hsize_t)s->columns;
+    if (space >= 0) {
+        H5Sclose(space);
+    }
+    ok = ok && (s->rows == 0 || read_rows(dataset, s, s->first, s->count, transfer, data));
+    return (dataset < 0 || H5Dclose(dataset) >= 0) && ok;
+}
+
+/* ---- files ---- */
+
+static hid_t parallel_access(MPI_Comm comm) {
+    MPI_Info info;
+    MPI_Info_create(&info);
+    MPI_Info_set(info, "romio_ds_write", "disable"); /* slabs have no holes to fill by reading first */
+    hid_t access = H5Pcreate(H5P_FILE_ACCESS);
+    if (H5Pset_fapl_mpio(access, comm, info) < 0 ||
+        H5Pset_libver_bounds(access, H5F_LIBVER_V18, H5F_LIBVER_V18) < 0) {
+        H5Pclose(access);
+        access = -1;
+    }
+    MPI_Info_free(&info);
+    return access;
+}
+
+static void prepare(rg_h5_file *f, const char *path, MPI_Comm comm) {
+    *f = (rg_h5_file){.comm = comm, .file = -1};
+    MPI_Comm_rank(comm, &f->rank);
+    f->path = rg_realloc(NULL, strlen(path) + 1, 1);
+    strcpy(f->path, path);
+    f->shown = f->path;
+    H5dont_atexit(); /* a rank that ends the run must not wait for others to close the file */
+    rg_h5_listen(f->reason);
+    f->collective = H5Pcreate(H5P_DATASET_XFER);
+    H5Pset_dxpl_mpio(f->collective, H5FD_MPIO_COLLECTIVE);
+}
+
+void rg_h5_create(rg_h5_file *f, const char *path, hsize_t room, MPI_Comm comm) {
+    prepare(f, path, comm);
+    f->part = rg_realloc(NULL, strlen(path) + 6, 1);
+    sprintf(f->part, "%s.part", path);
+    hid_t access = parallel_access(comm), plan = H5Pcreate(H5P_FILE_CREATE);
+    H5Pset_obj_track_times(plan, false);
+    if (room > 0) {
+        H5Pset_userblock(plan, room);
+    }
+    f->file = access < 0 ? -1 : H5Fcreate(f->part, H5F_ACC_TRUNC, plan, access);
+    H5Pclose(plan);
+    H5Pclose(access);
+    rg_h5_agree_on(f, f->file >= 0, f->shown, "create the file", f->reason);
+}
+
+bool rg_h5_open(rg_h5_file *f, const char *path, MPI_Comm comm) {
+    prepare(f, path, comm);
+    hid_t access = parallel_access(comm);
+    f->file = access < 0 ? -1 : H5Fopen(path, H5F_ACC_RDONLY, access);
+    H5Pclose(access);
+    int ok = f->file >= 0;
+    MPI_Allreduce(MPI_IN_PLACE, &ok, 1, MPI_INT, MPI_MIN, comm);
+    return ok;
+}
+
+static void release(rg_h5_file *f) {
+    H5Pclose(f->collective);
+    rg_h5_deafen();
+    rg_free(f->path);
+    rg_free(f->part);
+}
+
+void rg_h5_close(rg_h5_file *f, bool sync) {
+    bool ok = H5Fclose(f->file) >= 0;
+    rg_h5_agree_on(f, ok, f->shown, "close the file", f->reason);
+    ok = !sync || rg_sync(f->part);
+    rg_h5_agree_on(f, ok, f->shown, "bring the file to the disk", strerror(errno));
+}
+
+void rg_h5_finish(rg_h5_file *f) {
+    bool ok = f->rank != 0 || rename(f->part, f->path) == 0;
+    rg_h5_agree_on(f, ok, f->shown, "name the file", strerror(errno));
+    release(f);
+}
+
+void rg_h5_close_read(rg_h5_file *f) {
+    if (f->file >= 0) {
+        H5Fclose(f->file);
+    }
+    release(f);
+}

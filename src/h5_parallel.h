@@ -1,0 +1,80 @@
+/* An HDF5 file that all ranks write together, dataset by dataset, each rank its rows.
+ *
+ * A file comes into being as path.part, is read back as it is written, and gets its name when it is complete:
+ * what has the name is whole, whenever the program was killed. A rank's share of a dataset is one contiguous
+ * slab, so collective transfers cost nothing extra and let MPI-IO gather small slabs into large writes where
+ * that pays. OMPIO, the MPI-IO that Open MPI picks by itself, is reported to corrupt such writes
+ * (HDFGroup/hdf5#1227; its ROMIO component is not), hence every rank reads its slab back and compares: most
+ * often a copy from the page cache. All functions are collective unless they say otherwise; ranks without
+ * rows take part. A failure on any rank ends the run with one message, and removes path.part. */
+#ifndef RG_H5_PARALLEL_H
+#define RG_H5_PARALLEL_H
+
+#include <hdf5.h>
+#include <mpi.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "h5_reason.h"
+
+enum { RG_H5_GROUP = 48 }; /* length of the longest group name */
+
+typedef struct {
+    MPI_Comm comm;
+    int rank;
+    char *path, *part; /* the name it will have, and the one it has until it is whole */
+    const char *shown; /* what messages call it: `path`, or the name of what it belongs to */
+    hid_t file, collective;
+    char group[RG_H5_GROUP];   /* in which datasets are made now, for messages */
+    char reason[RG_H5_REASON]; /* why the first HDF5 call that failed did so */
+} rg_h5_file;
+
+/* Rows [first, first + count) of `rows` are this rank's. */
+typedef struct {
+    const char *name;
+    hid_t type; /* in memory and in the file: collective transfers into chunks cannot convert */
+    int columns;
+    int64_t rows, first, count;
+    int deflate; /* compression level; 0: none */
+} rg_h5_slab;
+
+/* dir/name; the caller frees it. Not collective. */
+char *rg_join_path(const char *dir, const char *name);
+
+/* Creates the file; `room` bytes in front of HDF5's (0 or a power of 2 from 512) are the caller's. */
+void rg_h5_create(rg_h5_file *f, const char *path, hsize_t room, MPI_Comm comm);
+
+/* Opens a file for reading; the reason why not is in f->reason (all ranks return the same). */
+bool rg_h5_open(rg_h5_file *f, const char *path, MPI_Comm comm);
+
+/* Goes on if all ranks are `ok`; else the lowest one that is not ends the run, so that a failure common to
+ * all is reported once, as "path: cannot verb object: reason". `what` NULL: the current group. Also a
+ * barrier. */
+void rg_h5_agree(const rg_h5_file *f, bool ok, const char *verb, const char *what);
+
+/* The same about another file than f's, with a reason of its own. */
+void rg_h5_agree_on(const rg_h5_file *f, bool ok, const char *path, const char *verb, const char *reason);
+
+/* Creates a group, which becomes the current one. The caller closes it. */
+hid_t rg_h5_group(rg_h5_file *f, const char *name);
+
+/* Attributes; not checked for agreement. */
+bool rg_h5_put_attribute(hid_t object, const char *name, hid_t type, const void *value);
+bool rg_h5_put_text(hid_t object, const char *name, const char *value);
+
+/* Writes a whole dataset with its attributes (`unit` NULL: none) and reads it back. */
+void rg_h5_write(const rg_h5_file *f, hid_t place, const rg_h5_slab *s, const char *unit, const void *data);
+
+/* Reads this rank's rows of a dataset that must have s->rows and s->columns; whether it went well, here. */
+bool rg_h5_read(hid_t place, const rg_h5_slab *s, hid_t transfer, void *data);
+
+/* Closes the file, brings it to the disk where `sync`, and leaves it under the name path.part. */
+void rg_h5_close(rg_h5_file *f, bool sync);
+
+/* Gives the closed file its name and frees what f holds. */
+void rg_h5_finish(rg_h5_file *f);
+
+/* Closes a file that was opened for reading. */
+void rg_h5_close_read(rg_h5_file *f);
+
+#endif

@@ -1,0 +1,36 @@
+/* What of a run, beside the solver's state, goes into a checkpoint: outputs, schedules, ledger. */
+#ifndef RG_RESTART_H
+#define RG_RESTART_H
+
+#include "checkpoint.h"
+#include "files.h"
+#include "ledger.h"
+#include "probe.h"
+#include "snapshot.h"
+#include "summary.h"
+
+enum { RG_LIMITING_WORDS = 40 };
+
+/* Kept at each checkpoint. */
+typedef struct {
+    int64_t energy_bytes, history_bytes; /* lengths of the tables */
+    rg_writer_mark fields;
+    double next_output, interval;           /* s */
+    int64_t frame;                          /* next of output.times */
+    double good_time;                       /* of the last output that was in order (s) */
+    double core_seconds;                    /* of one evaluation of all forces, times ranks and threads */
+    char limiting_state[RG_LIMITING_WORDS]; /* solver.h */
+} rg_restart;
+
+/* Registers all state of a run. */
+void rg_restart_register(rg_state *state, rg_restart *keep, rg_solver *s, rg_ledger *ledger,
+                         rg_summary *summary);
+
+/* Before a checkpoint: the outputs go to the disk, and `keep` learns where they stand. Collective. */
+void rg_restart_settle(rg_restart *keep, const rg_solver *s, rg_csv *energy, rg_probes *probes,
+                       rg_snapshots *snapshots);
+
+/* After loading one: what rg_spectrum would have found out. */
+void rg_restart_spectrum(const rg_restart *keep, rg_solver *s);
+
+#endif

@@ -1,0 +1,31 @@
+/* The seal of a checkpoint: 512 bytes in front of the HDF5 file (its user block) that fingerprint every byte
+ * behind them, and themselves. A file is opened by HDF5 only if its seal is right: no damaged byte ever
+ * reaches that library's parser.
+ *
+ * Text, filled up with zeros:
+ *
+ *   rhegma checkpoint 1
+ *   step N
+ *   bytes N          of the whole file
+ *   sum HHHHHHHHHHHHHHHH    of what is behind the seal, in 64-bit words (the last one filled up with zeros)
+ * in parts of 1 MiB: the sum of the parts' hashes, each seeded with its number check HHHHHHHHHHHHHHHH  the
+ * hash of the lines above */
+#ifndef RG_SEAL_H
+#define RG_SEAL_H
+
+#include <mpi.h>
+#include <stdbool.h>
+#include <stdint.h>
+#include <stddef.h>
+
+enum { RG_SEAL = 512 };
+
+/* Reads the file and writes its seal; collective. False, with errno set where that helps: it cannot be read
+ * or written; on all ranks alike. */
+bool rg_seal_put(const char *path, int64_t step, MPI_Comm comm);
+
+/* Whether the file is what was sealed; collective, the same everywhere. If not, `reason` (on every rank) says
+ * what is wrong with it. */
+bool rg_seal_holds(const char *path, MPI_Comm comm, char *reason, size_t size);
+
+#endif

@@ -1,0 +1,125 @@
+/* The seal of checkpoints, on any number of ranks: whatever bit is flipped, whatever is cut off or added, it
+ * is noticed. Prints TAP. */
+#include "seal.h"
+
+#include <fcntl.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "hash.h"
+#include "mem.h"
+
+enum { PLANNED = 7, BYTES = RG_SEAL + 2 * (1 << 20) + 12345, RANDOM = 1000 };
+
+static int rank, ranks, done, failed;
+static char path[200], reason[300];
+
+static void ok(bool good, const char *name) {
+    if (rank == 0) {
+        printf("%sok %d - %s\n", good ? "" : "not ", ++done, name);
+        failed += !good;
+    }
+}
+
+static bool holds(void) {
+    MPI_Barrier(MPI_COMM_WORLD);
+    bool good = rg_seal_holds(path, MPI_COMM_WORLD, reason, sizeof reason);
+    MPI_Barrier(MPI_COMM_WORLD);
+    return good;
+}
+
+static void flip(off_t position, int bit) {
+    if (rank == 0) {
+        unsigned char byte;
+        int file = open(path, O_RDWR);
+        bool good = pread(file, &byte, 1, position) == 1;
+        byte ^= (unsigned char)(1 << bit);
+        if (!good || pwrite(file, &byte, 1, position) != 1) {
+            printf("Bail out! %s cannot be changed\n", path);
+            MPI_Abort(MPI_COMM_WORLD, 1);
+        }
+        close(file);
+    }
+}
+
+/* Whether the file is refused with this bit flipped, and taken once it is flipped back. */
+static bool noticed(off_t position, int bit) {
+    flip(position, bit);
+    bool good = !holds() && reason[0] != '\0';
+    flip(position, bit);
+    return good;
+}
+
+static void write_file(void) {
+    char *data = RG_NEW(char, BYTES);
+    for (size_t i = RG_SEAL; i < BYTES; i++) {
+        data[i] = (char)rg_mix(i / 3); /* also runs of the same byte */
+    }
+    int file = open(path, O_WRONLY | O_CREAT | O_TRUNC, 0666);
+    if (file < 0 || write(file, data, BYTES) != BYTES) {
+        printf("Bail out! %s cannot be written\n", path);
+        MPI_Abort(MPI_COMM_WORLD, 1);
+    }
+    close(file);
+    rg_free(data);
+}
+
+static void check_bits(void) {
+    bool head = true, body = true;
+    int every = ranks == 1 ? 1 : 32; /* several ranks: that they agree */
+    for (int bit = 0; bit < 8 * RG_SEAL; bit += every) {
+        head = noticed(bit / 8, bit % 8) && head;
+    }
+    ok(head, "bits of the seal: all of them, on one rank");
+    for (uint64_t i = 0; i < RANDOM; i += (uint64_t)every) {
+        uint64_t h = rg_hash(1, i);
+        off_t position = RG_SEAL + (off_t)(rg_hash_uniform(h) * (BYTES - RG_SEAL));
+        body = noticed(position, (int)(h % 8)) && body;
+    }
+    body = noticed(RG_SEAL, 0) && noticed(BYTES - 1, 7) && body;
+    ok(body, "bits of what it seals: 1,000 on one rank, and the first and the last");
+    ok(holds(), "the file as it was");
+}
+
+static void check_length(void) {
+    bool good = true;
+    const off_t lengths[] = {0, 1, 100, RG_SEAL - 1, RG_SEAL, RG_SEAL + 1, BYTES / 2, BYTES - 1, BYTES + 1};
+    for (size_t i = 0; i < sizeof lengths / sizeof *lengths; i++) {
+        if (rank == 0) {
+            write_file();
+        }
+        MPI_Barrier(MPI_COMM_WORLD);
+        good = rg_seal_put(path, 77, MPI_COMM_WORLD) && holds() && good;
+        good = (rank != 0 || truncate(path, lengths[i]) == 0) && good;
+        good = !holds() && good;
+    }
+    ok(good, "any other length");
+}
+
+int main(int argc, char **argv) {
+    MPI_Init(&argc, &argv);
+    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+    MPI_Comm_size(MPI_COMM_WORLD, &ranks);
+    if (rank == 0) {
+        printf("1..%d\n", PLANNED);
+        snprintf(path, sizeof path, "/tmp/test_seal.XXXXXX");
+        close(mkstemp(path));
+        write_file();
+    }
+    MPI_Bcast(path, sizeof path, MPI_CHAR, 0, MPI_COMM_WORLD);
+    ok(!holds(), "a file without a seal");
+    ok(rg_seal_put(path, 77, MPI_COMM_WORLD) && holds(), "a file with one");
+    check_bits();
+    check_length();
+    if (rank == 0) {
+        unlink(path);
+    }
+    MPI_Barrier(MPI_COMM_WORLD);
+    ok(!holds() && !rg_seal_put(path, 77, MPI_COMM_WORLD), "no file");
+    int bad = rank == 0 && (failed > 0 || done != PLANNED);
+    MPI_Bcast(&bad, 1, MPI_INT, 0, MPI_COMM_WORLD);
+    MPI_Finalize();
+    return bad;
+}
