@@ -81,7 +81,7 @@ static rg_h5_slab whole(const rg_h5_file *f, const char *name, hid_t type, int c
         .name = name, .type = type, .columns = columns, .rows = rows, .count = f->rank == 0 ? rows : 0};
 }
 
-static void put_case(const rg_h5_file *f, const rg_case *c) {
+static void put_case(rg_h5_file *f, const rg_case *c) {
     char *text = rg_case_fixed(c);
     rg_h5_slab s = whole(f, "case", H5T_NATIVE_UINT8, 1, (int64_t)strlen(text) + 1);
     rg_h5_write(f, f->file, &s, NULL, text);
@@ -97,7 +97,7 @@ static rg_h5_slab of_elements(const rg_slab *slab, const rg_state_array *a) {
                         .count = (int64_t)slab->count};
 }
 
-static void put_elements(const rg_h5_file *f, hid_t group, const rg_checkpoints *k, const rg_state_array *a) {
+static void put_elements(rg_h5_file *f, hid_t group, const rg_checkpoints *k, const rg_state_array *a) {
     size_t bytes = rg_state_bytes(a);
     char *record = RG_NEW(char, k->slab->own *bytes + 1), *sorted = RG_NEW(char, k->slab->count *bytes + 1);
 #pragma omp parallel for schedule(static)
@@ -240,7 +240,7 @@ static char *get_case(const rg_h5_file *f) {
                     .columns = 1,
                     .rows = (int64_t)size[0],
                     .count = (int64_t)size[0]};
-    if (!ok || !rg_h5_read(f->file, &s, f->collective, text)) {
+    if (!ok || !rg_h5_read(f->file, &s, text)) {
         rg_free(text);
         return NULL;
     }
@@ -259,11 +259,11 @@ static bool check_case(const rg_checkpoints *k, const rg_h5_file *f, const char 
     return ok;
 }
 
-static bool get_elements(const rg_h5_file *f, hid_t group, const rg_checkpoints *k, const rg_state_array *a) {
+static bool get_elements(hid_t group, const rg_checkpoints *k, const rg_state_array *a) {
     size_t bytes = rg_state_bytes(a);
     char *record = RG_NEW(char, k->slab->own *bytes + 1), *sorted = RG_NEW(char, k->slab->count *bytes + 1);
     rg_h5_slab s = of_elements(k->slab, a);
-    bool ok = rg_h5_read(group, &s, f->collective, sorted);
+    bool ok = rg_h5_read(group, &s, sorted);
     rg_slab_fetch_bytes(k->slab, bytes, sorted, record);
 #pragma omp parallel for schedule(static)
     for (size_t i = 0; i < k->slab->own; i++) {
@@ -282,9 +282,9 @@ static bool get_group(const rg_h5_file *f, const rg_checkpoints *k, const char *
         if (a->of == of && of == RG_OF_RUN) {
             rg_h5_slab s = {
                 .name = a->name, .type = rg_state_h5_type(a), .columns = a->count, .rows = 1, .count = 1};
-            ok = rg_h5_read(group, &s, f->collective, a->data);
+            ok = rg_h5_read(group, &s, a->data);
         } else if (a->of == of) {
-            ok = get_elements(f, group, k, a);
+            ok = get_elements(group, k, a);
         }
         MPI_Allreduce(MPI_IN_PLACE, &ok, 1, MPI_C_BOOL, MPI_LAND, f->comm);
     }

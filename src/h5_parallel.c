@@ -1,3 +1,4 @@
+#define _GNU_SOURCE /* fallocate */
 #include "h5_parallel.h"
 
 #include <errno.h>
@@ -14,7 +15,11 @@
 
 #define LITTLE_ROOM 1e6 /* bytes */
 
-enum { VERIFY_BYTES = 1 << 20, CHUNK_BYTES = 1 << 18 }; /* read back at a time; compressed at a time */
+enum {
+    VERIFY_BYTES = 1 << 20,   /* read back at a time */
+    CHUNK_BYTES = 1 << 18,    /* compressed at a time */
+    METADATA_BYTES = 1 << 13, /* reserved for what HDF5 itself writes about a dataset */
+};
 
 char *rg_join_path(const char *dir, const char *name) {
     size_t size = strlen(dir) + strlen(name) + 2;
@@ -137,20 +142,22 @@ static hid_t rows_here(int columns, int64_t count) {
     return space;
 }
 
-static bool write_slab(const rg_h5_file *f, hid_t dataset, const rg_h5_slab *s, const void *data) {
+static bool write_slab(hid_t dataset, const rg_h5_slab *s, const void *data) {
+    hid_t transfer = H5Pcreate(H5P_DATASET_XFER);
+    H5Pset_dxpl_mpio(transfer, s->deflate > 0 ? H5FD_MPIO_COLLECTIVE : H5FD_MPIO_INDEPENDENT);
     hid_t there = select_rows(dataset, s->columns, s->first, s->count);
     hid_t here = rows_here(s->columns, s->count);
-    bool ok = H5Dwrite(dataset, s->type, here, there, f->collective, data) >= 0;
+    bool ok = H5Dwrite(dataset, s->type, here, there, transfer, data) >= 0;
+    H5Pclose(transfer);
     H5Sclose(here);
     H5Sclose(there);
     return ok;
 }
 
-static bool read_rows(hid_t dataset, const rg_h5_slab *s, int64_t first, int64_t count, hid_t transfer,
-                      void *data) {
+static bool read_rows(hid_t dataset, const rg_h5_slab *s, int64_t first, int64_t count, void *data) {
     hid_t there = select_rows(dataset, s->columns, first, count);
     hid_t here = rows_here(s->columns, count);
-    bool ok = H5Dread(dataset, s->type, here, there, transfer, data) >= 0;
+    bool ok = H5Dread(dataset, s->type, here, there, H5P_DEFAULT, data) >= 0;
     H5Sclose(here);
     H5Sclose(there);
     return ok;
@@ -164,14 +171,33 @@ static bool verify_slab(hid_t dataset, const rg_h5_slab *s, const void *data) {
     bool same = true;
     for (int64_t i = 0; i < s->count && same; i += step) {
         int64_t n = s->count - i < step ? s->count - i : step;
-        same = read_rows(dataset, s, s->first + i, n, H5P_DEFAULT, buffer) &&
+        same = read_rows(dataset, s, s->first + i, n, buffer) &&
                memcmp(buffer, (const char *)data + (size_t)i * row, (size_t)n * row) == 0;
     }
     rg_free(buffer);
     return same;
 }
 
-void rg_h5_write(const rg_h5_file *f, hid_t place, const rg_h5_slab *s, const char *unit, const void *data) {
+/* Room on the disk for `bytes` more, and metadata. Where the file system cannot reserve it, writing will
+ * tell. */
+static void reserve(rg_h5_file *f, size_t bytes, const char *what) {
+    int64_t more = (int64_t)bytes + METADATA_BYTES;
+    bool ok = true;
+    if (f->rank == 0) {
+        int file = open(f->part, O_WRONLY);
+        ok = file >= 0 && (fallocate(file, 0, f->reserved, more) == 0 || errno == EOPNOTSUPP);
+        if (!ok) {
+            snprintf(f->reason, sizeof f->reason, "%s", strerror(errno));
+        }
+        if (file >= 0) {
+            close(file);
+        }
+    }
+    f->reserved += more;
+    rg_h5_agree(f, ok, "write", what);
+}
+
+void rg_h5_write(rg_h5_file *f, hid_t place, const rg_h5_slab *s, const char *unit, const void *data) {
     hid_t dataset = create_dataset(place, s);
     rg_h5_agree(f, dataset >= 0, "create", s->name);
     bool ok = unit == NULL || rg_h5_put_text(dataset, "unit", unit);
@@ -179,13 +205,15 @@ void rg_h5_write(const rg_h5_file *f, hid_t place, const rg_h5_slab *s, const ch
         (s->columns != 6 || unit == NULL || rg_h5_put_text(dataset, "components", "xx xy xz yy yz zz")) && ok;
     rg_h5_agree(f, ok, "describe", s->name);
     if (s->rows > 0) {
-        rg_h5_agree(f, write_slab(f, dataset, s, data), "write", s->name);
+        size_t bytes = (size_t)s->rows * (size_t)s->columns * H5Tget_size(s->type);
+        reserve(f, bytes + bytes / 64, s->name); /* what does not compress grows a little */
+        rg_h5_agree(f, write_slab(dataset, s, data), "write", s->name);
         rg_h5_agree(f, verify_slab(dataset, s, data), "read back", s->name);
     }
     rg_h5_agree(f, H5Dclose(dataset) >= 0, "close", s->name);
 }
 
-bool rg_h5_read(hid_t place, const rg_h5_slab *s, hid_t transfer, void *data) {
+bool rg_h5_read(hid_t place, const rg_h5_slab *s, void *data) {
     hsize_t size[2] = {0, 0};
     hid_t dataset = H5Dopen2(place, s->name, H5P_DEFAULT);
     hid_t space = dataset < 0 ? -1 : H5Dget_space(dataset);
@@ -195,7 +223,7 @@ bool rg_h5_read(hid_t place, const rg_h5_slab *s, hid_t transfer, void *data) {
     if (space >= 0) {
         H5Sclose(space);
     }
-    ok = ok && (s->rows == 0 || read_rows(dataset, s, s->first, s->count, transfer, data));
+    ok = ok && (s->rows == 0 || read_rows(dataset, s, s->first, s->count, data));
     return (dataset < 0 || H5Dclose(dataset) >= 0) && ok;
 }
 
@@ -223,8 +251,6 @@ static void prepare(rg_h5_file *f, const char *path, MPI_Comm comm) {
     f->shown = f->path;
     H5dont_atexit(); /* a rank that ends the run must not wait for others to close the file */
     rg_h5_listen(f->reason);
-    f->collective = H5Pcreate(H5P_DATASET_XFER);
-    H5Pset_dxpl_mpio(f->collective, H5FD_MPIO_COLLECTIVE);
 }
 
 void rg_h5_create(rg_h5_file *f, const char *path, hsize_t room, MPI_Comm comm) {
@@ -253,7 +279,6 @@ bool rg_h5_open(rg_h5_file *f, const char *path, MPI_Comm comm) {
 }
 
 static void release(rg_h5_file *f) {
-    H5Pclose(f->collective);
     rg_h5_deafen();
     rg_free(f->path);
     rg_free(f->part);

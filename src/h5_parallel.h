@@ -2,11 +2,14 @@
  *
  * A file comes into being as path.part, is read back as it is written, and gets its name when it is complete:
  * what has the name is whole, whenever the program was killed. A rank's share of a dataset is one contiguous
- * slab, so collective transfers cost nothing extra and let MPI-IO gather small slabs into large writes where
- * that pays. OMPIO, the MPI-IO that Open MPI picks by itself, is reported to corrupt such writes
- * (HDFGroup/hdf5#1227; its ROMIO component is not), hence every rank reads its slab back and compares: most
- * often a copy from the page cache. All functions are collective unless they say otherwise; ranks without
- * rows take part. A failure on any rank ends the run with one message, and removes path.part. */
+ * slab, so it writes that by itself. Collective transfers would gain nothing, and where one rank fails to
+ * write (a full disk) they hang: HDF5 1.10 leaves that rank out of the collective call that follows.
+ * Compressed datasets need them; for these, and for HDF5's own metadata, room on the disk is reserved before,
+ * where the file system can. OMPIO, the MPI-IO that Open MPI picks by itself, is reported to corrupt
+ * collective writes (HDFGroup/hdf5#1227; its ROMIO component is not), hence every rank reads its slab back
+ * and compares: most often a copy from the page cache. All functions are collective unless they say
+ * otherwise; ranks without rows take part. A failure on any rank ends the run with one message, and removes
+ * path.part. */
 #ifndef RG_H5_PARALLEL_H
 #define RG_H5_PARALLEL_H
 
@@ -24,7 +27,8 @@ typedef struct {
     int rank;
     char *path, *part; /* the name it will have, and the one it has until it is whole */
     const char *shown; /* what messages call it: `path`, or the name of what it belongs to */
-    hid_t file, collective;
+    hid_t file;
+    int64_t reserved;          /* bytes of the file that have their place on the disk */
     char group[RG_H5_GROUP];   /* in which datasets are made now, for messages */
     char reason[RG_H5_REASON]; /* why the first HDF5 call that failed did so */
 } rg_h5_file;
@@ -63,10 +67,10 @@ bool rg_h5_put_attribute(hid_t object, const char *name, hid_t type, const void 
 bool rg_h5_put_text(hid_t object, const char *name, const char *value);
 
 /* Writes a whole dataset with its attributes (`unit` NULL: none) and reads it back. */
-void rg_h5_write(const rg_h5_file *f, hid_t place, const rg_h5_slab *s, const char *unit, const void *data);
+void rg_h5_write(rg_h5_file *f, hid_t place, const rg_h5_slab *s, const char *unit, const void *data);
 
 /* Reads this rank's rows of a dataset that must have s->rows and s->columns; whether it went well, here. */
-bool rg_h5_read(hid_t place, const rg_h5_slab *s, hid_t transfer, void *data);
+bool rg_h5_read(hid_t place, const rg_h5_slab *s, void *data);
 
 /* Closes the file, brings it to the disk where `sync`, and leaves it under the name path.part. */
 void rg_h5_close(rg_h5_file *f, bool sync);

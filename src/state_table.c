@@ -227,7 +227,7 @@ static bool read_sorted(rg_h5_file *f, hid_t group, const rg_state_table *t, con
                         rg_sparse *sorted) {
     uint8_t *of_element = RG_NEW(uint8_t, slab->count + 1);
     rg_h5_slab rows = rows_slab(slab);
-    bool ok = all_ranks(f->comm, rg_h5_read(group, &rows, f->collective, of_element));
+    bool ok = all_ranks(f->comm, rg_h5_read(group, &rows, of_element));
     for (size_t i = 0; ok && i < slab->count; i++) {
         sorted->rows += of_element[i];
     }
@@ -238,7 +238,7 @@ static bool read_sorted(rg_h5_file *f, hid_t group, const rg_state_table *t, con
     size_t from = 0, size = 0;
     for (int k = -1; ok && k < t->arrays; k++) {
         rg_h5_slab c = column_slab(t, k, key_slab(sorted, first, total), &from, &size);
-        ok = all_ranks(f->comm, rg_h5_read(group, &c, f->collective, column));
+        ok = all_ranks(f->comm, rg_h5_read(group, &c, column));
         column_in(sorted, from, size, column);
     }
     ok = all_ranks(f->comm, ok && keys_fit(sorted, slab, of_element));

@@ -50,7 +50,7 @@ static rg_h5_slab real_slab(const rg_writer *w, const char *name, int columns) {
                         .deflate = w->style.deflate};
 }
 
-static void write_reals(const rg_writer *w, hid_t place, const rg_h5_slab *s, const char *unit,
+static void write_reals(rg_writer *w, hid_t place, const rg_h5_slab *s, const char *unit,
                         const double *data) {
     if (!w->style.single) {
         rg_h5_write(&w->h5, place, s, unit, data);
@@ -66,8 +66,7 @@ static void write_reals(const rg_writer *w, hid_t place, const rg_h5_slab *s, co
 }
 
 /* Connectivity where every cell has its own nodes: row i is n i, n i + 1, ... */
-static void write_cells(const rg_writer *w, hid_t place, int nodes, int64_t rows, int64_t first,
-                        int64_t count) {
+static void write_cells(rg_writer *w, hid_t place, int nodes, int64_t rows, int64_t first, int64_t count) {
     int64_t *cells = rg_realloc(NULL, (size_t)(count * nodes), sizeof *cells);
     for (int64_t i = 0; i < count * nodes; i++) {
         cells[i] = first * nodes + i;
@@ -78,8 +77,8 @@ static void write_cells(const rg_writer *w, hid_t place, int nodes, int64_t rows
 }
 
 /* Points of `rows` cells with their own `nodes` nodes. */
-static void write_points(const rg_writer *w, hid_t place, int nodes, int64_t rows, int64_t first,
-                         int64_t count, const double *x) {
+static void write_points(rg_writer *w, hid_t place, int nodes, int64_t rows, int64_t first, int64_t count,
+                         const double *x) {
     rg_h5_slab s = real_slab(w, "points", 3);
     s.rows = nodes * rows;
     s.first = nodes * first;
@@ -100,7 +99,7 @@ static double *reorder_tensors(int64_t rows, const double *data) {
     return out;
 }
 
-static void write_field(const rg_writer *w, hid_t place, const rg_h5_slab *s, const char *unit,
+static void write_field(rg_writer *w, hid_t place, const rg_h5_slab *s, const char *unit,
                         const double *data) {
     double *reordered = s->columns == 6 ? reorder_tensors(s->count, data) : NULL;
     write_reals(w, place, s, unit, reordered != NULL ? reordered : data);
