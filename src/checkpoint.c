@@ -157,6 +157,8 @@ void rg_checkpoint_write(rg_checkpoints *k, int keep) {
     }
     double seconds = MPI_Wtime() - begin;
     MPI_Bcast(&seconds, 1, MPI_DOUBLE, 0, s->comm);
+    k->written++;
+    k->seconds += seconds;
     k->slowest = seconds > k->slowest ? seconds : k->slowest;
 }
 

@@ -224,10 +224,11 @@ static void open_outputs(run *r) {
     const rg_case *c = r->input;
     refuse_overwriting(r);
     rg_make_directory(c->output.dir, r->solver->comm);
-    rg_remove_results(c->output.dir, r->solver->rank);
     if (r->solver->rank == 0) {
-        rg_checkpoints_remove(c->output.dir, true);
+        rg_checkpoints_remove(c->output.dir,
+                              true); /* first: none may outlive the files that it goes on with */
     }
+    rg_remove_results(c->output.dir, r->solver->rank);
     rg_echo_case(c, r->solver->rank);
     r->energy = rg_csv_open(c->output.dir, "energy.csv", r->solver->rank);
     rg_csv_energy_header(r->energy);
@@ -329,6 +330,8 @@ static int conclude(run *r) {
         return RG_INTERRUPTED;
     }
     r->summary.failure = r->failure;
+    r->summary.checkpoints = r->checkpoints.written;
+    r->summary.checkpoint_seconds = r->checkpoints.seconds;
     rg_summary_write(&r->summary, r->solver, &r->ledger);
     if (failed && s->rank == 0) {
         fprintf(stderr, "rhegma: stopped: %s\n", r->failure);

@@ -86,6 +86,8 @@ static void write_run(FILE *f, const rg_summary *m, const rg_solver *s, const rg
     number(f, "setup_s", m->setup_seconds);
     number(f, "wall_s", m->loop_seconds + m->output_seconds);
     number(f, "output_s", m->output_seconds);
+    integer(f, "checkpoints", m->checkpoints);
+    number(f, "checkpoint_s", m->checkpoint_seconds);
     number(f, "halo_wait_s", m->halo_wait_seconds);
     number(f, "us_per_tet_step", m->us_per_tet_step);
 }

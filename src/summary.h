@@ -7,13 +7,15 @@
 
 typedef struct {
     rg_estimate estimate;
-    int64_t first_step;       /* that this program did: not 0 after a restart */
-    double dt_first;          /* s */
-    double setup_seconds;     /* wall time before the time loop */
-    double loop_seconds;      /* wall time of the time loop without output */
-    double output_seconds;    /* wall time of output within the time loop */
-    double halo_wait_seconds; /* longest wait for messages on any rank; filled by rg_summary_write */
-    const char *failure;      /* "" where the run reached its end */
+    int64_t first_step;        /* that this program did: not 0 after a restart */
+    double dt_first;           /* s */
+    double setup_seconds;      /* wall time before the time loop */
+    double loop_seconds;       /* wall time of the time loop without output */
+    double output_seconds;     /* wall time of output within the time loop */
+    int checkpoints;           /* written */
+    double checkpoint_seconds; /* wall time of that */
+    double halo_wait_seconds;  /* longest wait for messages on any rank; filled by rg_summary_write */
+    const char *failure;       /* "" where the run reached its end */
     double us_per_tet_step,
         first_fracture; /* filled by rg_summary_write; us of core time; s, infinite for none */
 } rg_summary;
