@@ -18,6 +18,7 @@ typedef enum { RG_LAW_NONE, RG_LAW_LINEAR } rg_law;
 typedef enum { RG_ACTIVATION_CONTINUOUS, RG_ACTIVATION_TOTAL } rg_activation;
 typedef enum { RG_CONTACT_PENALTY, RG_CONTACT_FLUX } rg_contact;
 typedef enum { RG_OUTPUT_DOUBLE, RG_OUTPUT_SINGLE } rg_output_precision;
+typedef enum { RG_FRAGMENTS_EACH, RG_FRAGMENTS_LAST, RG_FRAGMENTS_NONE } rg_fragments_when;
 typedef enum { RG_MASS_CONSISTENT, RG_MASS_LUMPED } rg_mass;
 typedef enum { RG_SHAPE_SPHERE, RG_SHAPE_PLANE, RG_SHAPE_CYLINDER } rg_shape_kind;
 typedef enum { RG_MOTION_FREE, RG_MOTION_PRESCRIBED } rg_motion;
@@ -35,7 +36,8 @@ enum {
     RG_FIELD_PLASTIC = 256,     /* equivalent plastic strain: mean per element */
     RG_FIELD_TRIAXIALITY = 512, /* mean over von Mises stress, of the mean Cauchy stress */
     RG_FIELD_RANK = 1024,       /* rank that owns the element, and that speaks for the cracked face */
-    RG_FIELDS_COMMON = 63,      /* what every run puts out by default */
+    RG_FIELD_FRAGMENT = 2048,   /* id of the fragment */
+    RG_FIELDS_COMMON = 63 | RG_FIELD_FRAGMENT, /* what every run puts out by default */
 };
 
 typedef struct {
@@ -119,7 +121,8 @@ typedef struct {
         rg_expr *region; /* fields of the elements at whose centroid this is not 0; NULL: of all */
         rg_output_precision precision; /* of the fields on the disk */
         int64_t compression;           /* of the fields on the disk; 0: none */
-        double energy_limit;           /* the run stops when energy_error_rel passes this */
+        rg_fragments_when fragments; /* output.fragments: rows for each output, for the last one, for none */
+        double energy_limit;         /* the run stops when energy_error_rel passes this */
     } output;
     struct { /* when to write checkpoints; 0: not for that reason */
         int64_t steps;

@@ -42,9 +42,10 @@ static const char *const shapes[] = {"sphere", "plane", "cylinder", NULL};
 static const char *const motions[] = {"free", "prescribed", NULL};
 static const char *const components[] = {"x", "y", "z", NULL};
 static const char *const box_sets[] = {"x-", "x+", "y-", "y+", "z-", "z+", NULL};
-static const char *const fields[] = {"displacement",     "velocity",    "stress", "mean_stress",
-                                     "principal_stress", "crack",       "damage", "regime",
-                                     "plastic_strain",   "triaxiality", "rank",   NULL};
+static const char *const fields[] = {
+    "displacement", "velocity",       "stress",      "mean_stress", "principal_stress", "crack", "damage",
+    "regime",       "plastic_strain", "triaxiality", "rank",        "fragment",         NULL};
+static const char *const fragments[] = {"each", "last", "none", NULL};
 
 #define INITIAL(name_, unit_, member)                                                                        \
     { .name = (name_), .unit = (unit_), .type = RG_KEY_EXPR, OPTIONAL, .no_time = true, CASE(initial.member) }
@@ -124,6 +125,7 @@ static const rg_key case_keys[] = {
      .offset_count = offsetof(rg_case, output.probes)},
     {.name = "output.fields", .type = RG_KEY_FLAGS, .choice = fields, DEFAULT(RG_FIELDS_COMMON), MAY_CHANGE,
      CASE(output.fields)},
+    {.name = "output.fragments", CHOICE(fragments), DEFAULT(RG_FRAGMENTS_EACH), CASE(output.fragments)},
     {.name = "output.region", .type = RG_KEY_EXPR, OPTIONAL, .no_time = true, CASE(output.region)},
     {.name = "output.precision", CHOICE(precisions), DEFAULT(RG_OUTPUT_DOUBLE), CASE(output.precision)},
     {.name = "output.compression", INTEGER, FROM_TO(0, 9), DEFAULT(0), MAY_CHANGE, CASE(output.compression)},

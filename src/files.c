@@ -85,8 +85,8 @@ void rg_remove_endings(const char *dir) {
 }
 
 void rg_remove_results(const char *dir, int rank) {
-    static const char *const names[] = {"summary.json", "energy.csv",  "history.csv", "autopsy.json",
-                                        "case.yaml",    "fields.xdmf", "fields.h5"};
+    static const char *const names[] = {"summary.json", "energy.csv", "history.csv", "fragments.csv",
+                                        "autopsy.json", "case.yaml",  "fields.xdmf", "fields.h5"};
     for (size_t i = 0; rank == 0 && i < sizeof names / sizeof *names; i++) {
         remove_in(dir, names[i]);
     }
@@ -180,22 +180,35 @@ static void finish_row(rg_csv *t) {
     }
 }
 
-void rg_csv_energy_header(rg_csv *t) {
+void rg_csv_header(rg_csv *t, const char *columns) {
     if (t->file != NULL) {
-        fputs("step,time,kinetic,bodies,bulk,penalty,cohesive,contact,dissipated,plastic,damage,external_"
-              "work,total,"
-              "error_rel,"
-              "broken_area,"
-              "failed_area,momentum_x,momentum_y,momentum_z,angular_x,angular_y,angular_z",
-              t->file);
+        fputs(columns, t->file);
         finish_row(t);
     }
 }
 
-void rg_csv_energy(rg_csv *t, const rg_energy *e) {
+void rg_csv_row(rg_csv *t, const int64_t *number, size_t numbers, const double *value, size_t values) {
     if (t->file == NULL) {
         return;
     }
+    for (size_t i = 0; i < numbers; i++) {
+        fprintf(t->file, "%s%" PRId64, i > 0 ? "," : "", number[i]);
+    }
+    for (size_t i = 0; i < values; i++) {
+        fprintf(t->file, ",%.17g", value[i]);
+    }
+    finish_row(t);
+}
+
+void rg_csv_energy_header(rg_csv *t) {
+    rg_csv_header(
+        t,
+        "step,time,kinetic,bodies,bulk,penalty,cohesive,contact,dissipated,plastic,damage,external_"
+        "work,total,error_rel,broken_area,failed_area,momentum_x,momentum_y,momentum_z,angular_x,angular_y,"
+        "angular_z");
+}
+
+void rg_csv_energy(rg_csv *t, const rg_energy *e) {
     const double row[] = {e->time,
                           e->kinetic,
                           e->bodies,
@@ -217,11 +230,7 @@ void rg_csv_energy(rg_csv *t, const rg_energy *e) {
                           e->angular_momentum[0],
                           e->angular_momentum[1],
                           e->angular_momentum[2]};
-    fprintf(t->file, "%" PRId64, e->step);
-    for (size_t i = 0; i < sizeof row / sizeof *row; i++) {
-        fprintf(t->file, ",%.17g", row[i]);
-    }
-    finish_row(t);
+    rg_csv_row(t, &e->step, 1, row, sizeof row / sizeof *row);
 }
 
 void rg_csv_close(rg_csv *t) {

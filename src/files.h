@@ -45,6 +45,10 @@ rg_csv *rg_csv_reopen(const char *dir, const char *name, int rank, int64_t lengt
 
 /* Brings the table to the disk; its length (rank 0; 0 elsewhere). */
 int64_t rg_csv_settle(rg_csv *t);
+void rg_csv_header(rg_csv *t, const char *columns);
+
+/* A row of whole numbers, then of others in all their digits. */
+void rg_csv_row(rg_csv *t, const int64_t *number, size_t numbers, const double *value, size_t values);
 
 void rg_csv_energy_header(rg_csv *t);
 void rg_csv_energy(rg_csv *t, const rg_energy *e);

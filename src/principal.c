@@ -15,3 +15,63 @@ void rg_principal(const double s[6], double value[3]) {
     value[2] = mean + 2 * radius * cos(angle + third);
     value[1] = 3 * mean - value[0] - value[2];
 }
+
+/* One rotation in the plane (p, q) that makes a[p][q] zero (Golub & Van Loan, Matrix Computations, 8.5). */
+static void rotate(double a[3][3], double v[3][3], int p, int q) {
+    double theta = 0.5 * (a[q][q] - a[p][p]) / a[p][q];
+    double t = (theta < 0 ? -1 : 1) / (fabs(theta) + sqrt(1 + theta * theta));
+    double c = 1 / sqrt(1 + t * t), s = t * c;
+    for (int k = 0; k < 3; k++) {
+        double x = a[k][p], y = a[k][q];
+        a[k][p] = c * x - s * y;
+        a[k][q] = s * x + c * y;
+    }
+    for (int k = 0; k < 3; k++) {
+        double x = a[p][k], y = a[q][k];
+        a[p][k] = c * x - s * y;
+        a[q][k] = s * x + c * y;
+        x = v[p][k];
+        y = v[q][k];
+        v[p][k] = c * x - s * y;
+        v[q][k] = s * x + c * y;
+    }
+    a[p][q] = a[q][p] = 0;
+}
+
+static void positive(double axis[3]) {
+    double largest = 0;
+    for (int c = 0; c < 3; c++) {
+        largest = fabs(axis[c]) > fabs(largest) ? axis[c] : largest;
+    }
+    for (int c = 0; c < 3 && largest < 0; c++) {
+        axis[c] = -axis[c];
+    }
+}
+
+void rg_principal_axes(const double s[6], double value[3], double axis[3][3]) {
+    enum { SWEEPS = 12 }; /* it converges quadratically: five are plenty */
+    double a[3][3] = {{s[0], s[5], s[4]}, {s[5], s[1], s[3]}, {s[4], s[3], s[2]}};
+    double v[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    for (int k = 0; k < 3 * SWEEPS; k++) {
+        int p = k % 3 == 2 ? 1 : 0, q = k % 3 == 0 ? 1 : 2;
+        if (a[p][q] != 0) {
+            rotate(a, v, p, q);
+        }
+    }
+    int order[3] = {0, 1, 2};
+    for (int i = 0; i < 3; i++) {
+        int k = i == 1 ? 1 : 0; /* exchanges (0 1), (1 2), (0 1) sort three */
+        if (a[order[k]][order[k]] > a[order[k + 1]][order[k + 1]]) {
+            int swap = order[k];
+            order[k] = order[k + 1];
+            order[k + 1] = swap;
+        }
+    }
+    for (int k = 0; k < 3; k++) {
+        value[k] = a[order[k]][order[k]];
+        for (int c = 0; c < 3; c++) {
+            axis[k][c] = v[order[k]][c];
+        }
+        positive(axis[k]);
+    }
+}

@@ -9,6 +9,9 @@ void rg_restart_register(rg_state *state, rg_restart *keep, rg_solver *s, rg_led
     rg_state_add(state, "dt_first", RG_OF_RUN, RG_STATE_DOUBLE, 1, &summary->dt_first);
     rg_state_add(state, "energy_bytes", RG_OF_RUN, RG_STATE_INT64, 1, &keep->energy_bytes);
     rg_state_add(state, "history_bytes", RG_OF_RUN, RG_STATE_INT64, 1, &keep->history_bytes);
+    rg_state_add(state, "fragment_bytes", RG_OF_RUN, RG_STATE_INT64, 1, &keep->fragments.bytes);
+    rg_state_add(state, "overlap_time", RG_OF_RUN, RG_STATE_DOUBLE, 1, &keep->fragments.overlap_time);
+    rg_state_add(state, "overlap", RG_OF_RUN, RG_STATE_INT64, 2, keep->fragments.overlap);
     rg_state_add(state, "frames", RG_OF_RUN, RG_STATE_INT64, 1, &keep->fields.frames);
     rg_state_add(state, "xdmf_volume", RG_OF_RUN, RG_STATE_INT64, 1, &keep->fields.volume);
     rg_state_add(state, "xdmf_crack", RG_OF_RUN, RG_STATE_INT64, 1, &keep->fields.crack);
@@ -21,9 +24,10 @@ void rg_restart_register(rg_state *state, rg_restart *keep, rg_solver *s, rg_led
 }
 
 void rg_restart_settle(rg_restart *keep, const rg_solver *s, rg_csv *energy, rg_probes *probes,
-                       rg_snapshots *snapshots) {
+                       rg_fragment_table *fragments, rg_snapshots *snapshots) {
     keep->history_bytes = rg_probes_settle(probes);
     keep->energy_bytes = rg_csv_settle(energy);
+    keep->fragments = rg_fragment_table_settle(fragments);
     if (snapshots->fields != 0) {
         keep->fields = rg_snapshots_settle(snapshots);
     }

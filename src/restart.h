@@ -4,6 +4,7 @@
 
 #include "checkpoint.h"
 #include "files.h"
+#include "fragment_table.h"
 #include "ledger.h"
 #include "probe.h"
 #include "snapshot.h"
@@ -14,6 +15,7 @@ enum { RG_LIMITING_WORDS = 40 };
 /* Kept at each checkpoint. */
 typedef struct {
     int64_t energy_bytes, history_bytes; /* lengths of the tables */
+    rg_fragment_mark fragments;
     rg_writer_mark fields;
     double next_output, interval;           /* s */
     int64_t frame;                          /* next of output.times */
@@ -28,7 +30,7 @@ void rg_restart_register(rg_state *state, rg_restart *keep, rg_solver *s, rg_led
 
 /* Before a checkpoint: the outputs go to the disk, and `keep` learns where they stand. Collective. */
 void rg_restart_settle(rg_restart *keep, const rg_solver *s, rg_csv *energy, rg_probes *probes,
-                       rg_snapshots *snapshots);
+                       rg_fragment_table *fragments, rg_snapshots *snapshots);
 
 /* After loading one: what rg_spectrum would have found out. */
 void rg_restart_spectrum(const rg_restart *keep, rg_solver *s);

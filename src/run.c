@@ -8,6 +8,7 @@
 #include "affinity.h"
 #include "autopsy.h"
 #include "error.h"
+#include "fragment_table.h"
 #include "interrupt.h"
 #include "mem.h"
 #include "mesh_case.h"
@@ -31,6 +32,7 @@ typedef struct {
     rg_ledger ledger;
     rg_probes *probes;
     rg_snapshots *snapshots;
+    rg_fragment_table *fragments;
     rg_progress progress;
     rg_summary summary;
     rg_csv *energy;
@@ -109,6 +111,7 @@ static void output(run *r, bool fields) {
     if (fields) {
         rg_snapshots_write(r->snapshots, r->solver);
     }
+    rg_fragment_table_take(r->fragments, r->solver, done(r) || r->failure[0] != '\0');
     rg_progress_show(&r->progress, r->solver, e);
 }
 
@@ -133,7 +136,7 @@ static bool save(run *r) {
     if (!rg_schedule_due(&r->schedule, s, done(r))) {
         return false;
     }
-    rg_restart_settle(&r->keep, s, r->energy, r->probes, r->snapshots);
+    rg_restart_settle(&r->keep, s, r->energy, r->probes, r->fragments, r->snapshots);
     rg_checkpoint_write(&r->checkpoints, (int)r->input->checkpoint.keep);
     rg_schedule_done(&r->schedule, s, r->checkpoints.slowest);
     r->stopped = s->wish >= RG_WISH_STOP;
@@ -234,6 +237,7 @@ static void open_outputs(run *r) {
     rg_csv_energy_header(r->energy);
     rg_probes_open(r->probes, r->solver);
     r->snapshots = rg_snapshots_open(r->solver);
+    r->fragments = rg_fragment_table_open(r->solver);
 }
 
 /* Takes up the files of the run that wrote the checkpoint, where they stood then. */
@@ -242,6 +246,7 @@ static void reopen_outputs(run *r) {
     int rank = r->solver->rank;
     r->energy = rg_csv_reopen(c->output.dir, "energy.csv", rank, r->keep.energy_bytes);
     rg_probes_reopen(r->probes, r->solver, r->keep.history_bytes);
+    r->fragments = rg_fragment_table_reopen(r->solver, &r->keep.fragments);
     if (r->keep.fields.frames > 0) {
         r->snapshots = rg_snapshots_reopen(r->solver, &r->keep.fields);
     } else {
@@ -258,6 +263,7 @@ static void reopen_outputs(run *r) {
 static void close_outputs(run *r) {
     rg_probes_close(r->probes);
     rg_snapshots_close(r->snapshots);
+    rg_fragment_table_close(r->fragments);
     rg_csv_close(r->energy);
     rg_checkpoints_close(&r->checkpoints);
 }
@@ -332,7 +338,7 @@ static int conclude(run *r) {
     r->summary.failure = r->failure;
     r->summary.checkpoints = r->checkpoints.written;
     r->summary.checkpoint_seconds = r->checkpoints.seconds;
-    rg_summary_write(&r->summary, r->solver, &r->ledger);
+    rg_summary_write(&r->summary, r->solver, &r->ledger, r->fragments);
     if (failed && s->rank == 0) {
         fprintf(stderr, "rhegma: stopped: %s\n", r->failure);
     }

@@ -21,7 +21,7 @@ static rg_gid slab_begin(rg_gid total, int ranks, int r) {
     return total / ranks * r + (r < total % ranks ? r : total % ranks);
 }
 
-static int slab_owner(rg_gid total, int ranks, rg_gid id) {
+int rg_slab_owner(rg_gid total, int ranks, rg_gid id) {
     int r = (int)(id * ranks / total);
     while (id < slab_begin(total, ranks, r)) {
         r--;
@@ -68,7 +68,7 @@ rg_slab *rg_slab_make(const rg_domain *d, rg_gid total, MPI_Comm comm) {
     for (size_t i = 0; i < s->own; i++) {
         s->slot[i] = list[i].slot;
         id[i] = list[i].id;
-        s->send[slab_owner(total, ranks, id[i])]++;
+        s->send[rg_slab_owner(total, ranks, id[i])]++;
     }
     MPI_Alltoall(s->send, 1, MPI_INT, s->receive, 1, MPI_INT, comm);
     offsets(s->send, s->send_at, ranks);
@@ -115,12 +115,6 @@ void rg_slab_fetch_bytes(const rg_slab *s, size_t bytes, const void *in, void *o
 
 void rg_slab_send(const rg_slab *s, int values, const double *in, double *out) {
     rg_slab_send_bytes(s, (size_t)values * sizeof(double), in, out);
-}
-
-int rg_slab_owner(const rg_slab *s, rg_gid id) {
-    int ranks;
-    MPI_Comm_size(s->comm, &ranks);
-    return slab_owner(s->total, ranks, id);
 }
 
 size_t rg_slab_row(const rg_slab *s, const rg_domain *d, rg_gid id) {

@@ -16,6 +16,9 @@ typedef struct {
     MPI_Comm comm;
 } rg_slab;
 
+/* Rank whose slab holds element `id` of `total`. */
+int rg_slab_owner(rg_gid total, int ranks, rg_gid id);
+
 /* Collective. Free with rg_slab_free. */
 rg_slab *rg_slab_make(const rg_domain *d, rg_gid total, MPI_Comm comm);
 
@@ -25,9 +28,6 @@ void rg_slab_send(const rg_slab *s, int values, const double *in, double *out);
 /* The same for records of `bytes` bytes, and back again. */
 void rg_slab_send_bytes(const rg_slab *s, size_t bytes, const void *in, void *out);
 void rg_slab_fetch_bytes(const rg_slab *s, size_t bytes, const void *in, void *out);
-
-/* Rank in whose slab element `id` is. */
-int rg_slab_owner(const rg_slab *s, rg_gid id);
 
 /* Row of own element `id` in the order of `slot`. */
 size_t rg_slab_row(const rg_slab *s, const rg_domain *d, rg_gid id);

@@ -7,6 +7,7 @@
 #include "crack_surface.h"
 #include "element.h"
 #include "error.h"
+#include "fragment.h"
 #include "mem.h"
 #include "principal.h"
 #include "tile.h"
@@ -273,6 +274,17 @@ static void write_ranks(rg_snapshots *w, const rg_solver *s) {
     rg_writer_volume(w->writer, "rank", "1", RG_CENTER_CELL, 1, w->sorted);
 }
 
+static void write_fragments(rg_snapshots *w, const rg_solver *s) {
+    rg_fragment_parts *p = rg_fragments_find(s);
+    for (size_t i = 0; i < w->slab->own; i++) {
+        w->record[i] = (double)p->label[p->of[w->slab->slot[i]]].id;
+    }
+    rg_fragment_parts_free(p);
+    send(w, 1);
+    keep_region(w, 1, w->sorted);
+    rg_writer_volume(w->writer, "fragment", "1", RG_CENTER_CELL, 1, w->sorted);
+}
+
 /* Faces in the region, by their present place; returns how many. */
 static size_t keep_faces(const rg_expr *region, size_t count, rg_crack_face *face) {
     size_t kept = 0;
@@ -328,6 +340,9 @@ void rg_snapshots_write(rg_snapshots *w, rg_solver *s) {
     }
     if (w->fields & RG_FIELD_RANK) {
         write_ranks(w, s);
+    }
+    if (w->fields & RG_FIELD_FRAGMENT) {
+        write_fragments(w, s);
     }
     if (w->fields & RG_FIELD_CRACK) {
         write_cracks(w, s);

@@ -45,9 +45,10 @@ static int by_key(const void *a, const void *b) {
 }
 
 rg_sparse rg_sparse_to_slab(const rg_slab *slab, const rg_sparse *own) {
-    int *to = RG_NEW(int, own->rows + 1);
+    int ranks, *to = RG_NEW(int, own->rows + 1);
+    MPI_Comm_size(slab->comm, &ranks);
     for (size_t i = 0; i < own->rows; i++) {
-        to[i] = rg_slab_owner(slab, rg_sparse_key(own, i) / 4);
+        to[i] = rg_slab_owner(slab->total, ranks, rg_sparse_key(own, i) / 4);
     }
     rg_sparse out = exchange(slab->comm, own, to);
     rg_free(to);

@@ -108,7 +108,7 @@ static void write_physics(FILE *f, const rg_summary *m, const rg_ledger *l) {
     text(f, "status", m->failure[0] == '\0' ? "completed" : m->failure);
 }
 
-void rg_summary_write(rg_summary *m, rg_solver *s, const rg_ledger *l) {
+void rg_summary_write(rg_summary *m, rg_solver *s, const rg_ledger *l, const rg_fragment_table *fragments) {
     const rg_estimate *e = &m->estimate;
     uint64_t hash = rg_state_hash(s);
     m->first_fracture = rg_first_fracture(s);
@@ -128,6 +128,7 @@ void rg_summary_write(rg_summary *m, rg_solver *s, const rg_ledger *l) {
     rg_phases_write(&phases, f);
     write_physics(f, m, l);
     write_bodies(f, s->bodies);
+    rg_fragment_table_summary(fragments, f);
     number(f, "bytes_per_tet", e->bytes_per_element);
     fprintf(f, "  \"state_hash\": \"%016" PRIx64 "\",\n  \"revision\": \"%s\"\n}\n", hash, RG_REVISION);
     if (fclose(f) != 0) {

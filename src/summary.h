@@ -3,6 +3,7 @@
 #define RG_SUMMARY_H
 
 #include "estimate.h"
+#include "fragment_table.h"
 #include "ledger.h"
 
 typedef struct {
@@ -21,7 +22,7 @@ typedef struct {
 } rg_summary;
 
 /* Collective; rank 0 writes summary.json in the output directory. */
-void rg_summary_write(rg_summary *m, rg_solver *s, const rg_ledger *l);
+void rg_summary_write(rg_summary *m, rg_solver *s, const rg_ledger *l, const rg_fragment_table *fragments);
 
 /* Whether dir/summary.json is that of a run that reached its end. Not collective. */
 bool rg_completed(const char *dir);

@@ -147,7 +147,7 @@ static void test_defaults(void **state) {
     assert_true(c->time.safety == RG_DEFAULT_SAFETY && c->time.steps == 0);
     assert_string_equal(c->output.dir, "results/bar");
     assert_true(c->output.interval_steps == 0 && c->output.interval_time == 1e-6 / 50);
-    assert_true(c->output.fields == 63 && c->output.energy_limit == 0.05);
+    assert_true(c->output.fields == RG_FIELDS_COMMON && c->output.energy_limit == 0.05);
     for (int k = 0; k < 3; k++) {
         assert_null(c->initial.displacement[k]);
         assert_null(c->initial.velocity[k]);
@@ -303,7 +303,7 @@ static void same_case(const rg_case *a, const rg_case *b) {
                            b->output.interval_time, b->output.energy_limit};
     assert_memory_equal(of_a, of_b, sizeof of_a);
     assert_true(a->time.steps == b->time.steps && a->output.interval_steps == b->output.interval_steps);
-    assert_true(a->output.fields == b->output.fields);
+    assert_true(a->output.fields == b->output.fields && a->output.fragments == b->output.fragments);
     assert_string_equal(a->output.dir, b->output.dir);
     for (int k = 0; k < 3; k++) {
         same_expr(a->initial.displacement[k], b->initial.displacement[k]);
@@ -419,7 +419,7 @@ static void test_spall_shows_every_key(void **state) {
 #define INTERVAL "allowed: integer >= 1 (steps), or number > 0 and < 1 (simulated seconds)\n"
 #define FIELDS                                                                                               \
     "allowed: list from displacement, velocity, stress, mean_stress, principal_stress, crack, "              \
-    "damage, regime, plastic_strain, triaxiality, rank"
+    "damage, regime, plastic_strain, triaxiality, rank, fragment"
 #define MODELS  "neo-hookean, deshpande-evans"
 #define CERAMIC ": not used, because material.model is neo-hookean; it belongs to deshpande-evans\n"
 #define NAMES   "allowed: letters, digits, _ and -; unique among bodies and probes\n"
@@ -686,7 +686,7 @@ static void test_ceramic(void **state) {
     table.poisson = 0.21;
     table.density = 3690;
     assert_memory_equal(&m.of.deshpande_evans.parameters, &table, offsetof(rg_deshpande_evans, single_pi));
-    assert_true(!m.of.deshpande_evans.parameters.single_pi && c->output.fields == 1023U && m.mu == 146e9);
+    assert_true(!m.of.deshpande_evans.parameters.single_pi && c->output.fields == (1023U | RG_FIELD_FRAGMENT) && m.mu == 146e9);
     rg_case_free(c);
     static const char *const derived[] = {"material.interaction=derived"};
     check_round_trip(path, 1, derived);

@@ -33,7 +33,7 @@ ISAS = [pytest.param(name, marks=pytest.mark.skipif(not can_run(name), reason="t
 
 def assert_same_bits(one, other):
     assert one.summary["state_hash"] == other.summary["state_hash"]
-    for name in ("energy.csv", "history.csv"):
+    for name in ("energy.csv", "history.csv", "fragments.csv"):
         assert (one.dir / name).read_bytes() == (other.dir / name).read_bytes(), name
 
 

@@ -1,0 +1,130 @@
+"""Fragments of runs: they add up to the body, are the same bits on any layout, and overlaps are told. Their values
+against closed forms are in test_fragment.c."""
+
+import numpy as np
+import pytest
+from conftest import CASES, launch, rounding
+
+SETS = {"time.end": 0.6e-6, "output.interval": 5e-8, "output.energy_limit": 1e9,
+        "output.fields": ["fragment", "crack"]}
+LAYOUTS = [(1, 2), (2, 1), (3, 1)]  # ranks, threads
+
+
+@pytest.fixture(scope="module")
+def torn(run):
+    return run(CASES / "fragments.yaml", sets=SETS)
+
+
+def table(run):
+    return np.atleast_1d(np.genfromtxt(run.dir / "fragments.csv", delimiter=",", names=True))
+
+
+def by_step(run):
+    rows = table(run)
+    return [(step, rows[rows["step"] == step]) for step in np.unique(rows["step"])]
+
+
+@pytest.mark.parametrize("ranks, threads", LAYOUTS)
+def test_same_fragments_on_any_layout(run, torn, ranks, threads):
+    other = run(CASES / "fragments.yaml", ranks=ranks, threads=threads, sets=SETS)
+    assert len(by_step(torn)[-1][1]) > 4
+    assert (other.dir / "fragments.csv").read_bytes() == (torn.dir / "fragments.csv").read_bytes()
+    for key in ("fragments", "fragment_mass_heaviest_kg", "fragment_mass_bins"):
+        assert other.summary[key] == torn.summary[key], key
+    for one, two in zip(torn.frames(), other.frames()):
+        assert np.array_equal(one["fragment"], two["fragment"])
+
+
+def test_fragments_add_up_to_the_body(torn):
+    mass = 3690 * 0.4e-3 * 0.4e-3 * 3.2e-3
+    for (step, rows), ledger in zip(by_step(torn), torn.energy):
+        assert step == ledger["step"]
+        assert rows["elements"].sum() == torn.summary["elements"]
+        assert rows["mass"].sum() == pytest.approx(mass, rel=rounding(1e-13, 1e-6))
+        assert rows["kinetic"].sum() == pytest.approx(ledger["kinetic"], rel=rounding(1e-12, 1e-6))
+        for axis in "xyz":
+            momentum = np.abs(rows[f"momentum_{axis}"]).sum()
+            assert rows[f"momentum_{axis}"].sum() == pytest.approx(
+                ledger[f"momentum_{axis}"], abs=rounding(1e-12, 1e-6) * momentum)
+
+
+def test_moving_and_turning_take_no_more_than_the_kinetic_energy(torn):
+    rows = table(torn)
+    moving = sum(rows[f"momentum_{axis}"] ** 2 for axis in "xyz") / (2 * rows["mass"])
+    assert (rows["rotational"] >= 0).all()
+    assert (moving + rows["rotational"] <= rows["kinetic"] * (1 + rounding(1e-12, 1e-5))).all()
+
+
+def test_field_and_summary_agree_with_the_table(torn):
+    _, rows = by_step(torn)[-1]
+    ids, elements = np.unique(torn.frames()[-1]["fragment"], return_counts=True)
+    assert np.array_equal(ids, rows["id"]) and np.array_equal(elements, rows["elements"])
+    assert torn.summary["fragments"] == len(rows)
+    assert torn.summary["fragment_mass_heaviest_kg"] == rows["mass"].max()
+    bins = torn.summary["fragment_mass_bins"]
+    assert sum(count for _, count, _ in bins) == len(rows)
+    assert sum(mass for _, _, mass in bins) == pytest.approx(rows["mass"].sum(), rel=1e-12)
+    for upper, count, _ in bins:
+        inside = (rows["mass"] <= upper * (1 + 1e-9)) & (rows["mass"] > upper / 2 * (1 + 1e-9))
+        assert inside.sum() == count
+
+
+@pytest.mark.parametrize("when, steps", [("last", 1), ("none", 0)])
+def test_fragments_only_when_asked_for(run, torn, when, steps):
+    few = run(CASES / "fragments.yaml", sets={**SETS, "output.fragments": when})
+    assert (few.dir / "fragments.csv").exists() == (steps > 0)
+    assert ("fragments" in few.summary) == (steps > 0)
+    if steps:
+        assert (few.dir / "fragments.csv").read_bytes().split(b"\n")[1:] == (
+            (torn.dir / "fragments.csv").read_bytes().split(b"\n")[-1 - len(by_step(torn)[-1][1]):])
+
+
+# ---- Pieces that do not see each other ----
+
+CUBE = [(0, 1, 3, 7), (0, 1, 5, 7), (0, 2, 3, 7), (0, 2, 6, 7), (0, 4, 5, 7), (0, 4, 6, 7)]  # around 0-7
+GAP, SPEED = 0.2e-3, 100.0  # m, m/s: of cubes of 1 mm that fly at each other
+
+
+def two_cubes():
+    nodes, elements = [], []
+    for body in range(2):
+        for k in range(8):
+            x = [1e-3 * (k & 1), 1e-3 * (k >> 1 & 1), 1e-3 * (k >> 2 & 1) + body * (1e-3 + GAP)]
+            nodes.append(", ".join([str(8 * body + k + 1), *map(repr, x)]))
+        for k, corners in enumerate(CUBE):
+            elements.append(", ".join(map(str, [6 * body + k + 1, *(8 * body + c + 1 for c in corners)])))
+    return "*NODE\n{}\n*ELEMENT, TYPE=C3D4\n{}\n".format("\n".join(nodes), "\n".join(elements))
+
+
+def meet(scratch, ranks, towards):
+    folder = scratch / f"cubes-{ranks}-{towards}"
+    folder.mkdir()
+    (folder / "cubes.inp").write_text(two_cubes())
+    made = launch("mesh", folder / "cubes.inp", "-o", folder / "cubes.h5")
+    assert made.returncode == 0, made.stderr
+    (folder / "cubes.yaml").write_text(f"""
+mesh: {{file: cubes.h5}}
+material: {{model: neo-hookean, young: 260e9, poisson: 0.21, density: 3690}}
+interface: {{law: none}}
+initial: {{velocity: {{z: "z > 1.1e-3 ? {-towards * SPEED} : 0"}}}}
+time: {{end: 4e-6}}
+output: {{interval: 1e-7, fields: []}}
+""")
+    return folder, launch("run", folder / "cubes.yaml", "-q", "-o", folder / "out", ranks=ranks)
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_overlap_is_told_once(scratch, ranks):
+    folder, process = meet(scratch, ranks, 1)
+    assert process.returncode == 0
+    assert process.stderr.count("warning: fragments 0 and 6 overlap at ") == 1
+    summary = (folder / "out" / "summary.json").read_text()
+    assert '"overlap_fragments": [0, 6]' in summary
+    first = float(summary.split('"overlap_time_s": ')[1].split(",")[0])
+    assert GAP / SPEED < first < (GAP + 0.1e-3) / SPEED + 1e-7
+
+
+def test_no_word_of_pieces_that_part(scratch):
+    folder, process = meet(scratch, 1, -1)
+    assert process.returncode == 0 and "overlap" not in process.stderr
+    assert "overlap" not in (folder / "out" / "summary.json").read_text()
