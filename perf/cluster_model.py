@@ -1,0 +1,99 @@
+"""The time of a step on a cluster, from what each rank owns and shares: the arithmetic behind perf/simulate.
+
+A rank sweeps twice over its tiles, those inside (which touch no other rank) and the outer ones; rows for other ranks travel
+under the sweep over the tiles inside. A node has some ranks and one link to the network. All ranks start an exchange about
+together, so a message takes the latency and the time that the fuller of the two nodes' links needs for all that passes:
+    step = max over ranks [rest + pack + max(first inside, traces) + first outer
+                                + pack + max(second inside, tractions) + second outer]
+The reduction has a sweep and a half to go round and stays hidden as long as 2 log2(ranks) latencies are shorter.
+"""
+
+import dataclasses
+
+import numpy as np
+
+TRACE_BYTES, TRACTION_BYTES = 18 * 8, 9 * 8  # of a face and direction: RG_TRACE_ROW, RG_SEAM_ROW
+
+
+@dataclasses.dataclass
+class Network:
+    name: str
+    ranks_per_node: int
+    bandwidth: float  # bytes/s of a node's link, each way
+    latency: float  # s from node to node, at most
+    inside_bandwidth: float  # bytes/s of a message within a node
+    inside_latency: float
+    overhead: float  # s of a rank's time for each message, sent or received
+
+
+@dataclasses.dataclass
+class Costs:
+    first: float  # s per tet
+    second: float
+    pack: float  # s per face and exchange
+    rest: float  # s per step
+
+
+@dataclasses.dataclass
+class Pattern:
+    tets: np.ndarray
+    inner: np.ndarray
+    source: np.ndarray  # [messages]: rank, its neighbour, faces that they share
+    target: np.ndarray
+    faces: np.ndarray
+
+    @property
+    def ranks(self):
+        return len(self.tets)
+
+    @property
+    def shared(self):
+        return np.bincount(self.source, self.faces, self.ranks)
+
+
+def read_pattern(path):
+    """What rhegma-pattern wrote."""
+    tets, inner, messages = [], [], []
+    with open(path) as file:
+        next(file)
+        for rank, line in enumerate(file):
+            numbers = [int(word) for word in line.split()]
+            tets.append(numbers[0])
+            inner.append(numbers[1])
+            messages += [(rank, numbers[k], numbers[k + 1]) for k in range(3, len(numbers), 2)]
+    columns = np.array(messages, dtype=np.int64).reshape(-1, 3).T
+    return Pattern(np.array(tets), np.array(inner), *columns)
+
+
+def exchange(pattern, network, bytes_per_face):
+    """Seconds of an exchange that nothing hides, for each rank."""
+    node = np.arange(pattern.ranks) // network.ranks_per_node
+    source, target = node[pattern.source], node[pattern.target]
+    size = bytes_per_face * pattern.faces
+    between = source != target
+    load = np.bincount(source[between], size[between], node[-1] + 1) / network.bandwidth
+    time = np.where(between, network.latency + np.maximum(load[source], load[target]),
+                    network.inside_latency + size / network.inside_bandwidth)
+    longest = np.zeros(pattern.ranks)
+    np.maximum.at(longest, pattern.source, time)
+    return longest
+
+
+def step(pattern, network, costs):
+    """Seconds of a step, and its parts for the rank that sets it: sweeps, pack, wait, rest."""
+    count = np.bincount(pattern.source, minlength=pattern.ranks)
+    pack = 2 * costs.pack * pattern.shared + 4 * network.overhead * count
+    outer = pattern.tets - pattern.inner
+    wait = (np.maximum(exchange(pattern, network, TRACE_BYTES) - costs.first * pattern.inner, 0)
+            + np.maximum(exchange(pattern, network, TRACTION_BYTES) - costs.second * pattern.inner, 0))
+    sweeps = (costs.first + costs.second) * (pattern.inner + outer)
+    reduction = 2 * np.ceil(np.log2(max(pattern.ranks, 2))) * (network.latency + 2 * network.overhead)
+    hidden = costs.second * pattern.tets
+    late = np.maximum(reduction - hidden, 0) if pattern.ranks > 1 else np.zeros(1)
+    total = sweeps + pack + wait + late + costs.rest
+    slowest = int(np.argmax(total))
+    return {"step_s": float(total[slowest]), "sweeps_s": float(sweeps[slowest]), "pack_s": float(pack[slowest]),
+            "wait_s": float(wait[slowest]), "reduce_s": float(late[slowest]), "rest_s": costs.rest,
+            "mean_sweeps_s": float(sweeps.mean()), "imbalance": float(pattern.tets.max() / pattern.tets.mean()),
+            "neighbours": float(count.mean()), "faces": float(pattern.shared.mean()),
+            "inner_share": float((pattern.inner / pattern.tets).mean())}
