@@ -1,7 +1,8 @@
 /* Who talks to whom, on any number of ranks: the communication of a run without the run. Orders the elements
  * of a box as the solver does, makes its tiles, partitions and deals them with the solver's own code, and
  * writes for each rank what it owns and shares. One process; the elements are never made, so that fifty
- * million take 3 GB. */
+ * million take 3 GB. Where centroids lie on a border of the curve, rounding may order them otherwise than the
+ * mesh does. */
 #include <errno.h>
 #include <mpi.h>
 #include <stdbool.h>

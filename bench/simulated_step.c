@@ -4,6 +4,7 @@
  * needs no polls to move the rows. The reduction goes by dissemination, in ceil(log2 ranks) rounds that start
  * one another as the polls find them done, as the schedule of Open MPI's MPI_Iallreduce does; SMPI's own
  * sends from all to all. */
+#include <math.h>
 #include <mpi.h>
 #include <smpi/smpi.h>
 #include <stdio.h>
@@ -14,10 +15,11 @@
 #include "halo.h"
 #include "mem.h"
 
-static const char usage[] = "usage: smpirun ... simulated_step PATTERN STEPS FIRST SECOND PACK REST\n"
-                            "PATTERN: from rhegma-pattern; seconds: FIRST and SECOND sweep per tet, PACK per "
-                            "face and exchange, REST per "
-                            "step\n";
+static const char usage[] =
+    "usage: smpirun ... simulated_step PATTERN STEPS FIRST SECOND PACK REST THREADS\n"
+    "PATTERN: from rhegma-pattern; seconds: FIRST and SECOND sweep per tet, PACK per face and exchange, "
+    "REST\n"
+    "per step; THREADS of each rank, which share the tiles of a sweep and the faces\n";
 
 enum { REDUCTION_TAG = 3, POLLS = 24 };
 
@@ -122,6 +124,11 @@ static void finish_reduction(reduction *r) {
 
 /* ---- Step ---- */
 
+/* Tets of the thread that has most of them. */
+static double swept(double tets, int threads) {
+    return threads == 1 ? tets : RG_TILE * ceil(tets / RG_TILE / threads);
+}
+
 static void start(const rank_part *p, rg_halo *h, const costs *c) {
     rg_halo_pack(h);
     work(c->pack * (double)p->domain.shared);
@@ -151,14 +158,17 @@ int main(int argc, char **argv) {
     MPI_Init(&argc, &argv);
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);
     MPI_Comm_size(MPI_COMM_WORLD, &ranks);
-    if (argc != 7) {
+    if (argc != 8) {
         fputs(usage, stderr);
         MPI_Abort(MPI_COMM_WORLD, RG_USAGE);
     }
     costs c = {atof(argv[3]), atof(argv[4]), atof(argv[5]), atof(argv[6])};
     rank_part p = {.reduce = {.rank = rank, .ranks = ranks}};
     int steps = atoi(argv[2]);
+    c.pack /= atof(argv[7]);
     read_part(argv[1], rank, ranks, &p);
+    p.inner = swept(p.inner, atoi(argv[7]));
+    p.outer = swept(p.outer, atoi(argv[7]));
     p.traces = make_halo(&p, RG_TRACE_ROW, 1);
     p.tractions = make_halo(&p, RG_SEAM_ROW, 2);
     start(&p, p.traces, &c);

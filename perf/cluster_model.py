@@ -5,13 +5,16 @@ under the sweep over the tiles inside. A node has some ranks and one link to the
 together, so a message takes the latency and the time that the fuller of the two nodes' links needs for all that passes:
     step = max over ranks [rest + pack + max(first inside, traces) + first outer
                                 + pack + max(second inside, tractions) + second outer]
-The reduction has a sweep and a half to go round and stays hidden as long as 2 log2(ranks) latencies are shorter.
+With several threads a sweep takes as long as its thread with most tiles, each of TILE tets, and a step has some
+barriers of the team. The reduction has a sweep and a half to go round and stays hidden as long as 2 log2(ranks) latencies are shorter.
 """
 
 import dataclasses
 
 import numpy as np
 
+TILE = 256
+TEAM_BARRIERS, BARRIER = 8, 1e-6  # of a step; seconds of one, where a rank has threads
 TRACE_BYTES, TRACTION_BYTES = 18 * 8, 9 * 8  # of a face and direction: RG_TRACE_ROW, RG_SEAM_ROW
 
 
@@ -79,21 +82,26 @@ def exchange(pattern, network, bytes_per_face):
     return longest
 
 
-def step(pattern, network, costs):
+def swept(tets, threads):
+    """Tets of the thread that has most of them."""
+    return tets if threads == 1 else TILE * np.ceil(tets / TILE / threads)
+
+
+def step(pattern, network, costs, threads=1):
     """Seconds of a step, and its parts for the rank that sets it: sweeps, pack, wait, rest."""
     count = np.bincount(pattern.source, minlength=pattern.ranks)
-    pack = 2 * costs.pack * pattern.shared + 4 * network.overhead * count
-    outer = pattern.tets - pattern.inner
-    wait = (np.maximum(exchange(pattern, network, TRACE_BYTES) - costs.first * pattern.inner, 0)
-            + np.maximum(exchange(pattern, network, TRACTION_BYTES) - costs.second * pattern.inner, 0))
-    sweeps = (costs.first + costs.second) * (pattern.inner + outer)
+    inner, outer = swept(pattern.inner, threads), swept(pattern.tets - pattern.inner, threads)
+    pack = 2 * costs.pack * pattern.shared / threads + 4 * network.overhead * count
+    wait = (np.maximum(exchange(pattern, network, TRACE_BYTES) - costs.first * inner, 0)
+            + np.maximum(exchange(pattern, network, TRACTION_BYTES) - costs.second * inner, 0))
+    sweeps = (costs.first + costs.second) * (inner + outer)
+    rest = costs.rest + (TEAM_BARRIERS * BARRIER if threads > 1 else 0)
     reduction = 2 * np.ceil(np.log2(max(pattern.ranks, 2))) * (network.latency + 2 * network.overhead)
-    hidden = costs.second * pattern.tets
-    late = np.maximum(reduction - hidden, 0) if pattern.ranks > 1 else np.zeros(1)
-    total = sweeps + pack + wait + late + costs.rest
+    late = np.maximum(reduction - costs.second * (inner + outer), 0) if pattern.ranks > 1 else np.zeros(1)
+    total = sweeps + pack + wait + late + rest
     slowest = int(np.argmax(total))
     return {"step_s": float(total[slowest]), "sweeps_s": float(sweeps[slowest]), "pack_s": float(pack[slowest]),
-            "wait_s": float(wait[slowest]), "reduce_s": float(late[slowest]), "rest_s": costs.rest,
+            "wait_s": float(wait[slowest]), "reduce_s": float(late[slowest]), "rest_s": rest,
             "mean_sweeps_s": float(sweeps.mean()), "imbalance": float(pattern.tets.max() / pattern.tets.mean()),
             "neighbours": float(count.mean()), "faces": float(pattern.shared.mean()),
             "inner_share": float((pattern.inner / pattern.tets).mean())}
