@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from conftest import CASES, SINGLE
+from conftest import BENCH, CASES, SINGLE
 from test_parallel import LAYOUTS, assert_same_bits
 
 pytestmark = pytest.mark.skipif(SINGLE, reason="the ceramic needs double precision")
@@ -99,3 +99,20 @@ def test_output_does_not_advance_the_history(run):
     often = run(CERAMIC, sets={"time.end": 5e-8, "output.interval": 1, "output.fields": []})
     seldom = run(CERAMIC, sets={"time.end": 5e-8, "output.interval": 5e-8, "output.fields": []})
     assert often.summary["state_hash"] == seldom.summary["state_hash"]
+
+
+# ---- Strength ----
+
+
+@pytest.mark.parametrize("sign, end, strength, strain", [(-1, 1.2e-6, 3.94e9, 1.14e-2), (1, 0.45e-6, 1.21e9, 0.41e-2)])
+def test_uniaxial_strength_is_that_of_a_point(run, sign, end, strength, strain):
+    """kernels/deshpande_evans_model.h has the strengths of a point, at 1e4/s."""
+    rate = sign * 1e4
+    sets = {"initial.velocity": {"x": f"{-0.2 * rate}*x", "y": f"{-0.2 * rate}*y", "z": f"{rate}*z"},
+            "boundary": [{"set": side, "component": "z", "velocity": f"{rate}*z"} for side in ("z-", "z+")],
+            "time.end": end, "output.energy_limit": 1e9}
+    history = run(BENCH / "ceramic-cube.yaml", sets=sets).history
+    top = np.argmax(np.abs(history["middle_szz"]))
+    assert abs(history["middle_szz"][top]) == pytest.approx(strength, rel=0.01)
+    assert abs(rate * history["time"][top]) == pytest.approx(strain, rel=0.02)
+    assert abs(history["middle_szz"][-1]) < 0.6 * strength
