@@ -9,6 +9,7 @@
 #include "../kernels/layout.h"
 #include "error.h"
 #include "mem.h"
+#include "tet.h"
 
 static const double straight = 1e-6; /* of an edge: how far its middle node may be off */
 
@@ -68,6 +69,14 @@ static void look_at_middles(rg_import *m, const size_t *node) {
     }
 }
 
+/* Elements that the input numbers inside out. Corners are sorted later, so it does no harm. */
+static void look_at_orientation(rg_import *m, rg_gid name, const size_t *row) {
+    const double *x = m->x;
+    if (rg_tet_volume(x + 3 * row[0], x + 3 * row[1], x + 3 * row[2], x + 3 * row[3]) < 0) {
+        m->first_inverted = m->inverted++ == 0 ? name : m->first_inverted;
+    }
+}
+
 void rg_import_element(rg_import *m, rg_gid name, int nodes, const size_t *node, int region) {
     size_t room = more(m->element_room, (size_t)m->elements + 1);
     if (room > m->element_room) {
@@ -85,6 +94,7 @@ void rg_import_element(rg_import *m, rg_gid name, int nodes, const size_t *node,
         }
     }
     memcpy(m->corner + 4 * m->elements, row, 4 * sizeof *row);
+    look_at_orientation(m, name, row);
     m->name[m->elements] = name;
     m->region[m->elements++] = (int8_t)region;
     if (nodes == 10) {
@@ -169,6 +179,15 @@ static void fill_elements(const rg_import *m, const rg_gid *vertex, rg_mesh *mes
             mesh->corner[4 * e + i] = vertex[m->corner[4 * e + i]];
         }
         qsort(mesh->corner + 4 * e, 4, sizeof *mesh->corner, ascending);
+    }
+}
+
+static void tell_orientation(const rg_import *m) {
+    if (m->inverted > 0) {
+        rg_warn("%s: %" PRId64 " of %" PRId64
+                " elements have their corners in the order of a negative volume, the "
+                "first of them %" PRId64 ": they are taken as if they had not",
+                m->path, m->inverted, m->elements, m->first_inverted);
     }
 }
 
@@ -309,6 +328,7 @@ rg_mesh *rg_import_finish(rg_import *m, char *const set_name[]) {
     struct numbered *order = sort_nodes(m);
     rg_gid *vertex = number_vertices(m, order, mesh);
     fill_elements(m, vertex, mesh);
+    tell_orientation(m);
     tell_nodes(m, order, vertex);
     mark_faces(m, vertex, set_name, mesh);
     rg_free(vertex);

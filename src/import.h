@@ -30,6 +30,8 @@ typedef struct {
     size_t *corner;        /* [elements][4] rows of nodes */
     rg_gid *name;          /* [elements] numbers */
     int8_t *region;        /* [elements] volume sets, -1 for none */
+    int64_t inverted;      /* elements of negative volume */
+    rg_gid first_inverted; /* number of one */
     int64_t middles, bent; /* mid-nodes, and those off straight */
     double worst;          /* how far, as a fraction of the edge */
     size_t faces;

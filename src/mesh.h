@@ -122,8 +122,8 @@ rg_part *rg_part_distribute_weighted(const rg_mesh *mesh, int tile, double *weig
  * ranks of `comm` (METIS makes one if the file has none for so many, or there are weights), each rank then
  * reads its own tiles; no rank ever holds more than its part. The result has the same bits as that of
  * rg_part_distribute of the whole mesh with the same partition. Ends the run (RG_USAGE) with a message if the
- * file is damaged, an element has no volume, or elements on both sides of a face do not agree about it. The
- * caller owns the result. */
+ * file is damaged, an element has no volume, elements on both sides of a face do not agree about it, or the
+ * surface is not closed (part_check.h). The caller owns the result. */
 rg_part *rg_part_read(const char *path, double *weight, MPI_Comm comm);
 
 /* Number of the surface set of that name; -1 if the mesh has none. */

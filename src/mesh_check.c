@@ -38,19 +38,32 @@ static void check_corners(const rg_mesh *mesh, const char *name, rg_gid e) {
     }
 }
 
-static void check_volume(const rg_mesh *mesh, const char *name, rg_gid e) {
-    const double *a = corner(mesh, e, 0);
+double rg_tet_longest_edge(const double *x) {
     double edge = 0;
     for (int i = 0; i < 4; i++) {
         for (int j = 0; j < i; j++) {
-            edge = fmax(edge, distance(corner(mesh, e, i), corner(mesh, e, j)));
+            edge = fmax(edge, distance(x + 3 * i, x + 3 * j));
         }
     }
-    double volume = fabs(rg_tet_volume(a, corner(mesh, e, 1), corner(mesh, e, 2), corner(mesh, e, 3)));
-    if (!(volume > least_volume * edge * edge * edge)) { /* also if a position is not finite */
+    return edge;
+}
+
+bool rg_tet_has_volume(const double *x) {
+    double edge = rg_tet_longest_edge(x);
+    return fabs(rg_tet_volume(x, x + 3, x + 6, x + 9)) >
+           least_volume * edge * edge * edge; /* no: not finite */
+}
+
+static void check_volume(const rg_mesh *mesh, const char *name, rg_gid e) {
+    double x[12];
+    for (int i = 0; i < 4; i++) {
+        memcpy(x + 3 * i, corner(mesh, e, i), 3 * sizeof *x);
+    }
+    if (!rg_tet_has_volume(x)) {
         rg_fatal(RG_USAGE,
                  "%s: element %" PRId64 " at (%g, %g, %g) m has no volume: %g m3 with edges of up to %g m",
-                 name, rg_mesh_original(mesh, e), a[0], a[1], a[2], volume, edge);
+                 name, rg_mesh_original(mesh, e), x[0], x[1], x[2],
+                 fabs(rg_tet_volume(x, x + 3, x + 6, x + 9)), rg_tet_longest_edge(x));
     }
 }
 
@@ -157,6 +170,11 @@ void rg_mesh_check_elements(const rg_mesh *mesh, const char *name) {
     }
 }
 
+void rg_mesh_check_surface(const rg_mesh *mesh, const char *name) {
+    check_places(mesh, name);
+    check_hanging(mesh, name);
+}
+
 void rg_mesh_check(const rg_mesh *mesh, const char *name) {
     rg_mesh_check_elements(mesh, name);
     for (rg_gid e = 0; e < mesh->elements; e++) {
@@ -165,8 +183,7 @@ void rg_mesh_check(const rg_mesh *mesh, const char *name) {
         }
     }
     check_use(mesh, name);
-    check_places(mesh, name);
-    check_hanging(mesh, name);
+    rg_mesh_check_surface(mesh, name);
 }
 
 /* ---- parts ---- */

@@ -21,6 +21,14 @@ void rg_mesh_check(const rg_mesh *mesh, const char *name);
 /* The part of this that concerns elements by themselves: corners and volume. Needs no connection. */
 void rg_mesh_check_elements(const rg_mesh *mesh, const char *name);
 
+/* The part that concerns the vertices of the surface: places and hanging nodes. Looks at `x`, `corner` and
+ * where `neighbour` is -1. */
+void rg_mesh_check_surface(const rg_mesh *mesh, const char *name);
+
+/* Whether the element with corners x[4][3] (m) has a volume, as above; the longest of its edges (m). */
+bool rg_tet_has_volume(const double *x);
+double rg_tet_longest_edge(const double *x);
+
 /* Parts that share no face: part[elements] numbers them by their first element. Returns how many there are.
  */
 int32_t rg_mesh_parts(const rg_mesh *mesh, int32_t *part);

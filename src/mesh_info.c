@@ -2,6 +2,7 @@
 
 #include <inttypes.h>
 #include <math.h>
+#include <string.h>
 
 #include "../kernels/layout.h"
 #include "mem.h"
@@ -9,21 +10,23 @@
 #include "tet.h"
 #include "vector.h"
 
-enum { QUALITY_BINS = 10, ANGLE_BINS = 9, MOST_CLASSES = 32, SMALLEST = 5 };
+enum { QUALITY_BINS = 10, ASPECT_BINS = 8, ANGLE_BINS = 9, MOST_CLASSES = 32, SMALLEST = 5 };
 
 #define PI 3.14159265358979323846
 
 struct shape {
     double quality; /* 3 inradius / circumradius */
     double height;  /* smallest (m) */
+    double aspect;  /* longest edge / smallest height, over that of the regular tetrahedron: 1 and more */
     double volume;
     double angle[6]; /* dihedral, between faces f < g (degrees) */
 };
 
 struct totals {
-    rg_gid quality[QUALITY_BINS], angle[ANGLE_BINS], classes[MOST_CLASSES];
-    rg_gid worst, smallest[SMALLEST];
-    double worst_quality, smallest_height[SMALLEST], largest_height, volume, low_angle, high_angle;
+    rg_gid quality[QUALITY_BINS], aspect[ASPECT_BINS], angle[ANGLE_BINS], classes[MOST_CLASSES];
+    rg_gid worst, longest, smallest[SMALLEST];
+    double worst_quality, worst_aspect, smallest_height[SMALLEST], largest_height, volume, low_angle,
+        high_angle;
 };
 
 /* ---- one element ---- */
@@ -64,6 +67,14 @@ static double circumradius(const rg_mesh *mesh, rg_gid e, double volume) {
     return sqrt(rg_dot(sum, sum)) / (12 * volume);
 }
 
+static double longest_edge(const rg_mesh *mesh, rg_gid e) {
+    double x[12];
+    for (int i = 0; i < 4; i++) {
+        memcpy(x + 3 * i, mesh->x + 3 * mesh->corner[4 * e + i], 3 * sizeof *x);
+    }
+    return rg_tet_longest_edge(x);
+}
+
 static struct shape measure(const rg_mesh *mesh, rg_gid e) {
     struct shape s;
     double n[4][3], area = 0, largest = 0;
@@ -77,6 +88,7 @@ static struct shape measure(const rg_mesh *mesh, rg_gid e) {
         largest = fmax(largest, here);
     }
     s.height = 3 * s.volume / largest;
+    s.aspect = longest_edge(mesh, e) / s.height * sqrt(2.0 / 3);
     s.quality = 3 * (3 * s.volume / area) / circumradius(mesh, e, s.volume);
     for (int f = 1, k = 0; f < 4; f++) {
         for (int g = 0; g < f; g++, k++) {
@@ -110,6 +122,21 @@ static void rank_height(struct totals *t, rg_gid e, double height) {
     }
 }
 
+/* Upper ends of the classes of aspect ratio, but for the last. */
+static const double aspect_end[ASPECT_BINS - 1] = {1.5, 2, 3, 5, 10, 20, 50};
+
+static void count_aspect(struct totals *t, rg_gid e, double aspect) {
+    int b = 0;
+    while (b < ASPECT_BINS - 1 && aspect >= aspect_end[b]) {
+        b++;
+    }
+    t->aspect[b]++;
+    if (aspect > t->worst_aspect) {
+        t->worst_aspect = aspect;
+        t->longest = e;
+    }
+}
+
 static void count(struct totals *t, rg_gid e, const struct shape *s) {
     t->quality[bin(s->quality, QUALITY_BINS)]++;
     if (s->quality < t->worst_quality) {
@@ -121,6 +148,7 @@ static void count(struct totals *t, rg_gid e, const struct shape *s) {
         t->low_angle = fmin(t->low_angle, s->angle[k]);
         t->high_angle = fmax(t->high_angle, s->angle[k]);
     }
+    count_aspect(t, e, s->aspect);
     t->volume += s->volume;
     t->largest_height = fmax(t->largest_height, s->height);
     rank_height(t, e, s->height);
@@ -208,6 +236,16 @@ static void print_bins(const char *title, const char *unit, double top, int bins
     }
 }
 
+static void print_aspects(const rg_mesh *mesh, const struct totals *t, FILE *out) {
+    fprintf(out, "aspect ratio   longest edge / smallest height, 1 for the regular tetrahedron\n");
+    for (int b = 0; b < ASPECT_BINS; b++) {
+        fprintf(out, "  %5.4g .. %-5.4g  %12" PRId64 "\n", b > 0 ? aspect_end[b - 1] : 1,
+                b < ASPECT_BINS - 1 ? aspect_end[b] : INFINITY, t->aspect[b]);
+    }
+    fprintf(out, "  worst %.4g: element %" PRId64 " (%" PRId64 " in the input)\n", t->worst_aspect,
+            t->longest, rg_mesh_original(mesh, t->longest));
+}
+
 static void print_smallest(const rg_mesh *mesh, const struct totals *t, FILE *out) {
     fprintf(out, "heights        %.4g .. %.4g m; smallest:\n", t->smallest_height[0], t->largest_height);
     for (int i = 0; i < SMALLEST && t->smallest[i] >= 0; i++) {
@@ -238,6 +276,7 @@ void rg_mesh_info(const rg_mesh *mesh, double speed, FILE *out) {
     print_bins("quality        3 inradius / circumradius, elements", "", 1, QUALITY_BINS, t.quality, out);
     fprintf(out, "  worst %.4g: element %" PRId64 " (%" PRId64 " in the input)\n", t.worst_quality, t.worst,
             rg_mesh_original(mesh, t.worst));
+    print_aspects(mesh, &t, out);
     print_bins("angles         between faces, degrees", "", 180, ANGLE_BINS, t.angle, out);
     fprintf(out, "  from %.4g to %.4g degrees\n", t.low_angle, t.high_angle);
     print_smallest(mesh, &t, out);

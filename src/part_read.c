@@ -9,7 +9,9 @@
 #include "error.h"
 #include "mem.h"
 #include "mesh.h"
+#include "mesh_check.h"
 #include "mesh_file.h"
+#include "part_check.h"
 #include "tet.h"
 
 enum { SLAB = 256 }; /* most tiles at once: what is read beside the part stays small */
@@ -94,8 +96,10 @@ static void read_slab(const reader *r, int64_t begin, int64_t end) {
         unpack(r, s, i, element_at(r, s->first + i));
     }
     for (rg_gid i = 0; i < s->elements; i++) {
-        if (!(element_at(r, s->first + i)->volume > 0.0)) {
-            rg_fatal(RG_USAGE, "%s: element %" PRId64 " has no volume", r->path, s->original[i]);
+        const rg_element *e = element_at(r, s->first + i);
+        if (!rg_tet_has_volume(e->x[0])) {
+            rg_fatal(RG_USAGE, "%s: element %" PRId64 " at (%g, %g, %g) m has no volume: %g m3", r->path,
+                     s->original[i], e->x[0][0], e->x[0][1], e->x[0][2], e->volume);
         }
     }
     rg_mesh_slab_free(s);
@@ -125,7 +129,9 @@ static _Noreturn void disagree(const reader *r, const rg_element *e, int f) {
 }
 
 static bool agree(const rg_element *e, int f, const rg_element *other) {
-    return other->neighbour[e->face[f]] == e->id && other->face[e->face[f]] == f;
+    int g = e->face[f];
+    return other->neighbour[g] == e->id && other->face[g] == f &&
+           rg_part_face_key(other, g) == rg_part_face_key(e, f);
 }
 
 /* Faces to own elements and the surface. */
@@ -152,6 +158,7 @@ static void fill_inside(const reader *r) {
 typedef struct {
     int64_t side;
     double volume; /* of the element there */
+    uint64_t key;  /* of the place of the face */
 } message;
 
 /* A face that another rank shares. */
@@ -222,7 +229,7 @@ static void exchange(const reader *r, const border *list, const int *count, cons
     MPI_Type_free(&type);
     for (int i = 0; i < at[r->ranks]; i++) {
         rg_element *e = &r->own->element[list[i].element];
-        if (in[i].side != other_side(e, list[i].face)) {
+        if (in[i].side != other_side(e, list[i].face) || in[i].key != out[i].key) {
             disagree(r, e, list[i].face);
         }
         e->other_volume[list[i].face] = in[i].volume;
@@ -237,7 +244,7 @@ static void fill_borders(const reader *r) {
     int *count = RG_NEW(int, (size_t)r->ranks), *at = RG_NEW(int, (size_t)r->ranks + 1);
     for (size_t i = 0; i < n; i++) {
         const rg_element *e = &r->own->element[list[i].element];
-        out[i] = (message){own_side(e, list[i].face), e->volume};
+        out[i] = (message){own_side(e, list[i].face), e->volume, rg_part_face_key(e, list[i].face)};
         count[list[i].owner]++;
     }
     for (int k = 0; k < r->ranks; k++) {
@@ -285,6 +292,7 @@ rg_part *rg_part_read(const char *path, double *weight, MPI_Comm comm) {
     check_graph(&r);
     fill_inside(&r);
     fill_borders(&r);
+    rg_part_check(r.own, path, comm);
     rg_free(r.owner);
     rg_free(r.place);
     return r.own;

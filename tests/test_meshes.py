@@ -268,7 +268,7 @@ def inp(tmp_path, text):
 
 def test_abaqus_sections_and_surfaces(tmp_path):
     file, said = convert(inp(tmp_path, PART + END), tmp_path / "a.h5", "--scale", "2")
-    assert said == ""
+    assert len(said.splitlines()) == 1 and "1 of 2 elements have their corners in the order of a negative" in said
     assert names(file, "volume") == ["both"] and (file["region"][:] == 0).all()
     assert names(file, "surface") == ["side"]
     first = {original: i for i, original in enumerate(file["original"])}

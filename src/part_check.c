@@ -1,0 +1,220 @@
+#include "part_check.h"
+
+#include <inttypes.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../kernels/layout.h"
+#include "error.h"
+#include "hash.h"
+#include "mem.h"
+#include "mesh_check.h"
+
+/* An element with faces on the surface. */
+typedef struct {
+    rg_gid id;
+    int64_t open; /* bit f: face f is on the surface */
+    double x[4][3];
+} outer;
+
+/* A face on the surface; two 64-bit words for MPI. */
+typedef struct {
+    uint64_t key;
+    rg_gid element;
+} face;
+
+static uint64_t position_key(const double x[3]) {
+    uint64_t h = 0;
+    for (int i = 0; i < 3; i++) {
+        uint64_t bits;
+        memcpy(&bits, &x[i], sizeof bits);
+        h = rg_hash(h, bits);
+    }
+    return h;
+}
+
+static uint64_t face_key(const double x[4][3], int f) {
+    uint64_t sum = 0;
+    for (int k = 0; k < 3; k++) {
+        sum += position_key(x[rg_face_node[f][k]]);
+    }
+    return sum;
+}
+
+uint64_t rg_part_face_key(const rg_element *e, int f) {
+    return face_key(e->x, f);
+}
+
+/* ---- the surface, on rank 0 ---- */
+
+static outer *list_outer(const rg_part *part, int *count) {
+    outer *list = RG_NEW(outer, (size_t)part->elements);
+    *count = 0;
+    for (rg_lid i = 0; i < part->elements; i++) {
+        const rg_element *e = &part->element[i];
+        outer o = {.id = e->id};
+        for (int f = 0; f < 4; f++) {
+            o.open |= e->neighbour[f] < 0 ? 1 << f : 0;
+        }
+        if (o.open != 0) {
+            memcpy(o.x, e->x, sizeof o.x);
+            list[(*count)++] = o;
+        }
+    }
+    return list;
+}
+
+/* All of them on rank 0, NULL and 0 on the others. */
+static outer *gather_outer(const rg_part *part, MPI_Comm comm, int *total) {
+    int rank, ranks, own;
+    MPI_Comm_rank(comm, &rank);
+    MPI_Comm_size(comm, &ranks);
+    outer *mine = list_outer(part, &own), *all = NULL;
+    int *count = RG_NEW(int, (size_t)ranks), *at = RG_NEW(int, (size_t)ranks + 1);
+    MPI_Gather(&own, 1, MPI_INT, count, 1, MPI_INT, 0, comm);
+    for (int r = 0; r < ranks; r++) {
+        at[r + 1] = at[r] + count[r];
+    }
+    *total = rank == 0 ? at[ranks] : 0;
+    all = rank == 0 ? RG_NEW(outer, (size_t)*total + 1) : NULL;
+    MPI_Datatype type;
+    MPI_Type_contiguous(sizeof(outer), MPI_BYTE, &type);
+    MPI_Type_commit(&type);
+    MPI_Gatherv(mine, own, type, all, count, at, type, 0, comm);
+    MPI_Type_free(&type);
+    rg_free(mine);
+    rg_free(count);
+    rg_free(at);
+    return all;
+}
+
+static int by_key(const void *a, const void *b) {
+    const face *p = a, *q = b;
+    if (p->key != q->key) {
+        return p->key < q->key ? -1 : 1;
+    }
+    return (p->element > q->element) - (p->element < q->element);
+}
+
+static face *list_faces(const outer *list, int count, int64_t *faces) {
+    face *all = RG_NEW(face, 4 * (size_t)count + 1);
+    *faces = 0;
+    for (int i = 0; i < count; i++) {
+        for (int f = 0; f < 4; f++) {
+            if (list[i].open >> f & 1) {
+                all[(*faces)++] = (face){face_key(list[i].x, f), list[i].id};
+            }
+        }
+    }
+    qsort(all, (size_t)*faces, sizeof *all, by_key);
+    return all;
+}
+
+static void check_pairs(const face *all, int64_t faces, const char *name) {
+    for (int64_t i = 1; i < faces; i++) {
+        if (all[i].key == all[i - 1].key) {
+            rg_fatal(RG_USAGE,
+                     "%s: elements %" PRId64 " and %" PRId64
+                     " have a face at the same place, but are not neighbours: the mesh is open there",
+                     name, all[i - 1].element, all[i].element);
+        }
+    }
+}
+
+/* ---- geometry of the surface ---- */
+
+typedef struct {
+    double x[3];
+    int64_t slot;
+} place;
+
+static int by_bits(const void *a, const void *b) {
+    const place *p = a, *q = b;
+    return memcmp(p->x, q->x, sizeof p->x);
+}
+
+/* The elements at the surface as a mesh of their own, of which only the surface means anything. */
+static rg_mesh *surface_mesh(const outer *list, int count) {
+    size_t slots = 4 * (size_t)count;
+    rg_mesh *m = RG_NEW(rg_mesh, 1);
+    *m = (rg_mesh){.elements = count,
+                   .x = RG_NEW(double, 3 * slots),
+                   .corner = RG_NEW(rg_gid, slots),
+                   .neighbour = RG_NEW(rg_gid, slots),
+                   .original = RG_NEW(rg_gid, (size_t)count)};
+    place *at = RG_NEW(place, slots);
+    for (size_t s = 0; s < slots; s++) {
+        memcpy(at[s].x, list[s / 4].x[s % 4], sizeof at[s].x);
+        at[s].slot = (int64_t)s;
+        m->neighbour[s] = list[s / 4].open >> s % 4 & 1 ? -1 : 0;
+        m->original[s / 4] = list[s / 4].id;
+    }
+    qsort(at, slots, sizeof *at, by_bits);
+    for (size_t s = 0; s < slots; s++) {
+        if (s == 0 || by_bits(&at[s - 1], &at[s]) != 0) {
+            memcpy(m->x + 3 * m->vertices++, at[s].x, sizeof at[s].x);
+        }
+        m->corner[at[s].slot] = m->vertices - 1;
+    }
+    rg_free(at);
+    return m;
+}
+
+/* ---- three elements ---- */
+
+static int64_t find(const face *all, int64_t faces, uint64_t key) {
+    int64_t low = 0, high = faces;
+    while (low < high) {
+        int64_t middle = (low + high) / 2;
+        if (all[middle].key < key) {
+            low = middle + 1;
+        } else {
+            high = middle;
+        }
+    }
+    return low < faces && all[low].key == key ? low : -1;
+}
+
+/* Looks for the surface's faces among the own ones between elements. */
+static void check_inside(const rg_part *part, const face *all, int64_t faces, const char *name) {
+    int64_t wrong = INT64_MAX;
+#pragma omp parallel for schedule(static) reduction(min : wrong)
+    for (int64_t slot = 0; slot < 4 * (int64_t)part->elements; slot++) {
+        const rg_element *e = &part->element[slot / 4];
+        int f = (int)(slot % 4);
+        if (e->neighbour[f] > e->id && find(all, faces, rg_part_face_key(e, f)) >= 0) {
+            wrong = slot < wrong ? slot : wrong;
+        }
+    }
+    if (wrong < INT64_MAX) {
+        const rg_element *e = &part->element[wrong / 4];
+        int f = (int)(wrong % 4);
+        rg_fatal(RG_USAGE, "%s: elements %" PRId64 ", %" PRId64 " and %" PRId64 " share a face", name, e->id,
+                 e->neighbour[f], all[find(all, faces, rg_part_face_key(e, f))].element);
+    }
+}
+
+void rg_part_check(const rg_part *part, const char *name, MPI_Comm comm) {
+    int count, rank;
+    int64_t faces = 0;
+    MPI_Comm_rank(comm, &rank);
+    outer *list = gather_outer(part, comm, &count);
+    face *all = list_faces(list, count, &faces);
+    if (rank == 0) {
+        rg_mesh *surface = surface_mesh(list, count);
+        check_pairs(all, faces, name);
+        rg_mesh_check_surface(surface, name);
+        rg_mesh_free(surface);
+    }
+    rg_free(list);
+    MPI_Bcast(&faces, 1, MPI_INT64_T, 0, comm);
+    if (rank != 0) {
+        rg_free(all);
+        all = RG_NEW(face, (size_t)faces + 1);
+    }
+    MPI_Bcast(all, (int)(2 * faces), MPI_UINT64_T, 0, comm);
+    check_inside(part, all, faces, name);
+    MPI_Barrier(comm); /* whoever found something speaks and ends the job */
+    rg_free(all);
+}
