@@ -5,10 +5,11 @@
  * same bits.
  *
  * A face without damage costs only the DG terms and a bound on its traction; the normal of the deformed
- * mid-surface, the criterion and the cohesive law are computed, out of line, where a lane needs them. Lanes
- * that do not need them keep their bits: a face's result never depends on the faces that share its block. All
- * tractions are area-weighted: they carry the reference area of the face as a factor (N). */
-#include "cohesive_linear.h"
+ * mid-surface, the criterion and the cohesive law are computed, out of line, where a lane needs them; that
+ * part is compiled once around each law (cohesive.h). Lanes that do not need them keep their bits: a face's
+ * result never depends on the faces that share its block. All tractions are area-weighted: they carry the
+ * reference area of the face as a factor (N). */
+#include "cohesive.h"
 #include "isa.h"
 #include "tet10.h"
 
@@ -22,9 +23,10 @@ typedef struct {
     bool seam;
     vec3 edge[2], normal; /* normal: area vector A */
     rg_vec area_square, area, pen_iso, pen_norm;
-    vec3 jump[RG_POINTS];  /* [u] */
-    vec3 mean[RG_POINTS];  /* <P> A */
-    vec3 total[RG_POINTS]; /* traction that acts */
+    vec3 jump[RG_POINTS];                                    /* [u] */
+    vec3 mean[RG_POINTS];                                    /* <P> A */
+    vec3 total[RG_POINTS];                                   /* traction that acts */
+    rg_vec strength, strong_area, opening, inverse, contact; /* damaged faces: the law here (load_law) */
 } interface;
 
 RG_INLINE const int32_t *side(const interface *s, int k) {
@@ -141,11 +143,19 @@ RG_INLINE rg_vec normal_penalty(const interface *s) {
     return s->pen_iso + s->pen_norm * s->area_square;
 }
 
+RG_INLINE rg_vec scale(const interface *s, int k) {
+    return rg_load(s->args->scale + (s->block * 2 + (size_t)k) * RG_LANES + s->lane);
+}
+
 /* The Piola traction below which a point is not tested: half the strength, as an area-weighted square. */
 RG_INLINE rg_vec test_bound(const interface *s) {
     double beta = s->args->law.beta, strength = s->args->law.strength;
     double reach = beta > 0 && beta < 1 ? 1 / (beta * beta) : 1;
-    return rg_splat(0.25 * strength * strength / reach) * s->area_square;
+    rg_vec bound = rg_splat(0.25 * strength * strength / reach) * s->area_square;
+    if (s->args->scale != NULL) {
+        bound *= scale(s, 0) * scale(s, 0);
+    }
+    return bound;
 }
 
 RG_INLINE bool any_to_test(const interface *s) {
@@ -236,6 +246,31 @@ RG_INLINE rg_real *crack_state(const interface *s, int q, int k) {
     return s->args->crack + s->block * s->args->crack_stride + (q * RG_CRACK + k) * RG_LANES + s->lane;
 }
 
+RG_INLINE rg_real *memory_state(const interface *s, int memory, int q, int k) {
+    return s->args->crack + s->block * s->args->crack_stride + RG_CRACK_BLOCK + (q * memory + k) * RG_LANES +
+           s->lane;
+}
+
+/* Parameters of the law on these faces. */
+RG_INLINE void load_law(interface *s) {
+    const rg_cohesive *law = &s->args->law;
+    s->area = rg_sqrt(s->area_square);
+    s->strength = rg_splat(law->strength);
+    s->strong_area = s->area;
+    s->opening = rg_splat(law->opening);
+    s->inverse = rg_splat(1.0 / law->opening);
+    s->contact = normal_penalty(s);
+    if (law->slope > 0) {
+        s->contact = rg_max(s->contact, s->area * rg_splat(law->slope));
+    }
+    if (s->args->scale != NULL) {
+        s->strength *= scale(s, 0);
+        s->strong_area *= scale(s, 0);
+        s->opening *= scale(s, 1);
+        s->inverse = 1.0 / s->opening;
+    }
+}
+
 /* Writes x where m is set; where nothing is set nothing is touched (untouched pages cost no memory). */
 RG_INLINE void store_where(rg_real *p, rg_mask m, rg_vec x) {
     rg_store(p, rg_select(m, x, rg_load(p)));
@@ -259,11 +294,11 @@ RG_INLINE rg_mask switch_points(const interface *s, int q, const vec3 n, rg_vec 
     rg_vec effective = rg_sqrt(tension * tension + shear * rg_dot(tau, tau));
     rg_mask tested =
         (s->area_square > 0.0) & (rg_dot(s->mean[q], s->mean[q]) > test_bound(s)); /* padding has no area */
-    rg_mask now = intact & tested & (effective > rg_splat(law->strength));
+    rg_mask now = intact & tested & (effective > s->strength);
     if (!rg_any(now)) {
         return now;
     }
-    rg_vec eps = rg_splat(law->total ? 0.0 : RG_ONSET * law->strength) * s->area / normal_penalty(s);
+    rg_vec eps = rg_splat(law->total ? 0.0 : RG_ONSET * law->strength) * s->strong_area / normal_penalty(s);
     for (int c = 0; c < 3; c++) {
         d[c] = (shear * tau[c] + tension * n[c]) / effective;
         rg_vec origin = law->total ? rg_splat(0.0) : s->jump[q][c] - eps * d[c];
@@ -294,9 +329,42 @@ RG_INLINE void crack_opening(const interface *s, int q, const vec3 n, opening *o
     o->effective = rg_sqrt(beta2 * rg_dot(o->tangential, o->tangential) + open * open);
 }
 
+typedef void law_respond(const rg_law_point *p, rg_law_state *state, rg_law_response *r);
+typedef void law_energy(const rg_law_point *p, const rg_law_state *state, rg_law_energy *e);
+
+RG_INLINE rg_law_point law_point(const interface *s, const opening *o, rg_vec before) {
+    return (rg_law_point){.law = &s->args->law,
+                          .step = s->args->step,
+                          .area = s->area,
+                          .strength = s->strength,
+                          .opening = s->opening,
+                          .inverse = s->inverse,
+                          .normal = o->normal,
+                          .sliding_square = rg_dot(o->tangential, o->tangential),
+                          .effective = o->effective,
+                          .before = before};
+}
+
+RG_INLINE void load_memory(const interface *s, int memory, int q, rg_law_state *state) {
+    for (int k = 0; k < memory; k++) {
+        state->memory[k] = rg_load(memory_state(s, memory, q, k));
+    }
+}
+
+/* Keeps the time at which points of the intrinsic form separate. */
+RG_INLINE void note_separation(const interface *s, int q, rg_mask acting, rg_vec before, rg_vec largest) {
+    const rg_cohesive *law = &s->args->law;
+    rg_vec bound = s->opening * rg_splat(law->separation / law->opening);
+    rg_mask parted = acting & (largest >= bound) & (before < bound);
+    if (rg_any(parted)) {
+        store_where(crack_state(s, q, RG_CRACK_TIME), parted, rg_splat(s->args->time));
+    }
+}
+
 /* Replaces the DG traction at broken points by the cohesive law and contact. Returns the points that keep
  * their DG terms because they are closed under flux contact. */
-RG_INLINE rg_mask broken_traction(interface *s, int q, const vec3 n, rg_mask broken) {
+RG_INLINE rg_mask broken_traction(interface *s, int q, const vec3 n, rg_mask broken, law_respond *respond,
+                                  int memory) {
     const rg_cohesive *law = &s->args->law;
     opening o;
     crack_opening(s, q, n, &o);
@@ -304,28 +372,35 @@ RG_INLINE rg_mask broken_traction(interface *s, int q, const vec3 n, rg_mask bro
     rg_mask acting = broken & ~closed;
     rg_vec before = rg_load(crack_state(s, q, RG_CRACK_OPENING));
     rg_mask grows = acting & (o.effective > before);
-    rg_vec delta_max = rg_select(grows, o.effective, before);
+    rg_law_state state = {.largest = rg_select(grows, o.effective, before)};
     if (rg_any(grows)) {
-        rg_store(crack_state(s, q, RG_CRACK_OPENING), delta_max);
+        rg_store(crack_state(s, q, RG_CRACK_OPENING), state.largest);
     }
-    rg_vec secant = s->area * rg_cohesive_secant(law, delta_max);
+    if (law->intrinsic) {
+        note_separation(s, q, acting, before, state.largest);
+    }
+    rg_law_point p = law_point(s, &o, before);
+    rg_law_response r;
+    load_memory(s, memory, q, &state);
+    respond(&p, &state, &r);
+    for (int k = 0; k < memory; k++) {
+        store_where(memory_state(s, memory, q, k), acting, state.memory[k]);
+    }
     rg_vec touching = rg_select(o.normal < rg_splat(law->contact_below), o.normal, rg_splat(0.0));
-    rg_vec along = secant * rg_max(o.normal, rg_splat(0.0)) +
-                   rg_splat(law->flux ? 0.0 : 1.0) * normal_penalty(s) * touching;
-    rg_vec beta2 = rg_splat(law->beta * law->beta);
+    rg_vec along = r.normal + rg_splat(law->flux ? 0.0 : 1.0) * s->contact * touching;
     for (int c = 0; c < 3; c++) {
-        rg_vec t = secant * (beta2 * o.tangential[c]) + along * n[c];
+        rg_vec t = r.shear * (r.weight * o.tangential[c]) + along * n[c];
         s->total[q][c] = rg_select(acting, t, s->total[q][c]);
     }
     return closed;
 }
 
-static __attribute__((noinline)) void damaged(interface *s) {
+RG_INLINE void damaged(interface *s, law_respond *respond, int memory) {
     const rg_interface_args *args = s->args;
     size_t first = s->block * RG_LANES + (size_t)s->lane;
     vec3 n[RG_POINTS];
     rg_vec area[RG_POINTS];
-    s->area = rg_sqrt(s->area_square);
+    load_law(s);
     mid_surface(s, n, area);
     uint8_t broken[RG_VLEN], unlinked[RG_VLEN] = {0}, any = 0;
     memcpy(broken, args->broken + first, sizeof broken);
@@ -335,7 +410,7 @@ static __attribute__((noinline)) void damaged(interface *s) {
         set_bits(broken, q, cracked);
         rg_mask closed = {0};
         if (rg_any(cracked)) {
-            closed = broken_traction(s, q, n[q], cracked);
+            closed = broken_traction(s, q, n[q], cracked, respond, memory);
         }
         set_bits(unlinked, q, cracked & ~closed);
     }
@@ -349,6 +424,20 @@ static __attribute__((noinline)) void damaged(interface *s) {
     }
 }
 
+/* The same around each law. */
+#define RG_LAW(NAME, name, word, forms, work, separation, normal_slope, shear_slope, memory)                 \
+    static __attribute__((noinline)) void damaged_##name(interface *s) {                                     \
+        damaged(s, rg_##name##_respond, memory);                                                             \
+    }
+#include "cohesive_laws.h"
+#undef RG_LAW
+
+static void (*const damaged_by_law[])(interface *s) = {
+#define RG_LAW(NAME, name, ...) damaged_##name,
+#include "cohesive_laws.h"
+#undef RG_LAW
+};
+
 RG_INLINE void interface_vector(const rg_interface_args *args, size_t block, int lane, bool seam) {
     interface s;
     load_interface(&s, args, block, lane, seam);
@@ -356,7 +445,7 @@ RG_INLINE void interface_vector(const rg_interface_args *args, size_t block, int
     mean_traction(&s);
     dg_traction(&s);
     if (args->active[block] || any_to_test(&s)) {
-        damaged(&s);
+        damaged_by_law[args->law.law](&s);
     }
     store_nodal_force(&s);
 }
@@ -376,41 +465,63 @@ void RG_ISA_NAME(rg_interface)(const rg_interface_args *args, size_t begin, size
 /* ---- Energies ---- */
 
 RG_INLINE void broken_energy(const interface *s, int q, const vec3 n, rg_mask broken, rg_mask unlinked,
-                             rg_vec sum[RG_E_INTERFACE]) {
+                             rg_vec sum[RG_E_INTERFACE], law_energy *energy, int memory) {
     const rg_cohesive *law = &s->args->law;
     opening o;
     crack_opening(s, q, n, &o);
     rg_vec zero = {0}, weight = rg_splat(rg_tri[q / 3].weight);
-    rg_vec delta_max = rg_load(crack_state(s, q, RG_CRACK_OPENING));
-    rg_vec stored = 0.5 * s->area * rg_cohesive_secant(law, delta_max) * o.effective * o.effective;
-    rg_vec contact = 0.5 * normal_penalty(s) * o.normal * o.normal;
+    rg_law_state state = {.largest = rg_load(crack_state(s, q, RG_CRACK_OPENING))};
+    rg_law_point p = law_point(s, &o, state.largest);
+    rg_law_energy e;
+    load_memory(s, memory, q, &state);
+    energy(&p, &state, &e);
+    rg_vec contact = 0.5 * s->contact * o.normal * o.normal;
     rg_mask touching = law->flux ? (rg_mask){0} : broken & (o.normal < rg_splat(law->contact_below));
-    sum[RG_E_COHESIVE] += weight * rg_select(broken & unlinked, stored, zero);
+    sum[RG_E_COHESIVE] += weight * rg_select(broken & unlinked, e.stored, zero);
     sum[RG_E_CONTACT] += weight * rg_select(touching, contact, zero);
-    sum[RG_E_DISSIPATED] +=
-        weight * rg_select(broken, s->area * rg_cohesive_dissipated(law, delta_max), zero);
+    sum[RG_E_DISSIPATED] += weight * rg_select(broken, e.dissipated, zero);
 }
+
+RG_INLINE void crack_energy(interface *s, rg_vec sum[RG_E_INTERFACE], law_energy *energy, int memory) {
+    const rg_interface_args *args = s->args;
+    const uint8_t *broken = args->broken + s->block * RG_LANES + s->lane;
+    const uint8_t *unlinked = args->unlinked + s->block * RG_LANES + s->lane;
+    vec3 n[RG_POINTS];
+    rg_vec area[RG_POINTS];
+    load_law(s);
+    mid_surface(s, n, area);
+    for (int q = 0; q < RG_POINTS; q++) {
+        broken_energy(s, q, n[q], bit_mask(broken, q), bit_mask(unlinked, q), sum, energy, memory);
+    }
+}
+
+#define RG_LAW(NAME, name, word, forms, work, separation, normal_slope, shear_slope, memory)                 \
+    static __attribute__((noinline)) void energy_##name(interface *s, rg_vec sum[RG_E_INTERFACE]) {          \
+        crack_energy(s, sum, rg_##name##_energy, memory);                                                    \
+    }
+#include "cohesive_laws.h"
+#undef RG_LAW
+
+static void (*const energy_by_law[])(interface *s, rg_vec sum[RG_E_INTERFACE]) = {
+#define RG_LAW(NAME, name, ...) energy_##name,
+#include "cohesive_laws.h"
+#undef RG_LAW
+};
 
 RG_INLINE void state_vector(const rg_interface_state_args *args, size_t block, size_t row, int lane) {
     interface s;
     load_interface(&s, args->interface, block, lane, block >= args->interface->first_seam);
-    s.area = rg_sqrt(s.area_square);
     jump_at_points(&s);
-    vec3 n[RG_POINTS];
-    rg_vec area[RG_POINTS], sum[RG_E_INTERFACE] = {{0}};
-    const uint8_t *broken = s.args->broken + block * RG_LANES + lane;
+    rg_vec sum[RG_E_INTERFACE] = {{0}};
     const uint8_t *unlinked = s.args->unlinked + block * RG_LANES + lane;
-    if (s.args->active[block]) {
-        mid_surface(&s, n, area);
-    }
     for (int q = 0; q < RG_POINTS; q++) {
-        rg_mask gone = bit_mask(unlinked, q);
         rg_vec along = rg_dot(s.normal, s.jump[q]);
         rg_vec penalty = s.pen_iso * rg_dot(s.jump[q], s.jump[q]) + s.pen_norm * along * along;
-        sum[RG_E_PENALTY] += rg_select(gone, rg_splat(0.0), rg_splat(0.5 * rg_tri[q / 3].weight) * penalty);
-        if (s.args->active[block]) {
-            broken_energy(&s, q, n[q], bit_mask(broken, q), gone, sum);
-        }
+        sum[RG_E_PENALTY] +=
+            rg_select(bit_mask(unlinked, q), rg_splat(0.0), rg_splat(0.5 * rg_tri[q / 3].weight) * penalty);
+    }
+    if (s.args->active[block]) {
+        energy_by_law[s.args->law.law](&s, sum);
     }
     for (size_t k = 0; k < RG_E_INTERFACE; k++) {
         rg_store_wide(args->energy + (row * RG_E_INTERFACE + k) * RG_LANES + lane, sum[k]);

@@ -44,6 +44,20 @@ typedef struct {
     rg_real *stiffening; /* out: [block][lane], largest ratio of the acoustic tensor to its value at F = I */
 } rg_bulk_args;
 
+/* Cohesive laws (cohesive_laws.h); none: a point never breaks. */
+typedef enum {
+#define RG_LAW(NAME, ...) RG_LAW_##NAME,
+#include "cohesive_laws.h"
+#undef RG_LAW
+    RG_LAWS,
+    RG_LAW_NONE = RG_LAWS
+} rg_law;
+
+enum {
+    RG_LAW_SHAPE = 4,  /* parameters of its own that a law may have */
+    RG_LAW_MEMORY = 4, /* values that a point may remember besides its crack state */
+};
+
 /* 12-node interface. The area vector points from minus to plus, jump [u] = u+ - u-. Force on the minus side
  * is +g, on the plus side -g. */
 typedef struct {
@@ -54,11 +68,17 @@ typedef struct {
                              part */
     bool total;           /* activation: the law takes the total jump, not the jump since the switch */
     bool flux;            /* contact: all DG terms return on closure, not a one-sided penalty */
+    bool intrinsic;       /* every point is broken from the start and takes the total jump */
+    rg_law law;
+    double shape[RG_LAW_SHAPE]; /* the law's own parameters */
+    double separation;          /* effective opening of full separation (m) */
+    double slope; /* contact is at least so stiff (Pa/m): the law's own slope where it starts with one */
 } rg_cohesive;
 
 typedef struct {
     rg_cohesive law;
     double time;                  /* time of the state (s), recorded where a point switches */
+    double step;                  /* time since the state before (s) */
     const rg_real *u;             /* displacement (m) */
     const rg_real *traction;      /* area-weighted corner tractions of the tile's elements (N) */
     size_t first_seam;            /* blocks from here on are seams */
@@ -67,13 +87,15 @@ typedef struct {
     const rg_real *tractions;     /* seams: all traction rows of this rank (N) */
     const int32_t *side[2]; /* [interface]: links of the minus and plus side; of a seam, `side` and `other` */
     const rg_real *geom;    /* interface geometry */
-    uint8_t *broken;        /* [interface] in/out: bit q set where point q has switched */
+    const rg_real *scale; /* NULL: all faces alike; else [block][2][lane]: strength and critical opening over
+                             those of the law */
+    uint8_t *broken;      /* [interface] in/out: bit q set where point q has switched */
     uint8_t *unlinked; /* [interface] in/out: bit q set where point q has no DG terms (never set for a closed
                           point under flux contact) */
     uint8_t *active;   /* [block] in/out: not 0 where some lane of the block has a broken point */
     rg_real *crack;    /* crack state, in/out */
-    size_t crack_stride; /* values from one block's crack state to the next: RG_CRACK_BLOCK, or 0 to share
-                            one */
+    size_t crack_stride; /* values from one block's crack state to the next: RG_CRACK_BLOCK and the memory of
+                            the law, or 0 to share one */
     rg_real *force;      /* out: g, nodal force on the minus side (N) */
 } rg_interface_args;
 

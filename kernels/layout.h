@@ -18,7 +18,8 @@
  *   history of the material         [element block][4 points x values, RG_RELEASED][lane]
  *   interface geometry              [interface block][RG_IGEOM][lane]
  *   interface nodal force           [interface block][6 nodes][3][lane]
- *   crack state                     [interface block][6 points][RG_CRACK][lane]
+ *   crack state                     [interface block]: [6 points][RG_CRACK][lane], then
+ *                                   [6 points][memory of the law][lane]
  *   ghost traces                    [seam block][6 nodes][3][lane]
  *   trace rows, traction rows       [row][6 nodes][3], [row][3 corners][3]
  *
@@ -78,7 +79,7 @@ enum {                    /* interface geometry */
 enum { /* crack state of one interface point; meaningful only where the point's bit in `broken` is set */
        RG_CRACK_OPENING = 0, /* largest effective opening so far, delta_max (m) */
        RG_CRACK_ORIGIN = 1,  /* jump from which the opening is measured, 3 components (m) */
-       RG_CRACK_TIME = 4,    /* time at which the point switched (s) */
+       RG_CRACK_TIME = 4,    /* time at which the point switched, in the intrinsic form separated (s) */
        RG_CRACK = 5,
 };
 

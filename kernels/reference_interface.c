@@ -1,9 +1,12 @@
 /* Reference interface: DG terms where a point holds, the cohesive law and contact where it broke. */
 #include <math.h>
 #include "reference.h"
+#include "cohesive_facts.h"
+#include "reference_cohesive.h"
 
 /* One quadrature point, gathered. */
 typedef struct {
+    double strength, opening, contact; /* of the law here; stiffness of closed points, area-weighted */
     double weight, shape[RG_FNODES];
     double area, iso, norm; /* reference area and the two penalty factors, area-weighted */
     double jump[3];
@@ -18,6 +21,11 @@ typedef struct {
     double normal, shear[3]; /* normal opening (signed) and sliding */
     double effective;
 } opening;
+
+/* Crack state of a point, and the memory of its law. */
+typedef struct {
+    rg_real *state[RG_CRACK], *memory[RG_LAW_MEMORY];
+} crack;
 
 /* Whether side k of interface i is what `side[0]` names: the minus side, or the own one of a seam. */
 static bool is_first(const rg_interface_args *args, size_t i, int k) {
@@ -83,6 +91,15 @@ static void sample_surface(const rg_interface_args *args, size_t i, const double
     p->current = length / 2;
 }
 
+/* Parameters of the law on interface i. */
+static void sample_law(const rg_interface_args *args, size_t i, point *p) {
+    const rg_real *scale =
+        args->scale == NULL ? NULL : args->scale + i / RG_LANES * 2 * RG_LANES + i % RG_LANES;
+    p->strength = args->law.strength * (scale == NULL ? 1 : scale[0]);
+    p->opening = args->law.opening * (scale == NULL ? 1 : scale[RG_LANES]);
+    p->contact = fmax(p->iso + p->norm, args->law.slope * p->area);
+}
+
 static void sample(const rg_interface_args *args, size_t i, int q, point *p) {
     double l[3], edges[2][3], cross[3];
     *p = (point){.weight = rg_reference_face_point(q, l)};
@@ -94,6 +111,7 @@ static void sample(const rg_interface_args *args, size_t i, int q, point *p) {
     p->iso = args->geom[rg_igeom_index(i, RG_IGEOM_PEN_ISO)];
     p->norm = args->geom[rg_igeom_index(i, RG_IGEOM_PEN_NORM)] * p->area * p->area;
     rg_reference_face_shape(l, p->shape);
+    sample_law(args, i, p);
     for (int c = 0; c < 3; c++)
         for (int a = 0; a < RG_FNODES; a++)
             p->jump[c] += p->shape[a] * (side_value(args, i, 1, a, c) - side_value(args, i, 0, a, c));
@@ -120,7 +138,7 @@ static void sample_traction(const rg_interface_args *args, size_t i, int q, poin
 static bool breaks(const rg_cohesive *law, const point *p, double direction[3]) {
     double beta2 = law->beta * law->beta, shear[3];
     double weight = law->beta > 0 ? fmax(1, 1 / beta2) : 1;
-    double limit = law->strength * p->area;
+    double limit = p->strength * p->area;
     if (p->area == 0 || !isfinite(law->strength))
         return false;
     if (!(rg_reference_dot(p->traction, p->traction) * weight > 0.25 * limit * limit))
@@ -134,24 +152,24 @@ static bool breaks(const rg_cohesive *law, const point *p, double direction[3]) 
         effective = sqrt(pull * pull + rg_reference_dot(shear, shear) / beta2);
     for (int c = 0; c < 3; c++)
         direction[c] = law->beta > 0 ? (shear[c] / beta2 + pull * p->normal[c]) / effective : p->normal[c];
-    return effective > law->strength;
+    return effective > p->strength;
 }
 
 /* First crack state of a point. */
 static void activate(const rg_interface_args *args, const point *p, const double direction[3],
-                     rg_real *crack[RG_CRACK]) {
-    double onset = RG_ONSET * args->law.strength * p->area / (p->iso + p->norm);
-    *crack[RG_CRACK_OPENING] = args->law.total ? 0 : (rg_real)onset;
+                     const crack *k) {
+    double onset = RG_ONSET * p->strength * p->area / (p->iso + p->norm);
+    *k->state[RG_CRACK_OPENING] = args->law.total ? 0 : (rg_real)onset;
     for (int c = 0; c < 3; c++)
-        *crack[RG_CRACK_ORIGIN + c] = args->law.total ? 0 : (rg_real)(p->jump[c] - onset * direction[c]);
-    *crack[RG_CRACK_TIME] = (rg_real)args->time;
+        *k->state[RG_CRACK_ORIGIN + c] = args->law.total ? 0 : (rg_real)(p->jump[c] - onset * direction[c]);
+    *k->state[RG_CRACK_TIME] = (rg_real)args->time;
 }
 
-static opening measure(const rg_cohesive *law, const point *p, rg_real *const crack[RG_CRACK]) {
+static opening measure(const rg_cohesive *law, const point *p, const crack *k) {
     opening o = {0};
     double w[3];
     for (int c = 0; c < 3; c++)
-        w[c] = p->jump[c] - *crack[RG_CRACK_ORIGIN + c];
+        w[c] = p->jump[c] - *k->state[RG_CRACK_ORIGIN + c];
     o.normal = rg_reference_dot(w, p->normal);
     for (int c = 0; c < 3; c++)
         o.shear[c] = w[c] - o.normal * p->normal[c];
@@ -160,27 +178,56 @@ static opening measure(const rg_cohesive *law, const point *p, rg_real *const cr
     return o;
 }
 
-/* Slope of the line from the origin to the envelope at the largest opening (Pa/m). */
-static double secant(const rg_cohesive *law, double largest) {
-    return law->strength * fmax(0, 1 / fmax(largest, 1e-30) - 1 / law->opening);
+/* Asks the law; `before` is the largest opening before this state, `advance` whether its memory moves on. */
+static rg_law_answer ask(const rg_interface_args *args, const point *p, const opening *o, const crack *k,
+                         double before, bool advance) {
+    const rg_cohesive *law = &args->law;
+    rg_law_query query = {p->strength,
+                          p->opening,
+                          law->shape,
+                          law->beta,
+                          args->step,
+                          o->normal,
+                          sqrt(rg_reference_dot(o->shear, o->shear)),
+                          before};
+    int memory = rg_law_facts_of(law->law, law->shape, law->beta).memory;
+    double state[1 + RG_LAW_MEMORY] = {*k->state[RG_CRACK_OPENING]};
+    for (int m = 0; m < memory; m++)
+        state[1 + m] = *k->memory[m];
+    rg_law_answer answer = rg_reference_law(law->law, &query, state);
+    for (int m = 0; m < memory && advance; m++)
+        *k->memory[m] = (rg_real)state[1 + m];
+    return answer;
 }
 
 /* Cohesive traction and contact, area-weighted; keeps the largest opening. */
-static void cohesive(const rg_cohesive *law, const point *p, const opening *o, rg_real *largest,
+static void cohesive(const rg_interface_args *args, const point *p, const opening *o, const crack *k,
                      double t[3]) {
-    *largest = (rg_real)fmax(*largest, o->effective);
-    double s = secant(law, *largest);
+    const rg_cohesive *law = &args->law;
+    double before = *k->state[RG_CRACK_OPENING], largest = fmax(before, o->effective);
+    double parts = p->opening * (law->separation / law->opening);
+    *k->state[RG_CRACK_OPENING] = (rg_real)largest;
+    if (law->intrinsic && before < parts && largest >= parts)
+        *k->state[RG_CRACK_TIME] = (rg_real)args->time;
+    rg_law_answer a = ask(args, p, o, k, before, true);
+    double sliding = sqrt(rg_reference_dot(o->shear, o->shear));
     for (int c = 0; c < 3; c++) {
-        t[c] = p->area * s * (law->beta * law->beta * o->shear[c] + fmax(0, o->normal) * p->normal[c]);
+        double along = sliding > 0 ? o->shear[c] / sliding : 0;
+        t[c] = p->area * (a.sliding * along + a.normal * p->normal[c]);
         if (!law->flux && o->normal < law->contact_below)
-            t[c] += (p->iso + p->norm) * o->normal * p->normal[c];
+            t[c] += p->contact * o->normal * p->normal[c];
     }
 }
 
-static void crack_pointers(const rg_interface_args *args, size_t i, int q, rg_real *crack[RG_CRACK]) {
+static crack crack_of(const rg_interface_args *args, size_t i, int q) {
     rg_real *block = args->crack + i / RG_LANES * args->crack_stride;
+    int memory = rg_law_facts_of(args->law.law, args->law.shape, args->law.beta).memory;
+    crack found = {{NULL}, {NULL}};
     for (int k = 0; k < RG_CRACK; k++)
-        crack[k] = block + rg_crack_index(i % RG_LANES, q, k);
+        found.state[k] = block + rg_crack_index(i % RG_LANES, q, k);
+    for (int m = 0; m < memory; m++)
+        found.memory[m] = block + RG_CRACK_BLOCK + (size_t)(q * memory + m) * RG_LANES + i % RG_LANES;
+    return found;
 }
 
 static void set_bit(uint8_t *mask, int q, bool on) {
@@ -190,22 +237,21 @@ static void set_bit(uint8_t *mask, int q, bool on) {
 /* Traction of point q, area-weighted; advances its state. */
 static void point_traction(const rg_interface_args *args, size_t i, int q, const point *p, double t[3]) {
     double direction[3] = {0, 0, 0};
-    rg_real *crack[RG_CRACK];
     bool broken = args->broken[i] >> q & 1;
     for (int c = 0; c < 3; c++)
         t[c] = p->dg[c];
     if (!broken && !breaks(&args->law, p, direction))
         return;
-    crack_pointers(args, i, q, crack);
+    crack k = crack_of(args, i, q);
     if (!broken) {
-        activate(args, p, direction, crack);
+        activate(args, p, direction, &k);
         set_bit(&args->broken[i], q, true);
         args->active[i / RG_LANES] = 1;
     }
-    opening o = measure(&args->law, p, crack);
+    opening o = measure(&args->law, p, &k);
     bool closed = args->law.flux && o.normal < 0;
     if (!closed)
-        cohesive(&args->law, p, &o, crack[RG_CRACK_OPENING], t);
+        cohesive(args, p, &o, &k, t);
     set_bit(&args->unlinked[i], q, !closed);
 }
 
@@ -232,22 +278,20 @@ void rg_reference_interface(const rg_interface_args *args, size_t begin, size_t 
 static void point_energy(const rg_interface_args *args, size_t i, int q, double energy[RG_E_INTERFACE]) {
     const rg_cohesive *law = &args->law;
     bool broken = args->broken[i] >> q & 1, unlinked = args->unlinked[i] >> q & 1;
-    rg_real *crack[RG_CRACK];
     point p;
     sample(args, i, q, &p); /* without the traction dg is the penalty alone */
     if (!unlinked)
         energy[RG_E_PENALTY] += p.weight * rg_reference_dot(p.dg, p.jump) / 2;
     if (!broken)
         return;
-    crack_pointers(args, i, q, crack);
-    double largest = *crack[RG_CRACK_OPENING];
-    opening o = measure(law, &p, crack);
+    crack k = crack_of(args, i, q);
+    opening o = measure(law, &p, &k);
+    rg_law_answer a = ask(args, &p, &o, &k, *k.state[RG_CRACK_OPENING], false);
     if (unlinked)
-        energy[RG_E_COHESIVE] += p.weight * p.area * secant(law, largest) * o.effective * o.effective / 2;
+        energy[RG_E_COHESIVE] += p.weight * p.area * a.stored;
     if (!law->flux && o.normal < law->contact_below)
-        energy[RG_E_CONTACT] += p.weight * (p.iso + p.norm) * o.normal * o.normal / 2;
-    energy[RG_E_DISSIPATED] +=
-        p.weight * p.area * law->strength * law->opening / 2 * fmin(1, largest / law->opening);
+        energy[RG_E_CONTACT] += p.weight * p.contact * o.normal * o.normal / 2;
+    energy[RG_E_DISSIPATED] += p.weight * p.area * a.dissipated;
 }
 
 void rg_reference_interface_state(const rg_interface_state_args *args, size_t begin, size_t end) {

@@ -1,4 +1,4 @@
-/* Exponential functions of vectors of doubles, on top of the logarithm in vec.h. */
+/* Exponential functions of vectors, on top of the logarithm in vec.h. */
 #ifndef RG_VEC_MATH_H
 #define RG_VEC_MATH_H
 
@@ -9,7 +9,7 @@
 RG_INLINE rg_vec rg_polynomial(const double c[], int n, rg_vec x) {
     rg_vec part[8], power = x;
     for (int i = 0; i < n / 2; i++) {
-        part[i] = c[2 * i + 1] * x + c[2 * i];
+        part[i] = rg_splat(c[2 * i + 1]) * x + rg_splat(c[2 * i]);
     }
     if (n % 2 == 1) {
         part[n / 2] = rg_splat(c[n - 1]);
@@ -44,21 +44,33 @@ RG_INLINE rg_vec rg_min(rg_vec a, rg_vec b) {
     return -rg_max(-a, -b);
 }
 
+#ifdef RG_SINGLE
+enum { RG_EXP_TERMS = 7 };
+#define RG_EXP_LOW  -87.0
+#define RG_EXP_HIGH 88.0
+#else
+enum { RG_EXP_TERMS = 12 };
+#define RG_EXP_LOW  -708.0
+#define RG_EXP_HIGH 709.0
+#endif
+
 /* exp x = 2^k (1 + p) with x = k log 2 + r, |r| <= log(2)/2 and p = exp(r) - 1 by its Taylor series: the
- * first term left out is 4e-18. x is taken into [-708, 709], where 2^k is a normal number. */
+ * first term left out is 4e-18 (single: 2e-10). x is taken into [RG_EXP_LOW, RG_EXP_HIGH], where 2^k is a
+ * normal number. */
 RG_INLINE void rg_exp_parts(rg_vec x, rg_vec *power, rg_vec *p) {
     static const double c[] = {1.0 / 2,       1.0 / 6,        1.0 / 24,        1.0 / 120,
                                1.0 / 720,     1.0 / 5040,     1.0 / 40320,     1.0 / 362880,
                                1.0 / 3628800, 1.0 / 39916800, 1.0 / 479001600, 1.0 / 6227020800};
-    const double shift = 0x1.8p52; /* adding it leaves the integer part in the low bits */
-    rg_vec inside = rg_min(rg_max(x, rg_splat(-708.0)), rg_splat(709.0));
-    rg_vec shifted = inside * 0x1.71547652b82fep0 + shift, k = shifted - shift;
-    rg_vec r = (inside - k * 0x1.62e42fefa3800p-1) - k * 0x1.ef35793c76730p-45;
-    *p = rg_polynomial(c, 12, r) * (r * r) + r;
-    *power = (rg_vec)(((rg_mask)shifted << 52) + (rg_mask)rg_splat(1.0));
+    const rg_vec shift = rg_splat(RG_UNIT); /* adding it leaves the integer part in the low bits */
+    rg_vec inside = rg_min(rg_max(x, rg_splat(RG_EXP_LOW)), rg_splat(RG_EXP_HIGH));
+    rg_vec shifted = inside * rg_splat(0x1.71547652b82fep0) + shift, k = shifted - shift;
+    rg_vec r = (inside - k * rg_splat(RG_LOG2_HIGH)) - k * rg_splat(RG_LOG2_LOW);
+    *p = rg_polynomial(c, RG_EXP_TERMS, r) * (r * r) + r;
+    *power = (rg_vec)(((rg_mask)shifted << RG_MANTISSA) + (rg_mask)rg_splat(1.0));
 }
 
-/* exp x to 1 ulp or so; x beyond [-708, 709] counts as that end, also where x is not a number. */
+/* exp x to 1 ulp or so; x beyond [RG_EXP_LOW, RG_EXP_HIGH] counts as that end, also where x is not a number.
+ */
 RG_INLINE rg_vec rg_exp(rg_vec x) {
     rg_vec power, p;
     rg_exp_parts(x, &power, &p);
@@ -80,7 +92,7 @@ RG_INLINE rg_vec rg_log1p(rg_vec x) {
 
 /* x^y, x > 0. The relative error is that of the exponent, up to 1.5 |y log x| ulp. */
 RG_INLINE rg_vec rg_pow(rg_vec x, double y) {
-    return rg_exp(y * rg_log(x));
+    return rg_exp(rg_splat(y) * rg_log(x));
 }
 
 #endif

@@ -6,15 +6,15 @@
 #include <stdint.h>
 #include <stdio.h>
 
+#include "kernels.h"
 #include "materials.h"
 
 /* A value that may be a number or an expression in x, y, z (reference position, m) and t (s). */
 typedef struct rg_expr rg_expr;
 
 typedef enum { RG_INTERACTION_THESIS, RG_INTERACTION_DERIVED } rg_interaction;
-typedef enum { RG_FORM_VARIATIONAL, RG_FORM_INCOMPLETE } rg_form;
+typedef enum { RG_FORM_VARIATIONAL, RG_FORM_INCOMPLETE, RG_FORM_INTRINSIC } rg_form;
 typedef enum { RG_PENALTY_ELASTIC, RG_PENALTY_ISOTROPIC } rg_penalty;
-typedef enum { RG_LAW_NONE, RG_LAW_LINEAR } rg_law;
 typedef enum { RG_ACTIVATION_CONTINUOUS, RG_ACTIVATION_TOTAL } rg_activation;
 typedef enum { RG_CONTACT_PENALTY, RG_CONTACT_FLUX } rg_contact;
 typedef enum { RG_OUTPUT_DOUBLE, RG_OUTPUT_SINGLE } rg_output_precision;
@@ -94,6 +94,7 @@ typedef struct {
         double strength, energy, beta;
         rg_activation activation;
         rg_contact contact;
+        double shape[RG_LAWS][RG_LAW_SHAPE]; /* parameters of its own of each law */
     } interface;
     rg_mass mass;
     struct {

@@ -163,8 +163,12 @@ static const char *why_unused(const scan *s, const rg_key *key, char *text, size
     if (key->group == RG_GROUP_BOX) {
         return "cannot be given together with mesh.file";
     }
-    if (key->group == RG_GROUP_COHESIVE) {
-        return "not used, because interface.law is none";
+    if (key->models == 0) {
+        const rg_case *c = s->ck->c;
+        bool none = c->interface.law == RG_LAW_NONE;
+        bool form = key->group == RG_GROUP_DG || (key->group == RG_GROUP_SWITCH && !none);
+        snprintf(text, size, "not used, because interface.%s", form ? "form is intrinsic" : rg_law_is(c));
+        return text;
     }
     char words[160];
     const rg_key *model = rg_key_find(s->table, "material.model");
@@ -193,6 +197,9 @@ static rg_usage usage_of(const rg_check *ck, const rg_key *key) {
 
 static bool check_key(const scan *s, const rg_key *key, const rg_node *node, const char *path, void *base) {
     rg_usage usage = usage_of(s->ck, key);
+    if (key->group == RG_GROUP_LAW && usage == RG_USED && !rg_key_used(key, base)) {
+        usage = RG_UNUSED;
+    }
     if (node == NULL) {
         if (key->need == RG_NEED_REQUIRED && usage == RG_USED) {
             return missing(s, key, path);
@@ -231,9 +238,14 @@ static void learn_material(rg_check *ck, const rg_key *key, const rg_node *node,
 /* What the value of a key of the case says about others. */
 static void learn(rg_check *ck, const rg_key *key, const rg_node *node, bool good) {
     learn_material(ck, key, node, good);
-    if (key->offset == offsetof(rg_case, interface.law)) {
-        rg_usage usage = ck->c->interface.law == RG_LAW_NONE ? RG_UNUSED : RG_USED;
-        ck->usage[RG_GROUP_COHESIVE] = good ? usage : RG_UNSURE;
+    if (key->offset == offsetof(rg_case, interface.form)) {
+        bool intrinsic = ck->c->interface.form == RG_FORM_INTRINSIC;
+        ck->form = good;
+        ck->usage[RG_GROUP_DG] = !good ? RG_UNSURE : intrinsic ? RG_UNUSED : RG_USED;
+    } else if (key->offset == offsetof(rg_case, interface.law)) {
+        rg_law_rule(ck, node, good);
+    } else if (key->offset == offsetof(rg_case, interface.contact) && node != NULL && good) {
+        rg_contact_rule(ck, node);
     } else if (key->offset == offsetof(rg_case, mesh.file) && node != NULL) {
         ck->usage[RG_GROUP_BOX] = RG_UNUSED;
         ck->box = false;

@@ -12,6 +12,7 @@ typedef struct {
     rg_case *c;
     rg_usage usage[RG_GROUPS];
     bool box;               /* mesh.origin and mesh.size are good */
+    bool form;              /* interface.form is good */
     bool model;             /* material.model is good */
     bool flaws;             /* what the initial damage follows from is good */
     const rg_node *density; /* material.flaw_density; NULL: not there */
@@ -40,6 +41,15 @@ void rg_flaw_rule(rg_check *ck);
 void rg_fields_rule(rg_check *ck, const rg_key *key, const rg_node *node);
 /* Reports output times after the end of the run. */
 void rg_times_rule(rg_check *ck, const rg_node *node);
+
+/* Which keys of the interface are used, from form and law, which must fit each other. */
+void rg_law_rule(rg_check *ck, const rg_node *node, bool good);
+
+/* Contact `flux` brings DG terms back: form intrinsic has none. */
+void rg_contact_rule(rg_check *ck, const rg_node *node);
+
+/* "law is linear" */
+const char *rg_law_is(const rg_case *c);
 
 /* Rules that tie several keys together, applied to entry i of a list once its keys are read. `good`: all of
  * them were. An entry that is not is left so that later entries are not compared with it. */

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "case_expr.h"
+#include "cohesive_facts.h"
 #include "mem.h"
 
 #define CASE(member)   .offset = offsetof(rg_case, member)
@@ -21,7 +22,7 @@
 #define OPTIONAL       .need = RG_NEED_OPTIONAL
 #define DEFAULT(value) .need = RG_NEED_DEFAULT, .fallback = (value)
 #define BOX            .group = RG_GROUP_BOX
-#define COHESIVE       .group = RG_GROUP_COHESIVE
+#define GROUP(name)    .group = RG_GROUP_##name
 #define ELASTIC        .models = RG_MATERIAL_BIT_NEO_HOOKEAN
 #define CERAMIC        .models = RG_MATERIAL_BIT_DESHPANDE_EVANS
 #define FLAWS(member)  CERAMIC, CASE(material.deshpande_evans.member)
@@ -31,9 +32,13 @@
 #define MODEL_WORD(name, NAME, word, history, inside) word,
 static const char *const models[] = {RG_MATERIALS(MODEL_WORD) NULL};
 static const char *const interactions[] = {"thesis", "derived", NULL};
-static const char *const forms[] = {"variational", "incomplete", NULL};
+static const char *const forms[] = {"variational", "incomplete", "intrinsic", NULL};
 static const char *const penalties[] = {"elastic", "isotropic", NULL};
-static const char *const laws[] = {"none", "linear", NULL};
+static const char *const laws[] = {
+#define RG_LAW(NAME, name, word, ...) word,
+#include "cohesive_laws.h"
+#undef RG_LAW
+    "none", NULL};
 static const char *const activations[] = {"continuous", "total", NULL};
 static const char *const contacts[] = {"penalty", "flux", NULL};
 static const char *const precisions[] = {"double", "single", NULL};
@@ -87,14 +92,23 @@ static const rg_key case_keys[] = {
 
     {.name = "interface.form", CHOICE(forms), DEFAULT(RG_FORM_VARIATIONAL), CASE(interface.form)},
     {.name = "interface.beta_s", REAL, ABOVE(0), DEFAULT(4), CASE(interface.beta_s)},
-    {.name = "interface.penalty", CHOICE(penalties), DEFAULT(RG_PENALTY_ELASTIC), CASE(interface.penalty)},
+    {.name = "interface.penalty", CHOICE(penalties), DEFAULT(RG_PENALTY_ELASTIC), GROUP(DG),
+     CASE(interface.penalty)},
     {.name = "interface.law", CHOICE(laws), REQUIRED, CASE(interface.law)},
-    {.name = "interface.strength", .unit = "Pa", REAL, ABOVE(0), REQUIRED, COHESIVE, CASE(interface.strength)},
-    {.name = "interface.energy", .unit = "J/m2", REAL, ABOVE(0), REQUIRED, COHESIVE, CASE(interface.energy)},
-    {.name = "interface.beta", REAL, FROM(0), DEFAULT(1), COHESIVE, CASE(interface.beta)},
-    {.name = "interface.activation", CHOICE(activations), DEFAULT(RG_ACTIVATION_CONTINUOUS), COHESIVE,
+    {.name = "interface.strength", .unit = "Pa", REAL, ABOVE(0), REQUIRED, GROUP(COHESIVE),
+     CASE(interface.strength)},
+    {.name = "interface.energy", .unit = "J/m2", REAL, ABOVE(0), REQUIRED, GROUP(ENERGY),
+     CASE(interface.energy)},
+    {.name = "interface.beta", REAL, FROM(0), DEFAULT(1), GROUP(SHEAR), CASE(interface.beta)},
+    {.name = "interface.activation", CHOICE(activations), DEFAULT(RG_ACTIVATION_CONTINUOUS), GROUP(SWITCH),
      CASE(interface.activation)},
-    {.name = "interface.contact", CHOICE(contacts), DEFAULT(RG_CONTACT_PENALTY), COHESIVE, CASE(interface.contact)},
+    {.name = "interface.contact", CHOICE(contacts), DEFAULT(RG_CONTACT_PENALTY), GROUP(COHESIVE),
+     CASE(interface.contact)},
+#define RG_LAW_PARAMETER(NAME, index, word, unit_, low_, high_, fallback_)                                   \
+    {.name = word, .unit = unit_, REAL, FROM_TO(low_, high_), DEFAULT(fallback_), GROUP(LAW),                \
+     .law = RG_LAW_##NAME, CASE(interface.shape[RG_LAW_##NAME][index])},
+#include "cohesive_laws.h"
+#undef RG_LAW_PARAMETER
 
     {.name = "mass", CHOICE(masses), DEFAULT(RG_DEFAULT_MASS), CASE(mass)},
 
@@ -266,6 +280,24 @@ void rg_models_words(const rg_key *key, char *text, size_t size) {
 
 /* ---- look-up ---- */
 
+bool rg_group_used(rg_key_group group, const rg_case *c) {
+    rg_law law = c->interface.law;
+    bool breaks = law != RG_LAW_NONE, intrinsic = c->interface.form == RG_FORM_INTRINSIC;
+    rg_law_facts facts = breaks ? rg_law_facts_of(law, c->interface.shape[law], 1) : (rg_law_facts){0};
+    switch (group) {
+    case RG_GROUP_ENERGY:
+        return facts.work > 0;
+    case RG_GROUP_SHEAR:
+        return breaks && (facts.forms & RG_NORMAL_MEASURE) == 0;
+    case RG_GROUP_DG:
+        return !intrinsic;
+    case RG_GROUP_SWITCH:
+        return breaks && !intrinsic;
+    default:
+        return breaks;
+    }
+}
+
 bool rg_key_used(const rg_key *key, const void *base) {
     if (key->models != 0 && (key->models >> ((const rg_case *)base)->material.model & 1U) == 0) {
         return false;
@@ -274,7 +306,13 @@ bool rg_key_used(const rg_key *key, const void *base) {
     case RG_GROUP_BOX:
         return ((const rg_case *)base)->mesh.file == NULL;
     case RG_GROUP_COHESIVE:
-        return ((const rg_case *)base)->interface.law != RG_LAW_NONE;
+    case RG_GROUP_ENERGY:
+    case RG_GROUP_SHEAR:
+    case RG_GROUP_DG:
+    case RG_GROUP_SWITCH:
+        return rg_group_used(key->group, base);
+    case RG_GROUP_LAW:
+        return ((const rg_case *)base)->interface.law == key->law;
     case RG_GROUP_VELOCITY:
         return !((const rg_boundary *)base)->is_displacement;
     case RG_GROUP_DISPLACEMENT:

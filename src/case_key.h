@@ -39,6 +39,11 @@ typedef enum {
     RG_GROUP_ALWAYS,
     RG_GROUP_BOX,          /* unless mesh.file */
     RG_GROUP_COHESIVE,     /* unless interface.law is none */
+    RG_GROUP_ENERGY,       /* if the law has a work of separation */
+    RG_GROUP_SHEAR,        /* if the law has an effective opening */
+    RG_GROUP_LAW,          /* if interface.law is the key's `law` */
+    RG_GROUP_DG,           /* unless interface.form is intrinsic */
+    RG_GROUP_SWITCH,       /* if points switch from DG to a law: neither of these */
     RG_GROUP_VELOCITY,     /* boundary entries: one of the two */
     RG_GROUP_DISPLACEMENT, /* the other */
     RG_GROUPS,
@@ -60,6 +65,7 @@ typedef struct {
     bool may_change;           /* on a restart: nothing that was computed depends on it */
     const char *const *choice; /* NULL-terminated; of a text: with the built-in mesh only */
     double fallback;
+    rg_law law;                       /* of a parameter of one law (RG_GROUP_LAW) */
     size_t offset;                    /* of the value in the structure */
     const struct rg_key_table *entry; /* of a list */
     size_t offset_count;              /* of lists: where their length (int) is kept */
@@ -84,6 +90,9 @@ void rg_models_words(const rg_key *key, char *text, size_t size);
 
 /* Whether the key is used in the filled structure `base`. */
 bool rg_key_used(const rg_key *key, const void *base);
+
+/* The same for a group that follows from law and form (RG_GROUP_COHESIVE to RG_GROUP_SWITCH). */
+bool rg_group_used(rg_key_group group, const rg_case *c);
 
 /* The key with exactly this name, or NULL. */
 const rg_key *rg_key_find(const rg_key_table *table, const char *name);

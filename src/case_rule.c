@@ -5,6 +5,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "cohesive_facts.h"
 #include "mem.h"
 
 /* ---- mesh.file: relative to the case file, which case.yaml in the output directory is not ---- */
@@ -34,6 +35,69 @@ void rg_times_rule(rg_check *ck, const rg_node *node) {
     if (c->time.end > 0 && c->output.time[last] > c->time.end) {
         rg_subject subject = {.key = "output.times", .value = node->child[last].text};
         rg_problem_add(ck->problems, node->child[last].at, &subject, "after time.end, %g s", c->time.end);
+    }
+}
+
+/* ---- interface: law and form ---- */
+
+static const char *law_word(rg_law law) {
+    return law == RG_LAW_NONE ? "none" : rg_law_facts_of(law, (double[RG_LAW_SHAPE]){0}, 1).word;
+}
+
+static int forms_of(rg_law law) {
+    return law == RG_LAW_NONE ? RG_FORMS_DG : rg_law_facts_of(law, (double[RG_LAW_SHAPE]){0}, 1).forms;
+}
+
+const char *rg_law_is(const rg_case *c) {
+    static char text[64];
+    snprintf(text, sizeof text, "law is %s", law_word(c->interface.law));
+    return text;
+}
+
+/* "with form intrinsic: free, exponential" */
+static void laws_of_form(bool intrinsic, char *text, size_t size) {
+    int used = snprintf(text, size, "with form %s:", intrinsic ? "intrinsic" : "variational or incomplete");
+    const char *join = " ";
+    for (int law = 0; law <= (int)RG_LAWS && (size_t)used < size; law++) {
+        if ((forms_of((rg_law)law) & (intrinsic ? RG_FORMS_INTRINSIC : RG_FORMS_DG)) != 0) {
+            used += snprintf(text + used, size - (size_t)used, "%s%s", join, law_word((rg_law)law));
+            join = ", ";
+        }
+    }
+}
+
+static void check_law_and_form(rg_check *ck, const rg_node *node) {
+    bool intrinsic = ck->c->interface.form == RG_FORM_INTRINSIC;
+    rg_law law = ck->c->interface.law;
+    if ((forms_of(law) & (intrinsic ? RG_FORMS_INTRINSIC : RG_FORMS_DG)) == 0) {
+        char allowed[256];
+        laws_of_form(intrinsic, allowed, sizeof allowed);
+        rg_subject subject = {.key = "interface.law", .value = law_word(law), .allowed = allowed};
+        rg_problem_add(ck->problems, node->at, &subject, "%s",
+                       intrinsic ? "does not start with a slope, which form intrinsic needs"
+                                 : "starts with a slope, which only form intrinsic can use");
+    }
+}
+
+void rg_law_rule(rg_check *ck, const rg_node *node, bool good) {
+    static const rg_key_group groups[] = {RG_GROUP_COHESIVE, RG_GROUP_ENERGY, RG_GROUP_SHEAR, RG_GROUP_LAW,
+                                          RG_GROUP_SWITCH};
+    for (size_t i = 0; i < sizeof groups / sizeof *groups; i++) {
+        bool sure = good && (ck->form || groups[i] != RG_GROUP_SWITCH);
+        ck->usage[groups[i]] = !sure ? RG_UNSURE : rg_group_used(groups[i], ck->c) ? RG_USED : RG_UNUSED;
+    }
+    if (good && ck->form) {
+        check_law_and_form(ck, node);
+    }
+}
+
+void rg_contact_rule(rg_check *ck, const rg_node *node) {
+    if (ck->form && ck->c->interface.form == RG_FORM_INTRINSIC &&
+        ck->c->interface.contact == RG_CONTACT_FLUX) {
+        rg_subject subject = {
+            .key = "interface.contact", .value = "flux", .allowed = "with form intrinsic: penalty"};
+        rg_problem_add(ck->problems, node->at, &subject,
+                       "brings DG terms back, which form intrinsic does not have");
     }
 }
 

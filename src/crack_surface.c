@@ -10,7 +10,7 @@ double rg_damage(const rg_solver *s, size_t i, int q) {
     if (!(s->broken[i] >> q & 1)) {
         return 0;
     }
-    return fmin(1, s->crack[rg_crack_index(i, q, RG_CRACK_OPENING)] / s->law.opening);
+    return fmin(1, *rg_crack_value(s, i, q, RG_CRACK_OPENING) / rg_separation(s, i));
 }
 
 static void corners(const rg_solver *s, const rg_tile *t, size_t i, double x[3][3]) {
@@ -67,8 +67,8 @@ static rg_crack_face crack_face(const rg_solver *s, const rg_tile *t, size_t i) 
     f.slip = sqrt(fmax(0, square - f.opening * f.opening));
     for (int q = 0; q < RG_POINTS; q++) {
         f.damage += weight[q / 3] * rg_damage(s, i, q);
-        if (s->broken[i] >> q & 1) {
-            f.time = fmin(f.time, s->crack[rg_crack_index(i, q, RG_CRACK_TIME)]);
+        if (rg_point_is_broken(s, i, q)) {
+            f.time = fmin(f.time, *rg_crack_value(s, i, q, RG_CRACK_TIME));
         }
     }
     return f;
@@ -78,13 +78,13 @@ size_t rg_crack_surface(const rg_solver *s, rg_crack_face **faces) {
     const rg_domain *d = s->domain;
     size_t count = 0;
     for (size_t i = 0; i < d->iblocks * RG_LANES; i++) {
-        count += s->broken[i] && d->counted[i];
+        count += d->counted[i] && rg_face_is_broken(s, i);
     }
     *faces = RG_NEW(rg_crack_face, count + 1);
     size_t n = 0;
     for (size_t t = 0; t < d->tiles; t++) {
         for (size_t i = d->tile[t].ibegin * RG_LANES; i < d->tile[t].iend * RG_LANES; i++) {
-            if (s->broken[i] && d->counted[i]) {
+            if (d->counted[i] && rg_face_is_broken(s, i)) {
                 (*faces)[n++] = crack_face(s, &d->tile[t], i);
             }
         }

@@ -41,7 +41,7 @@ static double largest_edge(const rg_solver *s) {
 
 /* Of the fields, or at most: with cracks everywhere and the three buffers of field output. */
 static double bytes_per_element(const rg_solver *s, bool at_most) {
-    double crack = (double)s->domain->iblocks * RG_CRACK_BLOCK * sizeof *s->crack;
+    double crack = (double)s->domain->iblocks * (double)s->crack_stride * sizeof *s->crack;
     double now = (double)rg_alloc_total(), elements = (double)s->domain->elements;
     double output = s->input->output.fields == 0 ? 0 : 3 * RG_NODES * 3 * sizeof(double) * elements;
     double sum[2] = {now + (at_most ? output : -crack), elements};

@@ -81,9 +81,9 @@ static void add_areas(rg_exact_sum sum[SUMS], const rg_solver *s, size_t i) {
     static const double weight[2] = {RG_TRI_W0, RG_TRI_W1};
     double normal[3], area = rg_interface_area(s->domain, i, normal);
     for (int q = 0; q < RG_POINTS; q++) {
-        if (s->broken[i] >> q & 1) {
+        if (rg_point_is_broken(s, i, q)) {
             rg_exact_add(&sum[BROKEN], weight[q / 3] * area);
-            bool failed = s->crack[rg_crack_index(i, q, RG_CRACK_OPENING)] >= s->law.opening;
+            bool failed = *rg_crack_value(s, i, q, RG_CRACK_OPENING) >= rg_separation(s, i);
             rg_exact_add(&sum[FAILED], failed ? weight[q / 3] * area : 0);
         }
     }
@@ -181,8 +181,8 @@ double rg_first_fracture(const rg_solver *s) {
     double first = INFINITY;
     for (size_t i = 0; i < s->domain->iblocks * RG_LANES; i++) {
         for (int q = 0; s->broken[i] && q < RG_POINTS; q++) {
-            if (s->broken[i] >> q & 1) {
-                first = fmin(first, s->crack[rg_crack_index(i, q, RG_CRACK_TIME)]);
+            if (rg_point_is_broken(s, i, q)) {
+                first = fmin(first, *rg_crack_value(s, i, q, RG_CRACK_TIME));
             }
         }
     }

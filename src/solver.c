@@ -6,6 +6,7 @@
 
 #include "element.h"
 #include "error.h"
+#include "law.h"
 #include "material.h"
 #include "interrupt.h"
 #include "mem.h"
@@ -27,8 +28,8 @@ static void allocate_fields(rg_solver *s) {
     s->now = RG_NEW(rg_real, blocks * RG_NODE_BLOCK);
     s->stiffening = RG_NEW(rg_real, blocks * RG_LANES);
     s->tile_stiffening = RG_NEW(rg_real, d->tiles);
-    s->crack = rg_alloc_sparse(d->iblocks * RG_CRACK_BLOCK, sizeof *s->crack);
-    s->crack_stride = RG_CRACK_BLOCK;
+    s->crack_stride = rg_crack_stride(&s->law);
+    s->crack = rg_alloc_sparse(d->iblocks * s->crack_stride, sizeof *s->crack);
     s->history = s->histories > 0 ? RG_NEW(rg_real, rg_solver_history(s)) : NULL;
     s->cracked = RG_NEW(uint8_t, blocks);
     s->broken = RG_NEW(uint8_t, d->iblocks * RG_LANES);
@@ -74,15 +75,6 @@ static void place_fields(rg_solver *s) {
     }
 }
 
-static rg_cohesive make_law(const rg_case *c) {
-    bool breaks = c->interface.law != RG_LAW_NONE;
-    return (rg_cohesive){.strength = breaks ? c->interface.strength : INFINITY,
-                         .opening = breaks ? 2 * c->interface.energy / c->interface.strength : 1,
-                         .beta = c->interface.beta,
-                         .total = c->interface.activation == RG_ACTIVATION_TOTAL,
-                         .flux = c->interface.contact == RG_CONTACT_FLUX};
-}
-
 static void select_kernels(rg_solver *s) {
     s->kernels = rg_kernels_select();
     if (s->kernels == NULL && s->rank > 0) {
@@ -103,7 +95,7 @@ rg_solver *rg_solver_make_from_part(const rg_case *input, rg_part *part, MPI_Com
                      .limiting = -1,
                      .material = rg_material_of_case(input),
                      .histories = rg_material_history(input->material.model),
-                     .law = make_law(input),
+                     .law = rg_law_make(input),
                      .lift = input->interface.form == RG_FORM_VARIATIONAL,
                      .lumped = input->mass == RG_MASS_LUMPED};
     MPI_Comm_rank(comm, &s->rank);
@@ -118,6 +110,7 @@ rg_solver *rg_solver_make_from_part(const rg_case *input, rg_part *part, MPI_Com
     s->bodies = rg_bodies_make(input, s->domain, s->part, &s->material, s->threads, comm);
     allocate_fields(s);
     place_fields(s);
+    rg_law_start(s);
     for (int k = 0; k < 2; k++) {
         s->halo_u[k] = rg_halo_make(s->domain, RG_TRACE_ROW, s->rows[k], 1 + k, comm);
     }
@@ -380,7 +373,7 @@ static void set_initial(rg_solver *s) {
 /* The stiffening of the initial state, with faces that cannot break yet. */
 static void measure(rg_solver *s) {
     rg_cohesive law = s->law;
-    s->law.strength = INFINITY;
+    s->law.strength = law.intrinsic ? law.strength : INFINITY;
     rg_solver_impulse(s, s->now, 0);
     s->law = law;
 }

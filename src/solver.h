@@ -40,8 +40,8 @@ struct rg_solver {
     rg_domain *domain;
 
     rg_real *u, *velocity, *now; /* layout.h; now: velocity at the time of u, where it was asked for */
-    rg_real *crack;
-    size_t crack_stride;
+    rg_real *crack;              /* state of all broken points, and the memory of their law: layout.h */
+    size_t crack_stride;         /* values of a block of interfaces */
     rg_real *history; /* layout.h: of the material, `histories` values a point; NULL where that is 0 */
     int histories;
     rg_real *stiffening; /* [blocks][lane] */

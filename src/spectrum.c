@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "hash.h"
+#include "law.h"
 #include "mem.h"
 #include "patch.h"
 
@@ -271,15 +272,15 @@ static rg_gid limiting_element(const linear_operator *op, const lanczos *known, 
 
 /* ---- States of the faces ---- */
 
-typedef enum { INTACT, CLOSED, STATES } state;
-static const char *const state_name[] = {"intact", "broken and closed"};
+typedef enum { INTACT, CLOSED, COHESIVE, STATES } state;
+static const char *const state_name[] = {"intact", "broken and closed", "cohesive and closed"};
 
-/* Puts the faces into a state, or (INTACT) back as they were. `shared` is one block of crack state for all.
- */
-static void set_state(rg_solver *s, state which, rg_real *shared) {
+/* Puts the faces into a state, or (INTACT) back as they were in the DG forms. `sliding` is the stiffness of
+ * sliding of the intrinsic form; `shared` is one block of crack state for all. */
+static void set_state(rg_solver *s, state which, double sliding, rg_real *shared) {
     const rg_domain *d = s->domain;
-    memset(s->broken, which == CLOSED ? (1 << RG_POINTS) - 1 : 0, d->iblocks * RG_LANES);
-    memset(s->unlinked, which == CLOSED ? (1 << RG_POINTS) - 1 : 0, d->iblocks * RG_LANES);
+    memset(s->broken, which != INTACT ? (1 << RG_POINTS) - 1 : 0, d->iblocks * RG_LANES);
+    memset(s->unlinked, which != INTACT ? (1 << RG_POINTS) - 1 : 0, d->iblocks * RG_LANES);
     memset(s->active, which != INTACT, d->iblocks);
     memset(s->cracked, which != INTACT, d->blocks);
     for (size_t q = 0; q < RG_POINTS; q++) {
@@ -293,6 +294,10 @@ static void set_state(rg_solver *s, state which, rg_real *shared) {
     s->law.strength = 1e300; /* never reached */
     s->law.contact_below = INFINITY;
     s->law.flux = false;
+    if (which == COHESIVE) { /* contact, no softer than the law, both ways; the law's own slope in sliding */
+        s->law.law = RG_LAW_FREE;
+        memcpy(s->law.shape, (double[RG_LAW_SHAPE]){0, sliding}, sizeof s->law.shape);
+    }
 }
 
 static double smallest_height(const rg_solver *s) {
@@ -330,11 +335,16 @@ void rg_spectrum_whole(rg_solver *s) {
     rg_real *shared = RG_NEW(rg_real, RG_CRACK_BLOCK);
     double worst = 0;
     bool closes = s->input->interface.law != RG_LAW_NONE && s->input->interface.contact != RG_CONTACT_FLUX;
+    state first = law.intrinsic ? COHESIVE : INTACT, last = law.intrinsic ? COHESIVE
+                                                            : closes      ? CLOSED
+                                                                          : INTACT;
     lanczos run[STATES] = {{0}};
-    state limiting = INTACT;
-    for (state which = INTACT; which < (closes ? STATES : 1); which++) {
-        set_state(s, which, shared);
-        bool symmetric = s->lift || which == CLOSED;
+    state limiting = first;
+    double slope[2];
+    rg_law_stiffness(&law, slope);
+    for (state which = first; which <= last; which++) {
+        set_state(s, which, slope[1], shared);
+        bool symmetric = s->lift || which != INTACT;
         double theta = symmetric ? lanczos_eigenvalue(&op, &run[which]) : power_eigenvalue(&op);
         if (theta > worst) {
             worst = theta;
@@ -343,13 +353,14 @@ void rg_spectrum_whole(rg_solver *s) {
     }
     s->omega2 = worst * op.scale * (1 + MARGIN);
     s->limiting_state = state_name[limiting];
-    set_state(s, limiting, shared);
+    set_state(s, limiting, slope[1], shared);
     s->limiting = limiting_element(&op, &run[limiting], worst);
-    set_state(s, INTACT, shared);
+    set_state(s, INTACT, 0, shared);
     s->law = law;
     s->crack = crack;
     s->material.model = model;
-    s->crack_stride = RG_CRACK_BLOCK;
+    s->crack_stride = rg_crack_stride(&law);
+    rg_law_start(s);
     rest(s);
     rg_free(shared);
 }
@@ -376,7 +387,10 @@ void rg_spectrum(rg_solver *s) {
     if (s->rank == 0) {
         patch_spectrum(s);
     }
-    int which = s->limiting_state == state_name[CLOSED] ? CLOSED : INTACT;
+    int which = INTACT;
+    while (s->rank == 0 && s->limiting_state != state_name[which]) {
+        which++;
+    }
     MPI_Bcast(&s->omega2, 1, MPI_DOUBLE, 0, s->comm);
     MPI_Bcast(&s->limiting, 1, MPI_INT64_T, 0, s->comm);
     MPI_Bcast(&which, 1, MPI_INT, 0, s->comm);

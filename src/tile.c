@@ -42,6 +42,7 @@ rg_interface_args rg_tile_interfaces(const rg_solver *s, const rg_tile *t, const
     size_t first = t->ibegin * RG_LANES;
     return (rg_interface_args){.law = s->law,
                                .time = s->time,
+                               .step = s->dt,
                                .u = s->u + t->begin * RG_NODE_BLOCK,
                                .traction = w->traction,
                                .first_seam = rg_tile_inside(t),
@@ -56,6 +57,26 @@ rg_interface_args rg_tile_interfaces(const rg_solver *s, const rg_tile *t, const
                                .crack = s->crack + t->ibegin * s->crack_stride,
                                .crack_stride = s->crack_stride,
                                .force = w->iforce};
+}
+
+double rg_separation(const rg_solver *s, size_t i) {
+    (void)i;
+    return s->law.separation;
+}
+
+bool rg_point_is_broken(const rg_solver *s, size_t i, int q) {
+    bool cohesive = s->broken[i] >> q & 1;
+    return cohesive &&
+           (!s->law.intrinsic || *rg_crack_value(s, i, q, RG_CRACK_OPENING) >= rg_separation(s, i));
+}
+
+bool rg_face_is_broken(const rg_solver *s, size_t i) {
+    for (int q = 0; s->broken[i] && q < RG_POINTS; q++) {
+        if (rg_point_is_broken(s, i, q)) {
+            return true;
+        }
+    }
+    return false;
 }
 
 void rg_tile_receive(const rg_solver *s, const rg_tile *t, const rg_workspace *w) {

@@ -26,6 +26,21 @@ rg_trace_args rg_tile_traces(const rg_solver *s, const rg_tile *t, const rg_work
 rg_bulk_args rg_tile_bulk(const rg_solver *s, const rg_tile *t, const rg_workspace *w);
 rg_interface_args rg_tile_interfaces(const rg_solver *s, const rg_tile *t, const rg_workspace *w);
 
+/* Value k (RG_CRACK_OPENING...) of the crack state of point q of interface i. */
+static inline rg_real *rg_crack_value(const rg_solver *s, size_t i, int q, int k) {
+    return s->crack + i / RG_LANES * s->crack_stride + rg_crack_index(i % RG_LANES, q, k);
+}
+
+/* Whether point q of interface i is broken: it has switched to its law, or in the intrinsic form, where all
+ * points follow theirs from the start, it is fully separated. */
+bool rg_point_is_broken(const rg_solver *s, size_t i, int q);
+
+/* Opening of full separation at interface i (m). */
+double rg_separation(const rg_solver *s, size_t i);
+
+/* Some point of interface i is broken. */
+bool rg_face_is_broken(const rg_solver *s, size_t i);
+
 /* Collects the traces of the tile's other sides into the workspace. */
 void rg_tile_receive(const rg_solver *s, const rg_tile *t, const rg_workspace *w);
 

@@ -413,12 +413,17 @@ rg_interface_args input_interface_args(const input *in, uint8_t *broken, uint8_t
     };
 }
 
-/* strength, opening, beta, contact_below, total, flux */
+#define LINEAR .strength = 4e8, .opening = 1.7e-7, .separation = 1.7e-7
+
 const rg_cohesive input_laws[INPUT_LAWS] = {
-    {4e8, 1.7e-7, 1, 0, false, false},  {4e8, 1.7e-7, 0, 0, false, false},
-    {4e8, 1.7e-7, 2, 0, true, false},   {4e8, 1.7e-7, 0.5, 0, false, true},
-    {4e8, 1.7e-7, 0, 0, true, true},    {4e8, 1.7e-7, 2, 0, true, true},
-    {4e8, 1.7e-7, 1.5, 0, false, true}, {4e8, 1.7e-7, 1, INFINITY, false, false},
+    {LINEAR, .beta = 1},
+    {LINEAR, .beta = 0},
+    {LINEAR, .beta = 2, .total = true},
+    {LINEAR, .beta = 0.5, .flux = true},
+    {LINEAR, .beta = 0, .total = true, .flux = true},
+    {LINEAR, .beta = 2, .total = true, .flux = true},
+    {LINEAR, .beta = 1.5, .flux = true},
+    {LINEAR, .beta = 1, .contact_below = INFINITY},
 };
 
 void input_for_each_case(void (*test)(const rg_kernels *set, input_kind kind, rg_cohesive law)) {

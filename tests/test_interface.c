@@ -399,8 +399,12 @@ static void expect_point(const rg_kernels *set, const scenario *s, const bench *
 }
 
 static void check_scenario(const rg_kernels *set, const scenario *s, double up, view v) {
-    const rg_cohesive law = {s->strong ? INFINITY : SIGMA, DELTA,    s->beta,
-                             s->linear ? INFINITY : 0,     s->total, s->flux};
+    const rg_cohesive law = {.strength = s->strong ? INFINITY : SIGMA,
+                             .opening = DELTA,
+                             .beta = s->beta,
+                             .contact_below = s->linear ? INFINITY : 0,
+                             .total = s->total,
+                             .flux = s->flux};
     const double pull[3] = {s->pull[1], 0, up * s->pull[0]}, jump[3] = {s->jump[1], 0, up * s->jump[0]};
     const double traction[3] = {s->traction[1], 0, up * s->traction[0]};
     bench b;
@@ -449,7 +453,7 @@ static bool breaks(const rg_kernels *set, double beta, const double g[3][3], con
     int broken = 0;
     for (int v = 0; v < VIEWS; v++) {
         bench b;
-        bench_make(&b, (rg_cohesive){SIGMA, DELTA, beta, 0, false, false}, 1, (view)v);
+        bench_make(&b, (rg_cohesive){.strength = SIGMA, .opening = DELTA, .beta = beta}, 1, (view)v);
         bench_deform(&b, g);
         bench_load(&b, pull, no_jump);
         bench_run(&b, set);

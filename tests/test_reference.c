@@ -128,7 +128,7 @@ static void check_gradient(const rg_kernels *set, input *in) {
     body_free(&b);
 }
 
-static const rg_cohesive unbreakable = {INFINITY, 1, 1, 0, false, false};
+static const rg_cohesive unbreakable = {.strength = INFINITY, .opening = 1, .beta = 1};
 
 static void check_intact_gradient(const rg_kernels *set) {
     for (int kind = 0; kind < 2; kind++)
@@ -168,7 +168,7 @@ static void break_some(input *in) {
 }
 
 static void check_broken_gradient(const rg_kernels *set) {
-    const rg_cohesive law = {2e10, 5e-6, 1, 0, false, false}; /* strong: no further point breaks */
+    const rg_cohesive law = {.strength = 2e10, .opening = 5e-6, .beta = 1}; /* no further point breaks */
     input *in = input_make(INPUT_SMALL, law, 3, 1);
     set_smooth(in, 2e-7);
     break_some(in);

@@ -1,0 +1,39 @@
+/* The cohesive laws as scalars, straight after their equations; each law's function is in its own file
+ * (cohesive_laws.h). */
+#ifndef RG_REFERENCE_COHESIVE_H
+#define RG_REFERENCE_COHESIVE_H
+
+#include <math.h>
+
+#include "kernels.h"
+
+typedef struct {
+    double strength, opening; /* sigma_c (Pa), delta_c (m) */
+    const double *shape;      /* the law's own parameters */
+    double beta, step;        /* weight of shear; time since the state before (s) */
+    double normal, sliding;   /* D_n, |D_t| (m) */
+    double before;            /* largest effective opening before this state (m) */
+} rg_law_query;
+
+typedef struct {
+    double normal, sliding;    /* traction along n and along D_t (Pa) */
+    double stored, dissipated; /* J/m^2 */
+} rg_law_answer;
+
+/* sqrt(beta^2 |D_t|^2 + max(0, D_n)^2) */
+static inline double rg_reference_effective(const rg_law_query *p) {
+    return hypot(p->beta * p->sliding, fmax(0, p->normal));
+}
+
+static inline void rg_reference_secant(const rg_law_query *p, double secant, rg_law_answer *a) {
+    double delta = rg_reference_effective(p);
+    a->normal = secant * fmax(0, p->normal);
+    a->sliding = secant * p->beta * p->beta * p->sliding;
+    a->stored = secant * delta * delta / 2;
+}
+
+/* Answer of a law. state: largest effective opening (this state included), then the law's memory, which is
+ * advanced; asking again for the same state (before = state[0]) changes nothing. */
+rg_law_answer rg_reference_law(rg_law law, const rg_law_query *p, double state[1 + RG_LAW_MEMORY]);
+
+#endif

@@ -1,0 +1,20 @@
+/* The cohesive law of a case, and the state in which its faces start. */
+#ifndef RG_LAW_H
+#define RG_LAW_H
+
+#include "solver.h"
+
+/* Law of the case, its critical opening from strength and energy; of infinite strength where there is none.
+ */
+rg_cohesive rg_law_make(const rg_case *c);
+
+/* Values of crack state and memory of a block of interfaces. */
+size_t rg_crack_stride(const rg_cohesive *law);
+
+/* In the intrinsic form every point follows its law from the start, on the total jump. */
+void rg_law_start(rg_solver *s);
+
+/* Bound on the stiffness of opening and of sliding where the law starts with a slope (Pa/m). */
+void rg_law_stiffness(const rg_cohesive *law, double slope[2]);
+
+#endif
