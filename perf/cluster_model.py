@@ -2,7 +2,8 @@
 
 A rank sweeps twice over its tiles, those inside (which touch no other rank) and the outer ones; rows for other ranks travel
 under the sweep over the tiles inside. A node has some ranks and one link to the network. All ranks start an exchange about
-together, so a message takes the latency and the time that the fuller of the two nodes' links needs for all that passes:
+together and the messages on a link share it evenly, so that one of size s is through when the link has carried the sum
+of min(s, size) over all its messages; the slower of the two nodes' links counts, and the latency:
     step = max over ranks [rest + pack + max(first inside, traces) + first outer
                                 + pack + max(second inside, tractions) + second outer]
 With several threads a sweep takes as long as its thread with most tiles, each of TILE tets, and a step has some
@@ -68,15 +69,26 @@ def read_pattern(path):
     return Pattern(np.array(tets), np.array(inner), *columns)
 
 
+def shared_link(node, size, nodes):
+    """Bytes that a node's link has carried when each of its messages is through."""
+    carried = np.zeros(len(size))
+    order = np.lexsort((size, node))
+    begin = np.searchsorted(node[order], np.arange(nodes + 1))
+    for first, last in zip(begin, begin[1:]):
+        s = size[order[first:last]]
+        carried[order[first:last]] = np.cumsum(s) + s * np.arange(len(s) - 1, -1, -1)
+    return carried
+
+
 def exchange(pattern, network, bytes_per_face):
     """Seconds of an exchange that nothing hides, for each rank."""
     node = np.arange(pattern.ranks) // network.ranks_per_node
     source, target = node[pattern.source], node[pattern.target]
     size = bytes_per_face * pattern.faces
     between = source != target
-    load = np.bincount(source[between], size[between], node[-1] + 1) / network.bandwidth
-    time = np.where(between, network.latency + np.maximum(load[source], load[target]),
-                    network.inside_latency + size / network.inside_bandwidth)
+    time = network.inside_latency + size / network.inside_bandwidth
+    carried = [shared_link(side[between], size[between], node[-1] + 1) for side in (source, target)]
+    time[between] = network.latency + np.maximum(*carried) / network.bandwidth
     longest = np.zeros(pattern.ranks)
     np.maximum.at(longest, pattern.source, time)
     return longest

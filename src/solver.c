@@ -285,6 +285,7 @@ static void start_bodies(rg_solver *s, const impulse *p) {
     if (p->constrain) {
         rg_bodies_sum(s->bodies);
     }
+    mark(s, RG_PHASE_REDUCE);
 }
 
 /* All forces. The traces of the displacement, sent at the end of the last drift, arrive under the first sweep

@@ -32,8 +32,7 @@ def test_delayed_messages_change_time_but_no_bit(tmp_path):
             OMP_NUM_THREADS="1")
     one, other = (json.loads((tmp_path / name / "summary.json").read_text()) for name in ("quick", "slow"))
     assert one["state_hash"] == other["state_hash"]
-    assert other["wall_s"] > 30 * 2 * delay  # two exchanges a step, none hidden by more than the step
-    assert other["phases_s"]["wait"][1] > 0.5 * 30 * 2 * delay
+    assert other["wall_s"] > 29 * 2 * delay  # two exchanges a step, one after the other; the first one before the clock
 
 
 @pytest.mark.parametrize("ranks", [2, 5])
