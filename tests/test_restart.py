@@ -113,6 +113,33 @@ def test_restart_of_every_variant(run, tmp_path, variant):
     assert (again.dir / "energy.csv").read_bytes() == (one.dir / "energy.csv").read_bytes()
 
 
+STATEFUL = {  # what has state of its own: bodies, free and prescribed; a material with a history; given times of output
+    "bounce": {"time.end": 1.5e-6},
+    "push": {"output.times": [0.4e-7, 1.1e-7], "output.fields": ["displacement"]},
+    "ceramic": {"time.end": 2e-8, "output.interval": 1e-9, "output.fields": ["damage"]},
+}
+
+
+@pytest.mark.parametrize("case", STATEFUL)
+def test_restart_of_bodies_and_materials(run, tmp_path, case):
+    sets = {**STATEFUL[case], "checkpoint.steps": 20, "checkpoint.keep": 100}
+    one = run(CASES / f"{case}.yaml", sets=sets)
+    steps = one.summary["steps"]
+    assert steps > 45
+    before = run(CASES / f"{case}.yaml", sets={**sets, "time.steps": steps - 5})
+    directory = copy(before, tmp_path / "out")
+    for path in checkpoints(directory):
+        if int(path.stem[5:]) > steps // 2:
+            path.unlink()
+    again = go_on(directory, "--set", "time.steps=100000", ranks=2)
+    assert 0 < again.summary["restarted_from_step"] <= steps // 2
+    assert again.summary["state_hash"] == one.summary["state_hash"]
+    for path in one.dir.glob("*.csv"):
+        assert (directory / path.name).read_bytes() == path.read_bytes()
+    if STATEFUL[case].get("output.fields"):
+        assert [f["time"] for f in again.frames()] == [f["time"] for f in one.frames()]
+
+
 def test_a_finished_run_can_be_made_longer(run, whole, tmp_path):
     """From a checkpoint before the last step, which was cut to end on time."""
     short = copy(run(FRAGMENTS, sets={**CASE, "time.end": 0.17e-6}), tmp_path / "out")
