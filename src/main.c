@@ -160,6 +160,9 @@ int main(int argc, char **argv) {
     /* Open MPI's own I/O layer has been reported to hang or corrupt HDF5's collective writes
      * (HDFGroup/hdf5#1227, open-mpi/ompi#12718): use ROMIO unless the user chose otherwise. */
     setenv("OMPI_MCA_io", "romio321", 0);
+    /* HDF5 would lock the files that rank 0 opens alone, which file systems of clusters often refuse; each is
+     * written under a name that nobody else opens. */
+    setenv("HDF5_USE_FILE_LOCKING", "FALSE", 0);
     rg_interrupt_listen();
     int provided, rank;
     MPI_Init_thread(&argc, &argv, MPI_THREAD_FUNNELED, &provided);
