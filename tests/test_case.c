@@ -720,7 +720,8 @@ static void test_ceramic(void **state) {
     table.poisson = 0.21;
     table.density = 3690;
     assert_memory_equal(&m.of.deshpande_evans.parameters, &table, offsetof(rg_deshpande_evans, single_pi));
-    assert_true(!m.of.deshpande_evans.parameters.single_pi && c->output.fields == (1023U | RG_FIELD_FRAGMENT) && m.mu == 146e9);
+    assert_true(!m.of.deshpande_evans.parameters.single_pi &&
+                c->output.fields == (1023U | RG_FIELD_FRAGMENT) && m.mu == 146e9);
     rg_case_free(c);
     static const char *const derived[] = {"material.interaction=derived"};
     check_round_trip(path, 1, derived);
