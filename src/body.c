@@ -2,7 +2,6 @@
 
 #include <math.h>
 #include <stddef.h>
-#include <stdio.h>
 #include <string.h>
 
 #include "element.h"
@@ -372,12 +371,10 @@ rg_bodies_account rg_bodies_take(const rg_bodies *b) {
 }
 
 void rg_bodies_register(rg_bodies *b, rg_state *st) {
-    enum {
-        VALUES = (offsetof(rg_body, seen) - offsetof(rg_body, x) + sizeof(rg_body_seen)) / sizeof(double)
-    };
-    for (int i = 0; i < b->count; i++) {
-        snprintf(b->body[i].word, sizeof b->body[i].word, "body_%d", i);
-        rg_state_add(st, b->body[i].word, RG_OF_RUN, RG_STATE_DOUBLE, VALUES, b->body[i].x);
+    enum { VALUES = (sizeof(rg_body) - offsetof(rg_body, x)) / sizeof(double) };
+    if (b->count > 0) {
+        rg_state_add_rows(st, "bodies", RG_STATE_DOUBLE, VALUES, b->body[0].x, sizeof *b->body,
+                          (size_t)b->count);
     }
 }
 

@@ -23,8 +23,6 @@
 #include "exact_sum.h"
 #include "kernels.h"
 
-typedef struct rg_state rg_state; /* state.h */
-
 /* A body as it was seen at a present time, between kick and drift. */
 typedef struct {
     double x[3], v[3], force[3]; /* m, m/s; force of the solid on it (N) */
@@ -35,11 +33,11 @@ typedef struct {
     const rg_body_input *input;
     double direction[3]; /* unit normal of a plane, unit axis of a cylinder */
     double mass;         /* kg; infinite where the motion is prescribed */
-    double x[3];         /* place of input->at, in the state that the forces belong to (m) */
-    double v[3];         /* in the middle of the last step, after a kick of the next one (m/s) */
-    double work;         /* as in `seen`, up to the middle of the next step (J) */
-    rg_body_seen seen;   /* at the last kick */
-    char word[16];       /* its name in a checkpoint */
+    /* From here to the end doubles only: a checkpoint takes them as a row. */
+    double x[3];       /* place of input->at, in the state that the forces belong to (m) */
+    double v[3];       /* in the middle of the last step, after a kick of the next one (m/s) */
+    double work;       /* as in `seen`, up to the middle of the next step (J) */
+    rg_body_seen seen; /* at the last kick */
 } rg_body;
 
 /* A face that may touch a body. */
@@ -54,6 +52,8 @@ typedef struct {
 typedef struct {
     double weight[RG_POINTS], shape[RG_POINTS][RG_FNODES];
 } rg_face_rule;
+
+typedef struct rg_state rg_state; /* state.h */
 
 typedef struct {
     int count, threads;
@@ -112,7 +112,7 @@ typedef struct {
 
 rg_bodies_account rg_bodies_take(const rg_bodies *b);
 
-/* Registers how the bodies move. */
+/* Registers what moves (state.h). */
 void rg_bodies_register(rg_bodies *b, rg_state *st);
 
 void rg_bodies_free(rg_bodies *b);

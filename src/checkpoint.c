@@ -111,14 +111,24 @@ static void put_elements(rg_h5_file *f, hid_t group, const rg_checkpoints *k, co
     rg_free(sorted);
 }
 
+static void put_rows(rg_h5_file *f, hid_t group, const rg_state_array *a) {
+    size_t bytes = rg_state_bytes(a);
+    char *rows = RG_NEW(char, a->records *bytes + 1);
+    for (size_t i = 0; i < a->records; i++) {
+        rg_state_get(a, i, rows + i * bytes);
+    }
+    rg_h5_slab s = whole(f, a->name, rg_state_h5_type(a), a->count, (int64_t)a->records);
+    rg_h5_write(f, group, &s, NULL, rows);
+    rg_free(rows);
+}
+
 /* All arrays of one kind, to a group. */
 static void put_group(rg_h5_file *f, const rg_checkpoints *k, const char *name, rg_state_of of) {
     hid_t group = rg_h5_group(f, name);
     for (int i = 0; i < k->state->arrays; i++) {
         const rg_state_array *a = &k->state->array[i];
         if (a->of == of && of == RG_OF_RUN) {
-            rg_h5_slab s = whole(f, a->name, rg_state_h5_type(a), a->count, 1);
-            rg_h5_write(f, group, &s, NULL, a->data);
+            put_rows(f, group, a);
         } else if (a->of == of) {
             put_elements(f, group, k, a);
         }
@@ -276,15 +286,30 @@ static bool get_elements(hid_t group, const rg_checkpoints *k, const rg_state_ar
     return ok;
 }
 
+/* Every rank reads all. */
+static bool get_rows(hid_t group, const rg_state_array *a) {
+    size_t bytes = rg_state_bytes(a);
+    char *rows = RG_NEW(char, a->records *bytes + 1);
+    rg_h5_slab s = {.name = a->name,
+                    .type = rg_state_h5_type(a),
+                    .columns = a->count,
+                    .rows = (int64_t)a->records,
+                    .count = (int64_t)a->records};
+    bool ok = rg_h5_read(group, &s, rows);
+    for (size_t i = 0; ok && i < a->records; i++) {
+        rg_state_put(a, i, rows + i * bytes);
+    }
+    rg_free(rows);
+    return ok;
+}
+
 static bool get_group(const rg_h5_file *f, const rg_checkpoints *k, const char *name, rg_state_of of) {
     hid_t group = H5Gopen2(f->file, name, H5P_DEFAULT);
     bool ok = group >= 0;
     for (int i = 0; ok && i < k->state->arrays; i++) {
         const rg_state_array *a = &k->state->array[i];
         if (a->of == of && of == RG_OF_RUN) {
-            rg_h5_slab s = {
-                .name = a->name, .type = rg_state_h5_type(a), .columns = a->count, .rows = 1, .count = 1};
-            ok = rg_h5_read(group, &s, a->data);
+            ok = get_rows(group, a);
         } else if (a->of == of) {
             ok = get_elements(group, k, a);
         }

@@ -2,9 +2,9 @@
  *
  * A checkpoint is dir/step-NNNNNNNNNNNN.h5: the seal (seal.h), then HDF5:
  *
- *   attributes       program, revision, format, precision, instruction_set, elements, mesh (a hash of the
- * mesh) case             the values of the case that a restart may not change, one a line, as bytes [n][1]
- *   run/NAME         [1][count]: what concerns the run as a whole
+ *   attributes       program, revision, format, precision, instruction_set, elements, mesh (its hash)
+ *   case             the values of the case that a restart may not change, one a line, as bytes [n][1]
+ *   run/NAME         [rows][count]: what concerns the run as a whole
  *   element/NAME     [elements][count], by global element number
  *   face/key         [n][1], sorted: 4 * global element number + local face; face/NAME [n][count]: the
  *                    interfaces that have broken points (a seam's two copies are two of them)

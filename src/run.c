@@ -108,7 +108,7 @@ static void output(run *r, bool fields) {
         r->keep.good_time = e->time;
     }
     rg_probes_flush(r->probes);
-    if (fields) {
+    if (fields || r->failure[0] != '\0') {
         rg_snapshots_write(r->snapshots, r->solver);
     }
     rg_fragment_table_take(r->fragments, r->solver, done(r) || r->failure[0] != '\0');
@@ -167,7 +167,7 @@ static bool advance(run *r, double *other) {
     }
     if (fresh || failed) {
         double begin = MPI_Wtime();
-        output(r, frame);
+        output(r, frame || failed);
         *other += MPI_Wtime() - begin;
     }
     if (r->failure[0] != '\0' || last) {

@@ -88,6 +88,7 @@ void rg_solver_start(rg_solver *s);
 
 /* Values of `history` on this rank. */
 size_t rg_solver_history(const rg_solver *s);
+
 /* In its place where the state comes from a checkpoint (state.h): makes what follows from that. Collective.
  */
 void rg_solver_resume(rg_solver *s);

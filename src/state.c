@@ -12,7 +12,14 @@ static void add(rg_state *st, rg_state_array a) {
 }
 
 void rg_state_add(rg_state *st, const char *name, rg_state_of of, rg_state_type type, int count, void *data) {
-    add(st, (rg_state_array){.name = name, .of = of, .type = type, .count = count, .data = data});
+    rg_state_array a = {.name = name, .of = of, .type = type, .count = count, .data = data, .records = 1};
+    a.stride = rg_state_bytes(&a);
+    add(st, a);
+}
+
+void rg_state_add_rows(rg_state *st, const char *name, rg_state_type type, int count, void *data,
+                       size_t stride, size_t rows) {
+    add(st, (rg_state_array){name, RG_OF_RUN, type, count, data, NULL, rows, stride});
 }
 
 void rg_state_add_list(rg_state *st, const char *name, rg_state_type type, int count, void *data,
@@ -37,8 +44,8 @@ void rg_state_of_solver(rg_state *st, rg_solver *s) {
         rg_state_add(st, "history", RG_OF_ELEMENT, RG_STATE_REAL, (int)rg_history_rows(s->histories),
                      s->history);
     }
-    rg_bodies_register(s->bodies, st);
     rg_constraints_register(s->constraints, st);
+    rg_bodies_register(s->bodies, st);
 }
 
 size_t rg_state_value(const rg_state_array *a) {
@@ -53,7 +60,7 @@ size_t rg_state_bytes(const rg_state_array *a) {
 /* Where value k of record i lies. */
 static char *place(const rg_state_array *a, size_t i, size_t k) {
     size_t value = rg_state_value(a);
-    if (a->of == RG_OF_LIST) {
+    if (a->of == RG_OF_LIST || a->of == RG_OF_RUN) {
         return (char *)a->data + i * a->stride + k * value;
     }
     return (char *)a->data + ((i / RG_LANES * (size_t)a->count + k) * RG_LANES + i % RG_LANES) * value;

@@ -28,7 +28,7 @@ typedef struct {
     int count;
     void *data;
     const int64_t *key; /* of a list: [records] 4 * global number of the element + 0 to 3, no two the same */
-    size_t records, stride; /* of a list: rows on this rank, bytes from one to the next */
+    size_t records, stride; /* of a list, or of the run: rows, bytes from one to the next */
 } rg_state_array;
 
 enum { RG_MAX_STATE = 64 };
@@ -40,7 +40,11 @@ struct rg_state {
 
 void rg_state_add(rg_state *st, const char *name, rg_state_of of, rg_state_type type, int count, void *data);
 
-/* Rows of `count` values, the first at `data`. Keeps a reference to `key`. */
+/* Of the run: `rows` rows of `count` values, the first at `data`, the others `stride` bytes apart. */
+void rg_state_add_rows(rg_state *st, const char *name, rg_state_type type, int count, void *data,
+                       size_t stride, size_t rows);
+
+/* Of elements: rows of `count` values, the first at `data`. Keeps a reference to `key`. */
 void rg_state_add_list(rg_state *st, const char *name, rg_state_type type, int count, void *data,
                        size_t stride, size_t records, const int64_t *key);
 
