@@ -6,9 +6,9 @@
 
 #include "element.h"
 #include "error.h"
+#include "interrupt.h"
 #include "law.h"
 #include "material.h"
-#include "interrupt.h"
 #include "mem.h"
 #include "mesh_case.h"
 #include "patch.h"
