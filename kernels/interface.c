@@ -260,7 +260,7 @@ RG_INLINE void load_law(interface *s) {
     s->opening = rg_splat(law->opening);
     s->inverse = rg_splat(1.0 / law->opening);
     s->contact = normal_penalty(s);
-    if (law->slope > 0) {
+    if (law->slope > 0 && s->args->scale == NULL) {
         s->contact = rg_max(s->contact, s->area * rg_splat(law->slope));
     }
     if (s->args->scale != NULL) {
@@ -268,6 +268,7 @@ RG_INLINE void load_law(interface *s) {
         s->strong_area *= scale(s, 0);
         s->opening *= scale(s, 1);
         s->inverse = 1.0 / s->opening;
+        s->contact = rg_max(s->contact, s->area * rg_splat(law->slope) * scale(s, 0) / scale(s, 1));
     }
 }
 

@@ -97,7 +97,8 @@ static void sample_law(const rg_interface_args *args, size_t i, point *p) {
         args->scale == NULL ? NULL : args->scale + i / RG_LANES * 2 * RG_LANES + i % RG_LANES;
     p->strength = args->law.strength * (scale == NULL ? 1 : scale[0]);
     p->opening = args->law.opening * (scale == NULL ? 1 : scale[RG_LANES]);
-    p->contact = fmax(p->iso + p->norm, args->law.slope * p->area);
+    double slope = args->law.slope * (scale == NULL ? 1 : scale[0] / scale[RG_LANES]);
+    p->contact = fmax(p->iso + p->norm, slope * p->area);
 }
 
 static void sample(const rg_interface_args *args, size_t i, int q, point *p) {

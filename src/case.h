@@ -19,6 +19,7 @@ typedef enum { RG_ACTIVATION_CONTINUOUS, RG_ACTIVATION_TOTAL } rg_activation;
 typedef enum { RG_CONTACT_PENALTY, RG_CONTACT_FLUX } rg_contact;
 typedef enum { RG_OUTPUT_DOUBLE, RG_OUTPUT_SINGLE } rg_output_precision;
 typedef enum { RG_FRAGMENTS_EACH, RG_FRAGMENTS_LAST, RG_FRAGMENTS_NONE } rg_fragments_when;
+typedef enum { RG_KEEP_ENERGY, RG_KEEP_OPENING } rg_keep;
 typedef enum { RG_MASS_CONSISTENT, RG_MASS_LUMPED } rg_mass;
 typedef enum { RG_SHAPE_SPHERE, RG_SHAPE_PLANE, RG_SHAPE_CYLINDER } rg_shape_kind;
 typedef enum { RG_MOTION_FREE, RG_MOTION_PRESCRIBED } rg_motion;
@@ -46,6 +47,11 @@ typedef struct {
     bool is_displacement; /* prescribed displacement (m), else velocity (m/s) */
     rg_expr *value;
 } rg_boundary;
+
+typedef struct {
+    rg_expr *where; /* faces for which this is not 0: by their middle x, y, z (m), unit normal nx, ny, nz */
+    double strength, energy; /* of these (Pa, J/m^2) */
+} rg_face_set;
 
 typedef struct {
     char *name;   /* column prefix in history.csv */
@@ -95,6 +101,13 @@ typedef struct {
         rg_activation activation;
         rg_contact contact;
         double shape[RG_LAWS][RG_LAW_SHAPE]; /* parameters of its own of each law */
+        int sets;
+        rg_face_set *set; /* faces with properties of their own */
+        struct {
+            double modulus, area; /* m; A_0 (m^2); modulus 0: strengths are not random */
+            int64_t seed;
+            rg_keep keep;
+        } weibull;
     } interface;
     rg_mass mass;
     struct {
@@ -156,5 +169,9 @@ const char *rg_expr_text(const rg_expr *e);
 bool rg_expr_uses_position(const rg_expr *e);
 bool rg_expr_uses_time(const rg_expr *e);
 double rg_expr_value(const rg_expr *e, const double x[3], double t);
+
+/* The same of an expression of faces, which may also use the unit normal nx, ny, nz, of either sign. */
+bool rg_expr_uses_normal(const rg_expr *e);
+double rg_expr_face_value(const rg_expr *e, const double x[3], const double normal[3]);
 
 #endif

@@ -137,7 +137,7 @@ static void check_entry(rg_check *ck, const rg_key *key, const rg_node *list, co
         rg_boundary_rule(ck, list, i, item, good);
     } else if (key->entry == &rg_body_table) {
         rg_body_rule(ck, list, i, item, good);
-    } else {
+    } else if (key->entry == &rg_probe_table) {
         rg_probe_rule(ck, list, i, item, good);
     }
     rg_free(dotted);
@@ -162,6 +162,9 @@ static bool check_list(rg_check *ck, const rg_key *key, const rg_node *list, con
 static const char *why_unused(const scan *s, const rg_key *key, char *text, size_t size) {
     if (key->group == RG_GROUP_BOX) {
         return "cannot be given together with mesh.file";
+    }
+    if (key->group == RG_GROUP_WEIBULL) {
+        return "not used without interface.weibull.modulus";
     }
     if (key->models == 0) {
         const rg_case *c = s->ck->c;
@@ -246,6 +249,8 @@ static void learn(rg_check *ck, const rg_key *key, const rg_node *node, bool goo
         rg_law_rule(ck, node, good);
     } else if (key->offset == offsetof(rg_case, interface.contact) && node != NULL && good) {
         rg_contact_rule(ck, node);
+    } else if (key->offset == offsetof(rg_case, interface.weibull.modulus)) {
+        ck->usage[RG_GROUP_WEIBULL] = node == NULL ? RG_UNUSED : good ? RG_USED : RG_UNSURE;
     } else if (key->offset == offsetof(rg_case, mesh.file) && node != NULL) {
         ck->usage[RG_GROUP_BOX] = RG_UNUSED;
         ck->box = false;

@@ -42,6 +42,7 @@ static const char *const laws[] = {
 static const char *const activations[] = {"continuous", "total", NULL};
 static const char *const contacts[] = {"penalty", "flux", NULL};
 static const char *const precisions[] = {"double", "single", NULL};
+static const char *const keeps[] = {"energy", "opening", NULL};
 static const char *const masses[] = {"consistent", "lumped", NULL};
 static const char *const shapes[] = {"sphere", "plane", "cylinder", NULL};
 static const char *const motions[] = {"free", "prescribed", NULL};
@@ -109,6 +110,14 @@ static const rg_key case_keys[] = {
      .law = RG_LAW_##NAME, CASE(interface.shape[RG_LAW_##NAME][index])},
 #include "cohesive_laws.h"
 #undef RG_LAW_PARAMETER
+    {.name = "interface.sets", .type = RG_KEY_LIST, OPTIONAL, GROUP(COHESIVE), CASE(interface.set), .entry = &rg_face_set_table,
+     .offset_count = offsetof(rg_case, interface.sets)},
+    {.name = "interface.weibull.modulus", REAL, ABOVE(0), OPTIONAL, GROUP(COHESIVE), CASE(interface.weibull.modulus)},
+    {.name = "interface.weibull.area", .unit = "m2", REAL, ABOVE(0), REQUIRED, GROUP(WEIBULL),
+     CASE(interface.weibull.area)},
+    {.name = "interface.weibull.seed", INTEGER, FROM(0), DEFAULT(1), GROUP(WEIBULL), CASE(interface.weibull.seed)},
+    {.name = "interface.weibull.keep", CHOICE(keeps), DEFAULT(RG_KEEP_ENERGY), GROUP(WEIBULL),
+     CASE(interface.weibull.keep)},
 
     {.name = "mass", CHOICE(masses), DEFAULT(RG_DEFAULT_MASS), CASE(mass)},
 
@@ -149,6 +158,13 @@ static const rg_key case_keys[] = {
     {.name = "checkpoint.time", .unit = "s", REAL, FROM(0), DEFAULT(0), MAY_CHANGE, CASE(checkpoint.time)},
     {.name = "checkpoint.wall_time", .unit = "s", REAL, FROM(0), DEFAULT(0), MAY_CHANGE, CASE(checkpoint.wall_time)},
     {.name = "checkpoint.keep", INTEGER, FROM_TO(1, 1000), DEFAULT(2), MAY_CHANGE, CASE(checkpoint.keep)},
+};
+
+static const rg_key face_set_keys[] = {
+    {.name = "where", .type = RG_KEY_EXPR, REQUIRED, .no_time = true, .normal = true,
+     .offset = offsetof(rg_face_set, where)},
+    {.name = "strength", .unit = "Pa", REAL, ABOVE(0), OPTIONAL, .offset = offsetof(rg_face_set, strength)},
+    {.name = "energy", .unit = "J/m2", REAL, ABOVE(0), OPTIONAL, .offset = offsetof(rg_face_set, energy)},
 };
 
 static const rg_key boundary_keys[] = {
@@ -192,6 +208,7 @@ static const rg_key probe_keys[] = {
     { .key = (list), .keys = sizeof(list) / sizeof(list)[0], .size = sizeof(type) }
 
 const rg_key_table rg_case_table = TABLE(case_keys, rg_case);
+const rg_key_table rg_face_set_table = TABLE(face_set_keys, rg_face_set);
 const rg_key_table rg_boundary_table = TABLE(boundary_keys, rg_boundary);
 const rg_key_table rg_body_table = TABLE(body_keys, rg_body_input);
 const rg_key_table rg_probe_table = TABLE(probe_keys, rg_probe);
@@ -249,10 +266,11 @@ static int type_words(const rg_key *key, char *text, size_t size) {
     case RG_KEY_TEXTS:
         return choice_words(key, text, size);
     case RG_KEY_EXPR:
-        return snprintf(text, size, "number or expression in %s%s", key->no_place ? "" : "x, y, z",
+        return snprintf(text, size, "number or expression in %s%s%s", key->no_place ? "" : "x, y, z",
                         key->no_time    ? ""
                         : key->no_place ? "t"
-                                        : ", t");
+                                        : ", t",
+                        key->normal ? ", nx, ny, nz" : "");
     case RG_KEY_INTERVAL:
         return snprintf(text, size, "integer >= 1 (steps), or number > 0 and < 1 (simulated seconds)");
     case RG_KEY_LIST:
@@ -311,6 +329,8 @@ bool rg_key_used(const rg_key *key, const void *base) {
     case RG_GROUP_DG:
     case RG_GROUP_SWITCH:
         return rg_group_used(key->group, base);
+    case RG_GROUP_WEIBULL:
+        return ((const rg_case *)base)->interface.weibull.modulus > 0;
     case RG_GROUP_LAW:
         return ((const rg_case *)base)->interface.law == key->law;
     case RG_GROUP_VELOCITY:

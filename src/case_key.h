@@ -44,6 +44,7 @@ typedef enum {
     RG_GROUP_LAW,          /* if interface.law is the key's `law` */
     RG_GROUP_DG,           /* unless interface.form is intrinsic */
     RG_GROUP_SWITCH,       /* if points switch from DG to a law: neither of these */
+    RG_GROUP_WEIBULL,      /* if interface.weibull.modulus is given */
     RG_GROUP_VELOCITY,     /* boundary entries: one of the two */
     RG_GROUP_DISPLACEMENT, /* the other */
     RG_GROUPS,
@@ -62,6 +63,7 @@ typedef struct {
     double low, high;          /* numbers: range */
     bool low_open, high_open;  /* range without its ends */
     bool no_time, no_place;    /* expression without t; without x, y, z */
+    bool normal;               /* expression of a face, with nx, ny, nz */
     bool may_change;           /* on a restart: nothing that was computed depends on it */
     const char *const *choice; /* NULL-terminated; of a text: with the built-in mesh only */
     double fallback;
@@ -80,7 +82,7 @@ typedef struct rg_key_table {
 enum { RG_MAX_KEYS = 128 }; /* at most, in a table */
 
 /* A key comes after the keys that decide whether its group is used. */
-extern const rg_key_table rg_case_table, rg_boundary_table, rg_body_table, rg_probe_table;
+extern const rg_key_table rg_case_table, rg_boundary_table, rg_body_table, rg_probe_table, rg_face_set_table;
 
 /* What a value of the key must be, in words. Returns `text`. */
 const char *rg_key_allowed(const rg_key *key, char *text, size_t size);

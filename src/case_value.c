@@ -248,6 +248,11 @@ static bool read_expr(rg_check *ck, const rg_key *key, const rg_node *node, cons
         rg_free(message);
         return false;
     }
+    if (!key->normal && rg_expr_uses_normal(e)) {
+        rg_value_wrong(ck, key, node, path, NULL, "depends on a normal, which only faces have");
+        rg_expr_free(e);
+        return false;
+    }
     if (key->no_time && rg_expr_uses_time(e)) {
         rg_value_wrong(ck, key, node, path, NULL, "depends on t, but this is the state at the start");
         rg_expr_free(e);

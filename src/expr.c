@@ -9,12 +9,12 @@
 #include "case_tree.h"
 #include "mem.h"
 
-enum { VARIABLES = 4 }; /* x, y, z, t */
+enum { VARIABLES = 7 }; /* x, y, z, t, nx, ny, nz */
 
 struct rg_expr {
     char *text;
     muParserHandle_t parser; /* NULL: a number */
-    double *variable;        /* x, y, z, t, read by the parser */
+    double *variable;        /* read by the parser */
     double constant;         /* the value if no variable is used */
     bool uses[VARIABLES];
 };
@@ -68,7 +68,7 @@ static void find_variables(rg_expr *e) {
 
 /* Sets the parser up and evaluates once, which is when muParser parses. Returns what is wrong, or NULL. */
 static char *parse(rg_expr *e) {
-    static const char *const name[VARIABLES] = {"x", "y", "z", "t"};
+    static const char *const name[VARIABLES] = {"x", "y", "z", "t", "nx", "ny", "nz"};
     e->variable = RG_NEW(double, VARIABLES);
     e->parser = mupCreate(muBASETYPE_FLOAT);
     mupDefineConst(e->parser, "pi", acos(-1.0));
@@ -89,8 +89,12 @@ static char *parse(rg_expr *e) {
     return NULL;
 }
 
+static bool uses_any(const rg_expr *e) {
+    return rg_expr_uses_position(e) || rg_expr_uses_time(e) || rg_expr_uses_normal(e);
+}
+
 static char *check(const rg_expr *e) {
-    if (!rg_expr_uses_position(e) && !rg_expr_uses_time(e) && !isfinite(e->constant)) {
+    if (!uses_any(e) && !isfinite(e->constant)) {
         return rg_text_format("not finite");
     }
     return NULL;
@@ -145,8 +149,19 @@ bool rg_expr_uses_time(const rg_expr *e) {
     return e->uses[3];
 }
 
+bool rg_expr_uses_normal(const rg_expr *e) {
+    return e->uses[4] || e->uses[5] || e->uses[6];
+}
+
+double rg_expr_face_value(const rg_expr *e, const double x[3], const double normal[3]) {
+    if (rg_expr_uses_normal(e)) {
+        memcpy(e->variable + 4, normal, 3 * sizeof *normal);
+    }
+    return rg_expr_value(e, x, 0);
+}
+
 double rg_expr_value(const rg_expr *e, const double x[3], double t) {
-    if (!rg_expr_uses_position(e) && !rg_expr_uses_time(e)) {
+    if (!uses_any(e)) {
         return e->constant;
     }
     memcpy(e->variable, x, 3 * sizeof *x);

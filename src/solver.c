@@ -12,6 +12,7 @@
 #include "mem.h"
 #include "mesh_case.h"
 #include "patch.h"
+#include "strength.h"
 #include "tile.h"
 
 /* ---- Set-up ---- */
@@ -93,6 +94,7 @@ rg_solver *rg_solver_make_from_part(const rg_case *input, rg_part *part, MPI_Com
                      .threads = omp_get_max_threads(),
                      .part = part,
                      .limiting = -1,
+                     .stiffest = 1,
                      .material = rg_material_of_case(input),
                      .histories = rg_material_history(input->material.model),
                      .law = rg_law_make(input),
@@ -111,6 +113,9 @@ rg_solver *rg_solver_make_from_part(const rg_case *input, rg_part *part, MPI_Com
     allocate_fields(s);
     place_fields(s);
     rg_law_start(s);
+    if (part->original == NULL) { /* a patch has no need of them */
+        rg_strength_make(s);
+    }
     for (int k = 0; k < 2; k++) {
         s->halo_u[k] = rg_halo_make(s->domain, RG_TRACE_ROW, s->rows[k], 1 + k, comm);
     }
@@ -467,6 +472,7 @@ void rg_solver_free(rg_solver *s) {
     void *blocks[] = {s->u,         s->velocity, s->now,      s->crack,  s->stiffening, s->tile_stiffening,
                       s->cracked,   s->broken,   s->unlinked, s->active, s->rows[0],    s->rows[1],
                       s->tractions, s->watched,  s->work,     s->history};
+    rg_free(s->scale);
     rg_constraints_free(s->constraints);
     rg_bodies_free(s->bodies);
     rg_halo_free(s->halo_u[0]);

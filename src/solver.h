@@ -63,6 +63,8 @@ struct rg_solver {
 
     rg_material material;
     rg_cohesive law;
+    rg_real *scale;  /* layout as in rg_interface_args; NULL: all faces alike */
+    double stiffest; /* largest ratio of strength to critical opening, over that of the law; 1: all alike */
     bool lift, lumped;
 
     double omega2;   /* largest squared frequency, faces intact or closed, bodies in contact (1/s^2) */

@@ -342,8 +342,11 @@ void rg_spectrum_whole(rg_solver *s) {
     state limiting = first;
     double slope[2];
     rg_law_stiffness(&law, slope);
+    rg_real *scale = s->scale;
+    s->scale = NULL;
+    s->law.slope *= s->stiffest;
     for (state which = first; which <= last; which++) {
-        set_state(s, which, slope[1], shared);
+        set_state(s, which, slope[1] * s->stiffest, shared);
         bool symmetric = s->lift || which != INTACT;
         double theta = symmetric ? lanczos_eigenvalue(&op, &run[which]) : power_eigenvalue(&op);
         if (theta > worst) {
@@ -353,10 +356,11 @@ void rg_spectrum_whole(rg_solver *s) {
     }
     s->omega2 = worst * op.scale * (1 + MARGIN);
     s->limiting_state = state_name[limiting];
-    set_state(s, limiting, slope[1], shared);
+    set_state(s, limiting, slope[1] * s->stiffest, shared);
     s->limiting = limiting_element(&op, &run[limiting], worst);
     set_state(s, INTACT, 0, shared);
     s->law = law;
+    s->scale = scale;
     s->crack = crack;
     s->material.model = model;
     s->crack_stride = rg_crack_stride(&law);
@@ -375,6 +379,7 @@ static void patch_spectrum(rg_solver *s) {
     omp_set_num_threads(1);
     rg_solver *local = rg_solver_make_from_part(&input, s->patch, MPI_COMM_SELF);
     s->patch = NULL;
+    local->stiffest = s->stiffest;
     rg_spectrum_whole(local);
     s->omega2 = local->omega2;
     s->limiting = local->part->original[local->limiting];

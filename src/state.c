@@ -39,7 +39,7 @@ void rg_state_of_solver(rg_state *st, rg_solver *s) {
     rg_state_add(st, "velocity", RG_OF_ELEMENT, RG_STATE_REAL, 3 * RG_NODES, s->velocity);
     rg_state_add(st, "broken", RG_OF_FACE, RG_STATE_BYTE, 1, s->broken);
     rg_state_add(st, "unlinked", RG_OF_FACE, RG_STATE_BYTE, 1, s->unlinked);
-    rg_state_add(st, "crack", RG_OF_FACE, RG_STATE_REAL, RG_POINTS * RG_CRACK, s->crack);
+    rg_state_add(st, "crack", RG_OF_FACE, RG_STATE_REAL, (int)(s->crack_stride / RG_LANES), s->crack);
     if (s->histories > 0) {
         rg_state_add(st, "history", RG_OF_ELEMENT, RG_STATE_REAL, (int)rg_history_rows(s->histories),
                      s->history);

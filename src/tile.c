@@ -51,6 +51,7 @@ rg_interface_args rg_tile_interfaces(const rg_solver *s, const rg_tile *t, const
                                .tractions = s->tractions,
                                .side = {d->side[0] + first, d->side[1] + first},
                                .geom = d->igeom + t->ibegin * RG_IGEOM_BLOCK,
+                               .scale = s->scale == NULL ? NULL : s->scale + t->ibegin * 2 * RG_LANES,
                                .broken = s->broken + first,
                                .unlinked = s->unlinked + first,
                                .active = s->active + t->ibegin,
@@ -60,8 +61,8 @@ rg_interface_args rg_tile_interfaces(const rg_solver *s, const rg_tile *t, const
 }
 
 double rg_separation(const rg_solver *s, size_t i) {
-    (void)i;
-    return s->law.separation;
+    const rg_real *scale = s->scale == NULL ? NULL : s->scale + (i / RG_LANES * 2 + 1) * RG_LANES;
+    return s->law.separation * (scale == NULL ? 1 : scale[i % RG_LANES]);
 }
 
 bool rg_point_is_broken(const rg_solver *s, size_t i, int q) {

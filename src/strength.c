@@ -1,0 +1,108 @@
+#include "strength.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "cohesive_facts.h"
+#include "error.h"
+#include "hash.h"
+#include "mem.h"
+
+/* Strength and critical opening of a face over those of the law. */
+typedef struct {
+    double strength, opening;
+} factors;
+
+/* Corners of an interface, as its first side has them; both sides have the same bits. */
+static void corners(const rg_solver *s, const rg_tile *t, size_t i, const double *x[RG_FCORNERS]) {
+    int32_t link = s->domain->side[0][i];
+    const double *corner = s->domain->corner + 12 * (t->begin * RG_LANES + (size_t)link / RG_FACES);
+    for (int k = 0; k < RG_FCORNERS; k++) {
+        x[k] = corner + 3 * rg_face_node[link % RG_FACES][k];
+    }
+}
+
+/* Uniform in (0, 1). A sum over the corners, so that their order does not matter. */
+static double face_uniform(int64_t seed, const double *x[RG_FCORNERS]) {
+    uint64_t sum = 0;
+    for (int k = 0; k < RG_FCORNERS; k++) {
+        uint64_t h = (uint64_t)seed;
+        for (int c = 0; c < 3; c++) {
+            double value = x[k][c] + 0.0; /* one zero */
+            uint64_t bits;
+            memcpy(&bits, &value, sizeof bits);
+            h = rg_hash(h, bits);
+        }
+        sum += h;
+    }
+    return rg_hash_uniform(rg_hash((uint64_t)seed, sum)) + 0x1p-54;
+}
+
+/* The last set whose expression is not 0 here. */
+static void apply_sets(const rg_solver *s, const double *x[RG_FCORNERS], const double normal[3], factors *f) {
+    const rg_case *c = s->input;
+    double work = rg_law_facts_of(s->law.law, s->law.shape, s->law.beta).work, middle[3];
+    for (int k = 0; k < 3; k++) {
+        middle[k] = (x[0][k] + x[1][k] + x[2][k]) / 3;
+    }
+    for (int i = 0; i < c->interface.sets; i++) {
+        const rg_face_set *set = &c->interface.set[i];
+        double here = rg_expr_face_value(set->where, middle, normal);
+        if (!isfinite(here)) {
+            rg_fatal(RG_USAGE, "interface.sets[%d].where: %s is not finite at (%g, %g, %g)", i,
+                     rg_expr_text(set->where), middle[0], middle[1], middle[2]);
+        }
+        if (here != 0) {
+            double strength = set->strength > 0 ? set->strength : c->interface.strength;
+            double energy = set->energy > 0 ? set->energy : c->interface.energy;
+            f->strength = strength / s->law.strength;
+            f->opening = work > 0 ? energy / (work * strength) / s->law.opening : 1;
+        }
+    }
+}
+
+/* sigma = sigma_0 (-(A_0/A) ln(1 - U))^(1/m): the weakest link of a face of area A (Weibull 1939; Zhou &
+ * Molinari 2004). */
+static void apply_weibull(const rg_case *c, const double *x[RG_FCORNERS], double area, factors *f) {
+    double u = face_uniform(c->interface.weibull.seed, x);
+    double w = pow(-c->interface.weibull.area / area * log1p(-u), 1 / c->interface.weibull.modulus);
+    f->strength *= w;
+    f->opening /= c->interface.weibull.keep == RG_KEEP_ENERGY ? w : 1;
+}
+
+static factors factors_of(const rg_solver *s, const rg_tile *t, size_t i) {
+    factors f = {1, 1};
+    double normal[3], area = rg_interface_area(s->domain, i, normal);
+    if (area > 0) { /* not in padding */
+        const double *x[RG_FCORNERS];
+        corners(s, t, i, x);
+        for (int c = 0; c < 3; c++) {
+            normal[c] /= area;
+        }
+        apply_sets(s, x, normal, &f);
+        if (s->input->interface.weibull.modulus > 0) {
+            apply_weibull(s->input, x, area, &f);
+        }
+    }
+    return f;
+}
+
+void rg_strength_make(rg_solver *s) {
+    const rg_case *c = s->input;
+    const rg_domain *d = s->domain;
+    s->stiffest = 1;
+    if (c->interface.law == RG_LAW_NONE || (c->interface.sets == 0 && !(c->interface.weibull.modulus > 0))) {
+        return;
+    }
+    double stiffest = 0;
+    s->scale = RG_NEW(rg_real, d->iblocks * 2 * RG_LANES);
+    for (size_t t = 0; t < d->tiles; t++) { /* expressions are not for threads */
+        for (size_t i = d->tile[t].ibegin * RG_LANES; i < d->tile[t].iend * RG_LANES; i++) {
+            factors f = factors_of(s, &d->tile[t], i);
+            s->scale[i / RG_LANES * 2 * RG_LANES + i % RG_LANES] = (rg_real)f.strength;
+            s->scale[(i / RG_LANES * 2 + 1) * RG_LANES + i % RG_LANES] = (rg_real)f.opening;
+            stiffest = fmax(stiffest, f.strength / f.opening);
+        }
+    }
+    MPI_Allreduce(&stiffest, &s->stiffest, 1, MPI_DOUBLE, MPI_MAX, s->comm);
+}

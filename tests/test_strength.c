@@ -1,0 +1,162 @@
+/* Strengths that differ from face to face: Weibull's distribution, sets of faces, the same on both copies of
+ * a seam. */
+#include <stdarg.h>
+#include <stddef.h>
+#include <setjmp.h>
+#include <cmocka.h>
+#include <math.h>
+#include <mpi.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../src/case.h"
+#include "../src/solver.h"
+#include "../src/tile.h"
+
+enum { MOST = 4 };
+
+static rg_case *read_case(int overrides, const char *const override[]) {
+    const char *all[MOST] = {"mesh.cells=[6, 6, 12]", "mesh.jitter=0.15"};
+    assert_true(overrides + 2 <= MOST);
+    for (int i = 0; i < overrides; i++) {
+        all[2 + i] = override[i];
+    }
+    rg_case *c = rg_case_read(RG_SOURCE_ROOT "/bench/cases/spall.yaml", overrides + 2, all, stderr);
+    assert_non_null(c);
+    return c;
+}
+
+/* A face: what identifies it, and its factors. */
+typedef struct {
+    double middle[3], normal[3], area, strength, opening;
+} face;
+
+static int by_place(const void *a, const void *b) {
+    const face *p = a, *q = b;
+    for (int c = 0; c < 3; c++) {
+        if (p->middle[c] < q->middle[c] || p->middle[c] > q->middle[c]) {
+            return p->middle[c] < q->middle[c] ? -1 : 1;
+        }
+    }
+    return 0;
+}
+
+static face face_of(const rg_solver *s, const rg_tile *t, size_t i) {
+    face f = {.area = rg_interface_area(s->domain, i, f.normal)};
+    int32_t link = s->domain->side[0][i];
+    const double *corner = s->domain->corner + 12 * (t->begin * RG_LANES + (size_t)link / RG_FACES);
+    const int *node = rg_face_node[link % RG_FACES];
+    for (int c = 0; c < 3; c++) {
+        f.middle[c] = corner[3 * node[0] + c] + corner[3 * node[1] + c] + corner[3 * node[2] + c];
+    }
+    f.strength = s->scale[i / RG_LANES * 2 * RG_LANES + i % RG_LANES];
+    f.opening = s->scale[(i / RG_LANES * 2 + 1) * RG_LANES + i % RG_LANES];
+    return f;
+}
+
+/* All faces of a case, seams twice, sorted by place; the caller frees them. */
+static face *faces_of(int overrides, const char *const override[], size_t *count) {
+    rg_case *c = read_case(overrides, override);
+    rg_solver *s = rg_solver_make(c, MPI_COMM_SELF);
+    face *list = calloc(s->domain->iblocks * RG_LANES, sizeof *list);
+    assert_non_null(list);
+    *count = 0;
+    for (size_t t = 0; t < s->domain->tiles; t++) {
+        const rg_tile *tile = &s->domain->tile[t];
+        for (size_t i = tile->ibegin * RG_LANES; i < tile->iend * RG_LANES; i++) {
+            face f = face_of(s, tile, i);
+            if (f.area > 0) {
+                list[(*count)++] = f;
+            }
+        }
+    }
+    rg_solver_free(s);
+    rg_case_free(c);
+    qsort(list, *count, sizeof *list, by_place);
+    return list;
+}
+
+static void test_weibull(void **state) {
+    (void)state;
+    const double modulus = 8, area = 2e-9;
+    const char *const set[] = {"interface.weibull={modulus: 8, area: 2e-9}"};
+    size_t count, faces = 0, below[9] = {0};
+    face *f = faces_of(1, set, &count);
+    for (size_t i = 0; i < count; i++) {
+        assert_true(fabs(f[i].strength * f[i].opening - 1) < 1e-6); /* G_c stays */
+        if (i + 1 < count && by_place(&f[i], &f[i + 1]) == 0) {     /* copies of a seam */
+            assert_true(f[i].strength == f[i + 1].strength && f[i].opening == f[i + 1].opening);
+            continue;
+        }
+        faces++;
+        double broken = 1 - exp(-f[i].area / area * pow(f[i].strength, modulus)); /* uniform in (0, 1) */
+        for (int k = 0; k < 9; k++) {
+            below[k] += broken < 0.1 * (k + 1);
+        }
+    }
+    assert_true(faces > 4000 && count > faces);
+    for (int k = 0; k < 9; k++) {
+        double p = 0.1 * (k + 1), found = (double)below[k] / (double)faces;
+        assert_true(fabs(found - p) < 4 * sqrt(p * (1 - p) / (double)faces));
+    }
+    free(f);
+}
+
+/* Another seed gives other strengths; the opening is kept on request. */
+static void test_seed_and_keep(void **state) {
+    (void)state;
+    const char *const one[] = {"interface.weibull={modulus: 8, area: 2e-9, keep: opening}"};
+    const char *const two[] = {"interface.weibull={modulus: 8, area: 2e-9, seed: 2}"};
+    size_t n, m, same = 0;
+    face *a = faces_of(1, one, &n), *b = faces_of(1, two, &m);
+    assert_true(n == m);
+    for (size_t i = 0; i < n; i++) {
+        assert_true(a[i].opening == 1 && by_place(&a[i], &b[i]) == 0);
+        same += fabs(a[i].strength - b[i].strength) < 1e-3;
+    }
+    assert_true(same < n / 50);
+    free(a);
+    free(b);
+}
+
+/* The last set that holds counts; faces in none keep the law's values. */
+static void test_sets(void **state) {
+    (void)state;
+    const char *const set[] = {"interface.sets=[{where: z < 0, strength: 800e6, energy: 68}, "
+                               "{where: 'abs(nz) > 0.9', strength: 200e6}]"};
+    size_t count, seen[3] = {0};
+    face *f = faces_of(1, set, &count);
+    for (size_t i = 0; i < count; i++) {
+        int which = fabs(f[i].normal[2]) > 0.9 * f[i].area ? 2 : f[i].middle[2] < 0 ? 1 : 0;
+        const double strength[] = {1, 2, 0.5}, opening[] = {1, 1, 2};
+        assert_true(fabs(f[i].strength - strength[which]) < 1e-6 &&
+                    fabs(f[i].opening - opening[which]) < 1e-6);
+        seen[which]++;
+    }
+    assert_true(seen[0] > 0 && seen[1] > 0 && seen[2] > 0);
+    free(f);
+}
+
+/* A uniform case has no field. */
+static void test_uniform(void **state) {
+    (void)state;
+    rg_case *c = read_case(0, NULL);
+    rg_solver *s = rg_solver_make(c, MPI_COMM_SELF);
+    assert_null(s->scale);
+    assert_true(s->stiffest == 1);
+    rg_solver_free(s);
+    rg_case_free(c);
+}
+
+int main(int argc, char **argv) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_weibull),
+        cmocka_unit_test(test_seed_and_keep),
+        cmocka_unit_test(test_sets),
+        cmocka_unit_test(test_uniform),
+    };
+    MPI_Init(&argc, &argv);
+    int failed = cmocka_run_group_tests(tests, NULL, NULL);
+    MPI_Finalize();
+    return failed;
+}
