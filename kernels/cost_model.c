@@ -81,6 +81,19 @@ static double bulk_state_flops(const rg_cost_variant *v) {
     return gradient_flops(v) + RG_GAUSS * point;
 }
 
+enum {
+    HEIGHT = 6 + 4 * DOT + 2,
+    /* at a point: F, its cofactors and J; change of volume, its rate; pressure, stress; heat */
+    VISCOUS_POINT = 3 + 3 * CROSS + DOT + (3 * DOT + 2) + 1 + (1 + 1 + FMA + 1) + 9 + FMA,
+    /* rho h, b2^2 h; heat of the element; forces added; xi, bound, stiffening */
+    VISCOUS_ELEMENT = 2 + 2 + NODAL_FORCE + 30 + 1 + FMA + (FMA + 1 + 1 + 1) + 2,
+};
+
+static double viscosity_flops(void) {
+    return 2 * (COMMON + RG_GAUSS * GRADIENT) + HEIGHT + RG_GAUSS * (VISCOUS_POINT + PROJECT) +
+           VISCOUS_ELEMENT;
+}
+
 /* ---- Interface ---- */
 
 enum {
@@ -193,6 +206,8 @@ static traffic traffic_of(rg_cost_kernel kernel, const rg_cost_variant *v) {
         return interface_traffic(v, RG_IGEOM, WIDE * RG_E_INTERFACE);
     case RG_COST_KICK: /* in: bulk force, the forces of all interfaces, volume */
         return (traffic){.in = NODAL + FACE * v->interfaces + 1, .updated = NODAL, .index = LINKS};
+    case RG_COST_VISCOSITY: /* displacement and velocity; forces, stiffening and heat in and out */
+        return (traffic){.in = 2 * NODAL + RG_GEOM, .updated = NODAL + 1 + WIDE};
     case RG_COST_DRIFT:
         return (traffic){.in = NODAL, .updated = NODAL};
     default: /* kinetic: velocity and volume */
@@ -212,6 +227,8 @@ static double flops_of(rg_cost_kernel kernel, const rg_cost_variant *v) {
         return interface_state_flops(v);
     case RG_COST_KICK:
         return kick_flops(v);
+    case RG_COST_VISCOSITY:
+        return viscosity_flops();
     case RG_COST_DRIFT:
         return ADVANCE;
     default:

@@ -17,6 +17,7 @@ typedef enum {
     RG_COST_BULK_STATE,
     RG_COST_KINETIC,
     RG_COST_INTERFACE_STATE,
+    RG_COST_VISCOSITY,
     RG_COST_KERNELS
 } rg_cost_kernel;
 

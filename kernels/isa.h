@@ -18,6 +18,7 @@ void RG_ISA_NAME(rg_drift)(const rg_drift_args *args, size_t begin, size_t end);
 void RG_ISA_NAME(rg_bulk_state)(const rg_bulk_state_args *args, size_t begin, size_t end);
 void RG_ISA_NAME(rg_kinetic)(const rg_kinetic_args *args, size_t begin, size_t end);
 void RG_ISA_NAME(rg_interface_state)(const rg_interface_state_args *args, size_t begin, size_t end);
+void RG_ISA_NAME(rg_viscosity)(const rg_viscosity_args *args, size_t begin, size_t end);
 
 /* One of each for every material. */
 #define RG_BULK_KERNELS(name, NAME, word, history, inside)                                                   \

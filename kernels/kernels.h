@@ -58,6 +58,19 @@ enum {
     RG_LAW_MEMORY = 4, /* values that a point may remember besides its crack state */
 };
 
+/* Bulk viscosity (viscosity.c), after the bulk: adds to its forces, and to its stiffening what damping takes
+ * from the step. */
+typedef struct {
+    const rg_bulk_args *bulk; /* force and stiffening in/out */
+    const rg_real *velocity;  /* in the middle of the step before (m/s) */
+    double linear, quadratic; /* b1 c (m/s), b2^2 */
+    double damping;           /* xi of the stiffest mode by the linear part */
+    double damping_rate;      /* ... by the quadratic part, over h max(0, -div v) (s/m) */
+    double allowed;           /* sqrt(1 + damping^2) - damping: what the critical step has lost already */
+    double dt;                /* step for which heat is booked (s) */
+    double *heat;             /* in/out: [block][lane], dissipated so far (J) */
+} rg_viscosity_args;
+
 /* 12-node interface. The area vector points from minus to plus, jump [u] = u+ - u-. Force on the minus side
  * is +g, on the plus side -g. */
 typedef struct {
@@ -163,6 +176,7 @@ typedef struct {
     void (*bulk_state)(const rg_bulk_state_args *args, size_t begin, size_t end);
     void (*kinetic)(const rg_kinetic_args *args, size_t begin, size_t end);
     void (*interface_state)(const rg_interface_state_args *args, size_t begin, size_t end);
+    void (*viscosity)(const rg_viscosity_args *args, size_t begin, size_t end);
 } rg_kernels;
 
 /* The opening from which a continuous activation starts is eps = RG_ONSET sigma_c h_s / (beta_s (lambda + 2

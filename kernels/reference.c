@@ -30,4 +30,5 @@ const rg_kernels rg_kernels_reference = {
     .bulk_state = rg_reference_bulk_state,
     .kinetic = rg_reference_kinetic,
     .interface_state = rg_reference_interface_state,
+    .viscosity = rg_reference_viscosity,
 };

@@ -227,3 +227,49 @@ void rg_reference_bulk_state(const rg_bulk_state_args *args, size_t begin, size_
             args->energy[row * RG_LANES + e % RG_LANES] = energy;
     }
 }
+
+static double smallest_height(const element *el) {
+    double largest = 0;
+    for (int k = 0; k < 4; k++)
+        largest = fmax(largest, sqrt(rg_reference_dot(el->grad[k], el->grad[k])));
+    return 1 / largest;
+}
+
+static void viscous_element(const rg_viscosity_args *v, size_t e) {
+    rg_bulk_args args = *v->bulk;
+    element el, rate;
+    double force[RG_NODES][3] = {{0}}, worst = 0;
+    args.lift = false;
+    load(&args, e, &el);
+    args.u = v->velocity;
+    load(&args, e, &rate);
+    double h = smallest_height(&el);
+    for (int g = 0; g < RG_GAUSS; g++) {
+        double f[3][3], f_rate[3][3], inv[3][3], p[3][3], closing = 0;
+        deformation(&el, g, f);
+        deformation(&rate, g, f_rate);
+        double det = rg_reference_invert(f, inv);
+        for (int r = 0; r < 3; r++)
+            for (int c = 0; c < 3; c++)
+                closing -= inv[c][r] * (f_rate[r][c] - (r == c));
+        double squeeze = fmax(closing, 0);
+        double pressure =
+            args.material.density * h * (v->linear * closing + v->quadratic * h * squeeze * squeeze);
+        for (int r = 0; r < 3; r++)
+            for (int c = 0; c < 3; c++)
+                p[r][c] = -pressure * det * inv[c][r];
+        add_force(&el, g, p, force);
+        v->heat[e] += v->dt * el.volume / 4 * det * pressure * closing;
+        worst = fmax(worst, squeeze);
+    }
+    for (int a = 0; a < RG_NODES; a++)
+        for (int c = 0; c < 3; c++)
+            args.force[rg_node_index(e, a, c)] += (rg_real)force[a][c];
+    double xi = v->damping + v->damping_rate * h * worst, factor = (sqrt(1 + xi * xi) + xi) * v->allowed;
+    args.stiffening[e] *= (rg_real)(factor * factor);
+}
+
+void rg_reference_viscosity(const rg_viscosity_args *args, size_t begin, size_t end) {
+    for (size_t e = begin * RG_LANES; e < end * RG_LANES; e++)
+        viscous_element(args, e);
+}

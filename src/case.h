@@ -111,6 +111,9 @@ typedef struct {
     } interface;
     rg_mass mass;
     struct {
+        double linear, quadratic; /* b1, b2 */
+    } viscosity;
+    struct {
         rg_expr *displacement[3], *velocity[3]; /* NULL: zero */
     } initial;
     int boundaries;

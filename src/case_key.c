@@ -119,6 +119,9 @@ static const rg_key case_keys[] = {
     {.name = "interface.weibull.keep", CHOICE(keeps), DEFAULT(RG_KEEP_ENERGY), GROUP(WEIBULL),
      CASE(interface.weibull.keep)},
 
+    {.name = "viscosity.linear", REAL, FROM(0), DEFAULT(0), CASE(viscosity.linear)},
+    {.name = "viscosity.quadratic", REAL, FROM(0), DEFAULT(0), CASE(viscosity.quadratic)},
+
     {.name = "mass", CHOICE(masses), DEFAULT(RG_DEFAULT_MASS), CASE(mass)},
 
     INITIAL("initial.displacement.x", "m", displacement[0]),

@@ -52,12 +52,13 @@ static double bytes_per_element(const rg_solver *s, bool at_most) {
 rg_estimate rg_estimate_run(const rg_solver *s) {
     const rg_case *c = s->input;
     const rg_material *m = &s->material;
+    double xi = s->damping * c->viscosity.linear; /* of the stiffest mode, by bulk viscosity */
     rg_estimate e = {.elements = s->part->total,
                      .interfaces = s->part->interfaces,
                      .dofs = 3 * RG_NODES * s->part->total,
                      .c_dilatational = rg_material_dilatational(m),
                      .c_shear = rg_material_shear(m),
-                     .dt_critical = 2 / sqrt(s->omega2)};
+                     .dt_critical = 2 / sqrt(s->omega2) * (sqrt(1 + xi * xi) - xi)};
     e.dt = c->time.safety * e.dt_critical;
     double steps = ceil(c->time.end / e.dt * (1 - 1e-12));
     if (c->time.steps > 0) {

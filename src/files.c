@@ -201,11 +201,11 @@ void rg_csv_row(rg_csv *t, const int64_t *number, size_t numbers, const double *
 }
 
 void rg_csv_energy_header(rg_csv *t) {
-    rg_csv_header(
-        t,
-        "step,time,kinetic,bodies,bulk,penalty,cohesive,contact,dissipated,plastic,damage,external_"
-        "work,total,error_rel,broken_area,failed_area,momentum_x,momentum_y,momentum_z,angular_x,angular_y,"
-        "angular_z");
+    rg_csv_header(t,
+                  "step,time,kinetic,bodies,bulk,penalty,cohesive,contact,dissipated,plastic,damage,viscous,"
+                  "external_work,total,error_rel,broken_area,failed_area,momentum_x,momentum_y,momentum_z,"
+                  "angular_x,angular_y,"
+                  "angular_z");
 }
 
 void rg_csv_energy(rg_csv *t, const rg_energy *e) {
@@ -219,6 +219,7 @@ void rg_csv_energy(rg_csv *t, const rg_energy *e) {
                           e->dissipated,
                           e->plastic,
                           e->damage,
+                          e->viscous,
                           e->external,
                           e->total,
                           e->error,

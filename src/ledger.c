@@ -16,7 +16,8 @@ enum {
     DISSIPATED = INTERFACE + RG_E_DISSIPATED,
     EXTERNAL,
     RELEASED,
-    BROKEN = RELEASED + RG_RELEASED,
+    VISCOUS = RELEASED + RG_RELEASED,
+    BROKEN,
     FAILED,
     VOLUME,
     MOMENTUM,
@@ -70,6 +71,9 @@ static void element_energies(rg_solver *s, const rg_tile *t, const rg_workspace 
             for (size_t k = 0; s->histories > 0 && k < RG_RELEASED; k++) {
                 size_t row = (size_t)(RG_GAUSS * s->histories) + k;
                 rg_exact_add(&sum[RELEASED + k], s->history[rg_history_index(slot, s->histories, row)]);
+            }
+            if (s->heat != NULL) {
+                rg_exact_add(&sum[VISCOUS], s->heat[slot]);
             }
             rg_exact_add(&sum[VOLUME], s->domain->geom[rg_geom_index(slot, RG_GEOM_VOLUME)]);
             add_momentum(sum, s, slot);
@@ -156,6 +160,7 @@ const rg_energy *rg_ledger_take(rg_ledger *l, rg_solver *s) {
                      .dissipated = part[RG_E_DISSIPATED],
                      .plastic = v[RELEASED + RG_RELEASED_PLASTIC],
                      .damage = v[RELEASED + RG_RELEASED_DAMAGE],
+                     .viscous = v[VISCOUS],
                      .external = v[EXTERNAL] + bodies.work,
                      .broken_area = v[BROKEN],
                      .failed_area = v[FAILED],
@@ -166,7 +171,7 @@ const rg_energy *rg_ledger_take(rg_ledger *l, rg_solver *s) {
         e->angular_momentum[c] += bodies.angular_momentum[c];
     }
     double stored = e->kinetic + e->bodies + e->bulk + e->penalty + e->cohesive + e->contact + e->dissipated +
-                    e->plastic + e->damage;
+                    e->plastic + e->damage + e->viscous;
     e->total = stored - e->external;
     if (!l->begun) {
         *l = (rg_ledger){.begun = true, .start = e->total, .last = *e};

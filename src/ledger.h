@@ -13,6 +13,7 @@ typedef struct {
     double dissipated;                                        /* by cracks between elements (J) */
     double plastic, damage; /* set free in the bulk by plastic flow and by growing microcracks (J); the latter
                          can be negative, where growth raises the stored energy (deshpande_evans_model.h) */
+    double viscous;         /* dissipated by bulk viscosity (J) */
     double external;        /* work done by prescribed motions (J) */
     double total;           /* sum of the parts less the external work (J) */
     double error;           /* change of the total since the start, over the largest energy seen (or what

@@ -32,6 +32,8 @@ static void allocate_fields(rg_solver *s) {
     s->crack_stride = rg_crack_stride(&s->law);
     s->crack = rg_alloc_sparse(d->iblocks * s->crack_stride, sizeof *s->crack);
     s->history = s->histories > 0 ? RG_NEW(rg_real, rg_solver_history(s)) : NULL;
+    bool viscous = s->input->viscosity.linear > 0 || s->input->viscosity.quadratic > 0;
+    s->heat = viscous ? RG_NEW(double, blocks *RG_LANES) : NULL;
     s->cracked = RG_NEW(uint8_t, blocks);
     s->broken = RG_NEW(uint8_t, d->iblocks * RG_LANES);
     s->unlinked = RG_NEW(uint8_t, d->iblocks * RG_LANES);
@@ -49,6 +51,9 @@ static void place_tile(rg_solver *s, const rg_tile *t) {
     size_t history = rg_history_rows(s->histories) * RG_LANES;
     memset(s->u + at, 0, bytes);
     memset(s->velocity + at, 0, bytes);
+    if (s->heat != NULL) {
+        memset(s->heat + t->begin * RG_LANES, 0, rg_tile_eblocks(t) * RG_LANES * sizeof *s->heat);
+    }
     if (history > 0) {
         memset(s->history + t->begin * history, 0, rg_tile_eblocks(t) * history * sizeof *s->history);
     }
@@ -188,6 +193,23 @@ static rg_real largest(const rg_real *x, size_t count) {
     return m + bad;
 }
 
+/* Bulk viscosity, on the forces of the bulk. */
+static void dampen(rg_solver *s, const rg_tile *t, const rg_bulk_args *bulk) {
+    double b1 = s->input->viscosity.linear, b2 = s->input->viscosity.quadratic,
+           speed = rg_material_dilatational(&s->material);
+    double xi = s->damping * b1;
+    rg_viscosity_args args = {.bulk = bulk,
+                              .velocity = s->velocity + t->begin * RG_NODE_BLOCK,
+                              .linear = b1 * speed,
+                              .quadratic = b2 * b2,
+                              .damping = xi,
+                              .damping_rate = s->damping * b2 * b2 / speed,
+                              .allowed = sqrt(1 + xi * xi) - xi,
+                              .dt = s->dt,
+                              .heat = s->heat + t->begin * RG_LANES};
+    s->kernels->viscosity(&args, 0, rg_tile_eblocks(t));
+}
+
 /* Elements and the interfaces inside: what they compute stays in the cache. */
 static void inside(rg_solver *s, size_t tile, const rg_workspace *w, const impulse *p) {
     const rg_tile *t = &s->domain->tile[tile];
@@ -198,6 +220,9 @@ static void inside(rg_solver *s, size_t tile, const rg_workspace *w, const impul
     rg_trace_args traces = rg_tile_traces(s, t, w, false);
     s->kernels->receive(&traces, 0, rg_tile_seams(t));
     s->kernels->bulk(&bulk, 0, blocks);
+    if (s->heat != NULL && p->constrain) {
+        dampen(s, t, &bulk);
+    }
     s->kernels->send_tractions(&traces, 0, rg_tile_seams(t));
     s->kernels->interface(&interface, 0, rg_tile_inside(t));
     mark_cracked(s, t, t->ibegin, t->sbegin);
@@ -469,9 +494,9 @@ void rg_solver_free(rg_solver *s) {
     for (int t = 0; t < s->threads; t++) {
         rg_workspace_free(&s->work[t]);
     }
-    void *blocks[] = {s->u,         s->velocity, s->now,      s->crack,  s->stiffening, s->tile_stiffening,
-                      s->cracked,   s->broken,   s->unlinked, s->active, s->rows[0],    s->rows[1],
-                      s->tractions, s->watched,  s->work,     s->history};
+    void *blocks[] = {s->u,         s->velocity, s->now,      s->crack,   s->stiffening, s->tile_stiffening,
+                      s->cracked,   s->broken,   s->unlinked, s->active,  s->rows[0],    s->rows[1],
+                      s->tractions, s->watched,  s->work,     s->history, s->heat};
     rg_free(s->scale);
     rg_constraints_free(s->constraints);
     rg_bodies_free(s->bodies);

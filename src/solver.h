@@ -44,6 +44,7 @@ struct rg_solver {
     size_t crack_stride;         /* values of a block of interfaces */
     rg_real *history; /* layout.h: of the material, `histories` values a point; NULL where that is 0 */
     int histories;
+    double *heat;        /* [blocks][lane]: dissipated by bulk viscosity (J); NULL where there is none */
     rg_real *stiffening; /* [blocks][lane] */
     rg_real *tile_stiffening;
     double stiffening_anywhere;  /* largest on all ranks; infinite if not finite */
@@ -67,6 +68,7 @@ struct rg_solver {
     double stiffest; /* largest ratio of strength to critical opening, over that of the law; 1: all alike */
     bool lift, lumped;
 
+    double damping;  /* by viscosity.linear 1, of the stiffest mode */
     double omega2;   /* largest squared frequency, faces intact or closed, bodies in contact (1/s^2) */
     rg_gid limiting; /* element that sets it */
     const char *limiting_state;

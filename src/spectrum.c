@@ -6,6 +6,7 @@
 
 #include "hash.h"
 #include "law.h"
+#include "material.h"
 #include "mem.h"
 #include "patch.h"
 
@@ -355,6 +356,7 @@ void rg_spectrum_whole(rg_solver *s) {
         }
     }
     s->omega2 = worst * op.scale * (1 + MARGIN);
+    s->damping = 0.5 * sqrt(s->omega2) * op.height / rg_material_dilatational(m);
     s->limiting_state = state_name[limiting];
     set_state(s, limiting, slope[1] * s->stiffest, shared);
     s->limiting = limiting_element(&op, &run[limiting], worst);
@@ -382,6 +384,7 @@ static void patch_spectrum(rg_solver *s) {
     local->stiffest = s->stiffest;
     rg_spectrum_whole(local);
     s->omega2 = local->omega2;
+    s->damping = local->damping;
     s->limiting = local->part->original[local->limiting];
     s->limiting_state = local->limiting_state;
     rg_solver_free(local);
@@ -397,6 +400,7 @@ void rg_spectrum(rg_solver *s) {
         which++;
     }
     MPI_Bcast(&s->omega2, 1, MPI_DOUBLE, 0, s->comm);
+    MPI_Bcast(&s->damping, 1, MPI_DOUBLE, 0, s->comm);
     MPI_Bcast(&s->limiting, 1, MPI_INT64_T, 0, s->comm);
     MPI_Bcast(&which, 1, MPI_INT, 0, s->comm);
     s->limiting_state = state_name[which];

@@ -35,6 +35,7 @@ void rg_state_of_solver(rg_state *st, rg_solver *s) {
     rg_state_add(st, "stiffening", RG_OF_RUN, RG_STATE_DOUBLE, 1, &s->stiffening_anywhere);
     rg_state_add(st, "omega2", RG_OF_RUN, RG_STATE_DOUBLE, 1, &s->omega2);
     rg_state_add(st, "limiting", RG_OF_RUN, RG_STATE_INT64, 1, &s->limiting);
+    rg_state_add(st, "damping", RG_OF_RUN, RG_STATE_DOUBLE, 1, &s->damping);
     rg_state_add(st, "displacement", RG_OF_ELEMENT, RG_STATE_REAL, 3 * RG_NODES, s->u);
     rg_state_add(st, "velocity", RG_OF_ELEMENT, RG_STATE_REAL, 3 * RG_NODES, s->velocity);
     rg_state_add(st, "broken", RG_OF_FACE, RG_STATE_BYTE, 1, s->broken);
@@ -43,6 +44,9 @@ void rg_state_of_solver(rg_state *st, rg_solver *s) {
     if (s->histories > 0) {
         rg_state_add(st, "history", RG_OF_ELEMENT, RG_STATE_REAL, (int)rg_history_rows(s->histories),
                      s->history);
+    }
+    if (s->heat != NULL) {
+        rg_state_add(st, "heat", RG_OF_ELEMENT, RG_STATE_DOUBLE, 1, s->heat);
     }
     rg_constraints_register(s->constraints, st);
     rg_bodies_register(s->bodies, st);

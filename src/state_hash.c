@@ -20,7 +20,7 @@ static uint64_t element_hash(const rg_solver *s, size_t slot) {
     for (size_t row = 0; row < rg_history_rows(s->histories); row++) {
         h = chain(h, s->history[rg_history_index(slot, s->histories, row)]);
     }
-    return h;
+    return s->heat != NULL ? chain(h, s->heat[slot]) : h;
 }
 
 static uint64_t interface_hash(const rg_solver *s, const rg_tile *t, size_t i) {

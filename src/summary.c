@@ -98,6 +98,7 @@ static void write_physics(FILE *f, const rg_summary *m, const rg_ledger *l) {
     number(f, "dissipated_J", l->last.dissipated);
     number(f, "plastic_J", l->last.plastic);
     number(f, "damage_J", l->last.damage);
+    number(f, "viscous_J", l->last.viscous);
     number(f, "first_fracture_time_s", m->first_fracture);
     number(f, "broken_area_m2", l->last.broken_area);
     number(f, "failed_area_m2", l->last.failed_area);

@@ -43,6 +43,7 @@ typedef struct {
     rg_kick_args kick;
     rg_drift_args drift;
     rg_kinetic_args kinetic;
+    rg_viscosity_args viscosity;
     double *history;
     array list[21];
     size_t arrays;
@@ -64,6 +65,9 @@ static void run_blocks(const call *c, size_t elements, size_t interfaces) {
         break;
     case RG_COST_KICK:
         c->set->kick(&c->kick, 0, elements);
+        break;
+    case RG_COST_VISCOSITY:
+        c->set->viscosity(&c->viscosity, 0, elements);
         break;
     case RG_COST_DRIFT:
         c->set->drift(&c->drift, 0, elements);
@@ -150,6 +154,15 @@ static void bind_elements(call *c) {
                              .interface = in->interface,
                              .velocity = in->velocity};
     c->drift = (rg_drift_args){2e-9, in->velocity, in->u};
+    c->viscosity = (rg_viscosity_args){.bulk = &c->bulk,
+                                       .velocity = in->velocity,
+                                       .linear = 600,
+                                       .quadratic = 1.44,
+                                       .damping = 0.3,
+                                       .damping_rate = 1e-4,
+                                       .allowed = 0.7,
+                                       .dt = 1e-9,
+                                       .heat = c->out[1]};
     c->kinetic = (rg_kinetic_args){in->material.density, v->lumped, in->geom, in->velocity, c->out[0]};
 }
 
@@ -226,6 +239,7 @@ static const struct {
     {"interface, broken", RG_COST_INTERFACE, {.damaged = 1, .points = 6}},
     {"interface state", RG_COST_INTERFACE_STATE, {.damaged = 0}},
     {"interface state, broken", RG_COST_INTERFACE_STATE, {.damaged = 1}},
+    {"viscosity", RG_COST_VISCOSITY, {.lift = false}},
     {"kick consistent", RG_COST_KICK, {.lumped = false}},
     {"kick lumped", RG_COST_KICK, {.lumped = true}},
     {"drift", RG_COST_DRIFT, {.lumped = false}},
