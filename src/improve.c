@@ -8,10 +8,10 @@
 #include "improve_tets.h"
 #include "mem.h"
 
-enum { PASSES = 60, IDLE = 4 };
+enum { PASSES = 60, IDLE = 2 };
 
-static const double reach = 1.7, /* tetrahedra up to so many times the smallest height are worked on */
-    progress = 1e-3;             /* relative growth of the smallest height in a pass that is not idle */
+static const double reach = 1.3, /* tetrahedra up to so many times the smallest height are worked on */
+    progress = 1e-2;             /* relative growth of the smallest height in a pass that is not idle */
 
 typedef struct {
     double height;

@@ -20,10 +20,9 @@
 #include "mesh_info.h"
 
 static const char usage[] =
-    "usage: rhegma mesh IN -o OUT.h5 [--scale S]    a mesh file from Abaqus (.inp), or from what Gmsh reads "
-    "or\n"
-    "                                               meshes (.msh .bdf .unv .geo .step ...); S: m per unit of "
-    "IN\n"
+    "usage: rhegma mesh IN -o OUT.h5 [--scale S] [--improve]   a mesh file from Abaqus (.inp), or from what\n"
+    "                                               Gmsh reads or meshes (.msh .bdf .unv .geo ...); S: m\n"
+    "                                               per unit of IN; --improve makes flat elements less flat\n"
     "       rhegma mesh CASE.yaml -o OUT.h5 [--set a.b=value]   a mesh file from the mesh of a case\n"
     "       rhegma mesh --info MESH.h5 [--case CASE.yaml]   what a mesh file holds; its time steps with the\n"
     "                                               material of a case, else for waves of 1 m/s\n"
@@ -158,6 +157,9 @@ static bool ends_with(const char *text, const char *end) {
 }
 
 static int from_case(const rg_mesh_arguments *a) {
+    if (a->improve) {
+        complain("--improve is for imports; not understood with a case", a->input);
+    }
     rg_case *c = rg_case_read(a->input, a->overrides, a->override, stderr);
     if (c == NULL) {
         return RG_USAGE;

@@ -218,7 +218,10 @@ def test_missing_and_foreign_inputs(tmp_path):
 @pytest.mark.parametrize("arguments, message", [
     ([], "nothing to read"), (["a.msh"], "-o OUT.h5 is missing"), (["a.msh", "-o"], "missing value after: -o"),
     (["a.msh", "b.msh"], "one mesh at a time"), (["a.msh", "-o", "x.h5", "--scale", "0"], "--scale must be a number > 0"),
-    (["--info", "a.h5", "-o", "b.h5"], "--info writes nothing"), (["a.h5", "-o", "b.h5"], "a mesh file already"), (["a.msh", "--frob", "1"], "unknown option: --frob"),
+    (["--info", "a.h5", "-o", "b.h5"], "--info writes nothing"),
+    (["--info", "a.h5", "--improve"], "not understood with it: --info"),
+    (["--partition", "2", "a.h5", "--improve"], "not understood with it: --partition"),
+    (["a.yaml", "-o", "b.h5", "--improve"], "--improve is for imports"), (["a.h5", "-o", "b.h5"], "a mesh file already"), (["a.msh", "--frob", "1"], "unknown option: --frob"),
 ])
 def test_wrong_arguments(tmp_path, arguments, message):
     process = launch("mesh", *arguments, cwd=tmp_path)
@@ -308,6 +311,7 @@ def test_abaqus_that_is_refused(tmp_path, old, new, message):
 THESIS = {"spall-uniform": 13683, "spall-middle": 150742, "spall-graded": 223394,
           "plate-structured": 183673, "plate-unstructured": 198431}
 SIDES = ["x+", "x-", "y+", "y-", "z+", "z-"]
+REFINED = ["spall-middle", "spall-graded"]  # meshed for --improve
 
 
 @pytest.fixture(scope="module")
@@ -316,7 +320,8 @@ def thesis(scratch):
 
     def make(name):
         if name not in made:
-            made[name] = convert(BENCH / f"{name}.geo", scratch / f"{name}.h5", "--scale", "1e-3")[0]
+            improve = ["--improve"] if name in REFINED else []
+            made[name] = convert(BENCH / f"{name}.geo", scratch / f"{name}.h5", "--scale", "1e-3", *improve)[0]
         return made[name]
 
     return make
@@ -363,6 +368,37 @@ def test_middle_of_the_refined_meshes(thesis):
     assert mean_edge(c, 5e-6) == pytest.approx(11.4e-6, rel=0.05)
     height, area = flat_area(c)
     assert height == 0 and area == pytest.approx(0.16e-6, rel=1e-9)
+
+
+def smallest_height(c):
+    return (3 * volumes(c) / face_areas(c).max(axis=1)).min()
+
+
+@needs_gmsh
+@pytest.mark.parametrize("name, gain", [("spall-uniform", 1.6), ("part", 1.5)])
+def test_improvement(thesis, tmp_path, name, gain):
+    plain = thesis(name)
+    better, _ = convert(BENCH / f"{name}.geo", tmp_path / "better.h5", "--scale", "1e-3", "--improve")
+    before, after = corners(plain), corners(better)
+    assert smallest_height(after) > gain * smallest_height(before)
+    assert volumes(after).sum() == pytest.approx(volumes(before).sum(), rel=1e-9)
+    sizes = [{key: face_areas(c)[file["set"][:] == i].sum() for i, key in enumerate(names(file, "surface"))}
+             for file, c in ((plain, before), (better, after))]
+    assert sizes[1] == pytest.approx(sizes[0], rel=1e-9)  # curved surfaces included
+    again, _ = convert(BENCH / f"{name}.geo", tmp_path / "again.h5", "--scale", "1e-3", "--improve")
+    assert (tmp_path / "again.h5").read_bytes() == (tmp_path / "better.h5").read_bytes()
+
+
+@needs_gmsh
+def test_improvement_keeps_surfaces_between_volumes(tmp_path):
+    geo = tmp_path / "two.geo"
+    geo.write_text(NAMED)
+    file, said = convert(geo, tmp_path / "two.h5", "--improve")
+    c = corners(file)
+    for i, part in enumerate(names(file, "volume")):
+        z = c[file["region"][:] == i][:, :, 2]
+        assert (z.min(), z.max()) == ((0, 1) if part == "steel" else (1, 2))
+        assert volumes(c)[file["region"][:] == i].sum() == pytest.approx(1, rel=1e-12)
 
 
 @needs_gmsh

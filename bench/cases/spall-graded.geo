@@ -29,7 +29,7 @@ Physical Surface("y+") = {up[4], down[4]};
 Physical Surface("x-") = {up[5], down[5]};
 Physical Volume("bar") = {up[1], down[1]};
 
-DefineConstant[ fine = 0.0098, slope = 0.0342 ]; // mm: edge at the plane; its growth with the distance
+DefineConstant[ fine = 0.0091, slope = 0.0395 ]; // mm: edge at the plane; its growth with the distance
 Field[1] = MathEval;
 Field[1].F = Sprintf("%g + %g*Abs(z)", fine, slope);
 Background Field = 1;
