@@ -61,6 +61,8 @@ void rg_checkpoints_open(rg_checkpoints *k, const char *dir, rg_solver *s, const
 
 void rg_checkpoints_close(rg_checkpoints *k) {
     rg_free(k->folder);
+    rg_free(k->record);
+    rg_free(k->sorted);
     rg_slab_free(k->slab);
 }
 
@@ -97,18 +99,29 @@ static rg_h5_slab of_elements(const rg_slab *slab, const rg_state_array *a) {
                         .count = (int64_t)slab->count};
 }
 
-static void put_elements(rg_h5_file *f, hid_t group, const rg_checkpoints *k, const rg_state_array *a) {
+/* Room for an array of `bytes` an element. */
+static void make_room(rg_checkpoints *k, size_t bytes) {
+    if (bytes > k->room) {
+        rg_free(k->record);
+        rg_free(k->sorted);
+        k->record = RG_NEW(char, k->slab->own *bytes + 1);
+        k->sorted = RG_NEW(char, k->slab->count *bytes + 1);
+        k->room = bytes;
+    }
+}
+
+static void put_elements(rg_h5_file *f, hid_t group, rg_checkpoints *k, const rg_state_array *a) {
     size_t bytes = rg_state_bytes(a);
-    char *record = RG_NEW(char, k->slab->own *bytes + 1), *sorted = RG_NEW(char, k->slab->count *bytes + 1);
+    make_room(k, bytes);
 #pragma omp parallel for schedule(static)
     for (size_t i = 0; i < k->slab->own; i++) {
-        rg_state_get(a, (size_t)k->slab->slot[i], record + i * bytes);
+        size_t place = rg_slab_place(k->slab, i);
+        char *to = place != SIZE_MAX ? k->sorted + place * bytes : k->record + i * bytes;
+        rg_state_get(a, (size_t)k->slab->slot[i], to);
     }
-    rg_slab_send_bytes(k->slab, bytes, record, sorted);
-    rg_free(record);
+    rg_slab_send_others(k->slab, bytes, k->record, k->sorted);
     rg_h5_slab s = of_elements(k->slab, a);
-    rg_h5_write(f, group, &s, NULL, sorted);
-    rg_free(sorted);
+    rg_h5_write(f, group, &s, NULL, k->sorted);
 }
 
 static void put_rows(rg_h5_file *f, hid_t group, const rg_state_array *a) {
@@ -123,7 +136,7 @@ static void put_rows(rg_h5_file *f, hid_t group, const rg_state_array *a) {
 }
 
 /* All arrays of one kind, to a group. */
-static void put_group(rg_h5_file *f, const rg_checkpoints *k, const char *name, rg_state_of of) {
+static void put_group(rg_h5_file *f, rg_checkpoints *k, const char *name, rg_state_of of) {
     hid_t group = rg_h5_group(f, name);
     for (int i = 0; i < k->state->arrays; i++) {
         const rg_state_array *a = &k->state->array[i];
@@ -136,7 +149,7 @@ static void put_group(rg_h5_file *f, const rg_checkpoints *k, const char *name, 
     rg_h5_agree(f, H5Gclose(group) >= 0, "close", NULL);
 }
 
-static void put_all(rg_h5_file *f, const rg_checkpoints *k) {
+static void put_all(rg_h5_file *f, rg_checkpoints *k) {
     identity id = identity_of(k);
     rg_h5_agree(f, put_identity(f, &id), "describe", "the file");
     put_case(f, k->solver->input);

@@ -23,7 +23,9 @@ typedef struct {
     const rg_state *state;
     char *folder; /* where the checkpoints are */
     rg_slab *slab;
-    uint64_t mesh; /* hash of the mesh */
+    char *record, *sorted; /* kept from one checkpoint to the next: fresh pages cost more than the disk */
+    size_t room;           /* bytes of an element for which they are large enough */
+    uint64_t mesh;         /* hash of the mesh */
     int written;
     double seconds; /* that writing them took in all */
     double slowest; /* time that the slowest one took to write so far (s) */

@@ -1,5 +1,6 @@
 #include "slab.h"
 
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -55,7 +56,12 @@ rg_slab *rg_slab_make(const rg_domain *d, rg_gid total, MPI_Comm comm) {
     MPI_Comm_rank(comm, &rank);
     MPI_Comm_size(comm, &ranks);
     rg_slab *s = RG_NEW(rg_slab, 1);
-    *s = (rg_slab){.total = total, .first = slab_begin(total, ranks, rank), .own = d->elements, .comm = comm};
+    *s = (rg_slab){.rank = rank,
+                   .ranks = ranks,
+                   .total = total,
+                   .first = slab_begin(total, ranks, rank),
+                   .own = d->elements,
+                   .comm = comm};
     s->count = (size_t)(slab_begin(total, ranks, rank + 1) - s->first);
     s->slot = RG_NEW(rg_lid, s->own + 1);
     s->place = RG_NEW(size_t, s->count + 1);
@@ -91,15 +97,40 @@ static MPI_Datatype record_type(size_t bytes) {
     return record;
 }
 
-void rg_slab_send_bytes(const rg_slab *s, size_t bytes, const void *in, void *out) {
+size_t rg_slab_place(const rg_slab *s, size_t i) {
+    size_t first = (size_t)s->send_at[s->rank];
+    bool stays = i >= first && i < first + (size_t)s->send[s->rank];
+    return stays ? s->place[(size_t)s->receive_at[s->rank] + i - first] : SIZE_MAX;
+}
+
+void rg_slab_send_others(const rg_slab *s, size_t bytes, const void *in, void *out) {
+    if (s->ranks == 1) {
+        return;
+    }
+    int *send = RG_NEW(int, 2 * (size_t)s->ranks), *receive = send + s->ranks;
+    memcpy(send, s->send, (size_t)s->ranks * sizeof *send);
+    memcpy(receive, s->receive, (size_t)s->ranks * sizeof *receive);
+    send[s->rank] = receive[s->rank] = 0;
     MPI_Datatype record = record_type(bytes);
     char *arrived = RG_NEW(char, s->count *bytes + 1);
-    MPI_Alltoallv(in, s->send, s->send_at, record, arrived, s->receive, s->receive_at, record, s->comm);
+    MPI_Alltoallv(in, send, s->send_at, record, arrived, receive, s->receive_at, record, s->comm);
+    MPI_Type_free(&record);
+    size_t first = (size_t)s->receive_at[s->rank], end = first + (size_t)s->receive[s->rank];
     for (size_t i = 0; i < s->count; i++) {
-        memcpy((char *)out + s->place[i] * bytes, arrived + i * bytes, bytes);
+        if (i < first || i >= end) {
+            memcpy((char *)out + s->place[i] * bytes, arrived + i * bytes, bytes);
+        }
     }
     rg_free(arrived);
-    MPI_Type_free(&record);
+    rg_free(send);
+}
+
+void rg_slab_send_bytes(const rg_slab *s, size_t bytes, const void *in, void *out) {
+    size_t first = (size_t)s->send_at[s->rank], end = first + (size_t)s->send[s->rank];
+    for (size_t i = first; i < end; i++) {
+        memcpy((char *)out + rg_slab_place(s, i) * bytes, (const char *)in + i * bytes, bytes);
+    }
+    rg_slab_send_others(s, bytes, in, out);
 }
 
 void rg_slab_fetch_bytes(const rg_slab *s, size_t bytes, const void *in, void *out) {

@@ -6,6 +6,7 @@
 #include "domain.h"
 
 typedef struct {
+    int rank, ranks;
     rg_gid total; /* elements of the mesh */
     rg_gid first; /* this rank's slab */
     size_t count;
@@ -28,6 +29,12 @@ void rg_slab_send(const rg_slab *s, int values, const double *in, double *out);
 /* The same for records of `bytes` bytes, and back again. */
 void rg_slab_send_bytes(const rg_slab *s, size_t bytes, const void *in, void *out);
 void rg_slab_fetch_bytes(const rg_slab *s, size_t bytes, const void *in, void *out);
+
+/* Row of the slab to which record i (in the order of `slot`) belongs if that is this rank's, else SIZE_MAX.
+ * Who puts those there at once has only the others to send: `in` is not read where records stay. The sending
+ * is collective. */
+size_t rg_slab_place(const rg_slab *s, size_t i);
+void rg_slab_send_others(const rg_slab *s, size_t bytes, const void *in, void *out);
 
 /* Row of own element `id` in the order of `slot`. */
 size_t rg_slab_row(const rg_slab *s, const rg_domain *d, rg_gid id);

@@ -72,6 +72,14 @@ static char *place(const rg_state_array *a, size_t i, size_t k) {
 
 void rg_state_get(const rg_state_array *a, size_t i, void *out) {
     size_t value = rg_state_value(a);
+    if (a->of == RG_OF_ELEMENT && a->type == RG_STATE_REAL) { /* nearly all there is */
+        const rg_real *from =
+            (const rg_real *)a->data + i / RG_LANES * (size_t)a->count * RG_LANES + i % RG_LANES;
+        for (int k = 0; k < a->count; k++) {
+            memcpy((char *)out + (size_t)k * sizeof *from, from + k * RG_LANES, sizeof *from);
+        }
+        return;
+    }
     for (size_t k = 0; k < (size_t)a->count; k++) {
         memcpy((char *)out + k * value, place(a, i, k), value);
     }
