@@ -188,7 +188,7 @@ def test_output_goes_to_the_named_place(tmp_path):
     for words in (["-o", "a/b"], overrides({"output.dir": "c"})):
         assert launch("run", FRAGMENTS, "-q", *overrides(SHORT), *words, cwd=tmp_path).returncode == 0
     assert sorted(path.name for path in tmp_path.iterdir()) == ["a", "c"]
-    left = {"case.yaml", "energy.csv", "fields", "fields.h5", "fields.xdmf", "summary.json"}
+    left = {"case.yaml", "energy.csv", "fragments.csv", "fields", "fields.h5", "fields.xdmf", "summary.json"}
     assert {path.name for path in (tmp_path / "a/b").iterdir()} == left == {p.name for p in (tmp_path / "c").iterdir()}
 
 

@@ -1,9 +1,13 @@
 """Fragments of runs: they add up to the body, are the same bits on any layout, and overlaps are told. Their values
 against closed forms are in test_fragment.c."""
 
+import os
+import re
+import subprocess
+
 import numpy as np
 import pytest
-from conftest import CASES, launch, rounding
+from conftest import CASES, ENVIRONMENT, PROGRAM, ROOT, launch, rounding
 
 SETS = {"time.end": 0.6e-6, "output.interval": 5e-8, "output.energy_limit": 1e9,
         "output.fields": ["fragment", "crack"]}
@@ -128,3 +132,18 @@ def test_no_word_of_pieces_that_part(scratch):
     folder, process = meet(scratch, 1, -1)
     assert process.returncode == 0 and "overlap" not in process.stderr
     assert "overlap" not in (folder / "out" / "summary.json").read_text()
+
+
+# ---- A bar stretched at a uniform rate ----
+
+
+def test_fragments_of_a_stretched_bar_are_of_the_size_that_energy_allows(scratch):
+    """Within a factor of 3 of Glenn & Chudnovsky (1986), and not a matter of the mesh, which has 160 planes."""
+    environment = {**os.environ, **ENVIRONMENT, "RHEGMA": str(PROGRAM), "OMP_NUM_THREADS": "2"}
+    command = [ROOT / "bench" / "fragmentation", "--out", scratch / "stretched", "--rates", "3e4", "--seeds", "1"]
+    process = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=300)
+    assert process.returncode == 0, process.stderr
+    count = int(re.search(r": (\d+) fragments", process.stdout)[1])
+    size = float(re.search(r"Glenn-Chudnovsky ([\d.]+) mm", process.stdout)[1])
+    assert 20 / size / 3 < count < 20 / size * 3 and count < 80
+    assert (scratch / "stretched" / "fragmentation.png").exists()
