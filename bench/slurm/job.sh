@@ -21,13 +21,13 @@ launch=${LAUNCH:-mpirun -n ${SLURM_NTASKS:-1}}
 export OMP_NUM_THREADS=${SLURM_CPUS_PER_TASK:-1}
 
 # Go on if there is something to go on from; the first time, and after a loss before the first checkpoint, begin.
-restart=()
+where=(-o "$out")
 if ls "$out"/checkpoints/step-*.h5 >/dev/null 2>&1; then
-    restart=(--restart "$out")
+    where=(--restart "$out")
 fi
-echo "job ${SLURM_JOB_ID:-none}, start ${SLURM_RESTART_COUNT:-0}: ${restart[*]:-from the beginning}"
+echo "job ${SLURM_JOB_ID:-none}, start ${SLURM_RESTART_COUNT:-0}: ${where[*]}"
 
-$launch "$program" run "$case" -o "$out" "${restart[@]}" "$@" &
+$launch "$program" run "$case" "${where[@]}" "$@" &
 run=$!
 # Slurm sends USR2 to this script 300 s before the limit (or up to a minute earlier); the launcher passes it on.
 trap 'kill -USR2 $run' USR2
