@@ -4,6 +4,7 @@ simulation."""
 import json
 import os
 import shutil
+import statistics
 import subprocess
 import sys
 
@@ -68,8 +69,11 @@ def test_efficiency_is_written(tmp_path):
     assert {(s["form"], s["layout"]) for s in record["steps"]} == {(f, k) for f in ("variational", "incomplete")
                                                                    for k in ("threads", "ranks")}
     assert all(len(q["samples_s"]) == 3 and min(q["samples_s"]) > 0 for q in record["quantities"])
-    one, both = record["quantities"][2]["samples_s"], record["quantities"][3]["samples_s"]
-    assert max(a / b for a, b in zip(one, both)) < 3  # two cores are not three
+    times = [q["samples_s"] for q in record["quantities"]]
+    limit = [min(t1 / t2, p1 / p2) for t1, t2, p1, p2 in zip(*times[:4])]
+    shares = [one / all_cores / most for one, all_cores, most in zip(times[4], times[6], limit)]  # variational, ranks
+    stated = next(s for s in record["steps"] if (s["form"], s["layout"]) == ("variational", "ranks"))
+    assert stated["of_limit"] == pytest.approx(statistics.median(shares), rel=1e-3)
 
 
 @pytest.mark.skipif(shutil.which("smpirun") is None, reason="SimGrid is not installed (libsimgrid-dev)")
