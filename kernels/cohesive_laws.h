@@ -22,3 +22,5 @@
 #include "cohesive_polynomial.h"
 #include "cohesive_needleman.h"
 #include "cohesive_xu_needleman.h"
+#include "cohesive_rate.h"
+#include "cohesive_fatigue.h"

@@ -12,6 +12,7 @@ typedef struct {
     const double *shape;      /* the law's own parameters */
     double beta, step;        /* weight of shear; time since the state before (s) */
     double normal, sliding;   /* D_n, |D_t| (m) */
+    double effective;         /* sqrt(beta^2 |D_t|^2 + max(0, D_n)^2) (m) */
     double before;            /* largest effective opening before this state (m) */
 } rg_law_query;
 
@@ -20,16 +21,10 @@ typedef struct {
     double stored, dissipated; /* J/m^2 */
 } rg_law_answer;
 
-/* sqrt(beta^2 |D_t|^2 + max(0, D_n)^2) */
-static inline double rg_reference_effective(const rg_law_query *p) {
-    return hypot(p->beta * p->sliding, fmax(0, p->normal));
-}
-
 static inline void rg_reference_secant(const rg_law_query *p, double secant, rg_law_answer *a) {
-    double delta = rg_reference_effective(p);
     a->normal = secant * fmax(0, p->normal);
     a->sliding = secant * p->beta * p->beta * p->sliding;
-    a->stored = secant * delta * delta / 2;
+    a->stored = secant * p->effective * p->effective / 2;
 }
 
 /* Answer of a law. state: largest effective opening (this state included), then the law's memory, which is

@@ -190,6 +190,7 @@ static rg_law_answer ask(const rg_interface_args *args, const point *p, const op
                           args->step,
                           o->normal,
                           sqrt(rg_reference_dot(o->shear, o->shear)),
+                          o->effective,
                           before};
     int memory = rg_law_facts_of(law->law, law->shape, law->beta).memory;
     double state[1 + RG_LAW_MEMORY] = {*k->state[RG_CRACK_OPENING]};

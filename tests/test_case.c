@@ -506,7 +506,7 @@ static const struct mistake {
      "allowed: " INTRINSIC},
     {"  law: linear\n", "  law: bilinear\n",
      ":10:8: interface.law: bilinear: starts with a slope, which only form intrinsic can use; "
-     "allowed: with form variational or incomplete: linear, free, none\n"},
+     "allowed: with form variational or incomplete: linear, free, rate, fatigue, none\n"},
     {"  law: linear\n", "  law: exponential\n  form: intrinsic\n  contact: flux\n  penalty: elastic\n",
      ":12:12: interface.contact: flux: brings DG terms back, which form intrinsic does not have; "
      "allowed: with form intrinsic: penalty\n"

@@ -56,14 +56,15 @@ static void for_each_law(void (*test)(const subject *s)) {
 }
 
 static rg_law_query query_of(const subject *s, double normal, double sliding) {
-    return (rg_law_query){SIGMA, DELTA, s->shape, s->beta, 1e-9, normal, sliding, 0};
+    return (rg_law_query){
+        SIGMA, DELTA, s->shape, s->beta, 1e-9, normal, sliding, hypot(s->beta * sliding, fmax(0, normal)), 0};
 }
 
 /* The answer at an opening; the state moves on. */
 static rg_law_answer ask(const subject *s, double normal, double sliding, double state[1 + RG_LAW_MEMORY]) {
     rg_law_query q = query_of(s, normal, sliding);
     q.before = state[0];
-    state[0] = fmax(state[0], rg_reference_effective(&q));
+    state[0] = fmax(state[0], q.effective);
     return rg_reference_law(s->law, &q, state);
 }
 
@@ -143,7 +144,7 @@ static void check_potential(const subject *s) {
     for (int k = 0; k < STATES; k++) {
         double normal = random_in(&key, 0.01, 1.2) * DELTA, sliding = random_in(&key, 0.01, 1.2) * DELTA;
         rg_law_query q = query_of(s, normal, sliding);
-        double largest = rg_reference_effective(&q) * random_in(&key, 1.01, 3);
+        double largest = q.effective * random_in(&key, 1.01, 3);
         rg_law_answer a = ask_at(s, normal, sliding, largest);
         derivatives d = differentiate(s, normal, sliding, largest);
         double stiff = fmax(1, s->facts.slope[0] + s->facts.slope[1]) * SIGMA;
@@ -212,6 +213,39 @@ static void test_balance(void **state) {
     for_each_law(check_balance);
 }
 
+/* ---- Laws with a memory ---- */
+
+/* Opened at a constant rate, the work of separation is (1 + (v/v_0)^n) times that of slow opening. */
+static void test_rate(void **state) {
+    (void)state;
+    subject s = make_subject(RG_LAW_RATE, true, 1);
+    enum { STEPS = 2000 };
+    double memory[1 + RG_LAW_MEMORY] = {1e-9 * DELTA}, reach = 4 * DELTA, speed = reach / STEPS / 1e-9;
+    rg_law_answer a = ask(&s, 0, 0, memory);
+    for (int k = 1; k <= STEPS; k++)
+        a = ask(&s, reach * k / STEPS, 0, memory);
+    double expected = SIGMA * DELTA / 2 * (1 + pow(speed / s.shape[0], s.shape[1]));
+    assert_true(expected > 1.03 * SIGMA * DELTA / 2);
+    expect_near(&s, "work at a rate", a.dissipated, expected, 3e-3 * expected);
+}
+
+/* Cycles to the same opening wear the point: each peak is lower, by what the equations say for the first. */
+static void test_fatigue(void **state) {
+    (void)state;
+    subject s = make_subject(RG_LAW_FATIGUE, false, 1);
+    double memory[1 + RG_LAW_MEMORY] = {1e-9 * DELTA}, top = 0.4 * DELTA, far = s.shape[0] * DELTA, peak[4];
+    ask(&s, 0, 0, memory);
+    for (int cycle = 0; cycle < 4; cycle++) {
+        for (int k = 1; k <= 1000; k++)
+            peak[cycle] = ask(&s, top * k / 1000, 0, memory).normal;
+        for (int k = 999; k >= 0; k--)
+            ask(&s, top * k / 1000, 0, memory);
+    }
+    expect_near(&s, "first peak", peak[0], 0.6 * SIGMA, 1e-9 * SIGMA);
+    expect_near(&s, "second peak", peak[1], 0.6 * SIGMA * far / top * (1 - exp(-top / far)), 1e-6 * SIGMA);
+    assert_true(peak[2] < 0.99 * peak[1] && peak[3] < 0.99 * peak[2] && peak[3] > 0);
+}
+
 /* ---- Stiffness ---- */
 
 static void check_stiffness(const subject *s) {
@@ -275,7 +309,7 @@ static void output_free(output *out) {
     free(out->energy);
 }
 
-/* Three steps, so that memories matter; then the energies. */
+/* Three steps, each with larger displacements, so that memories matter; then the energies. */
 static output run(const rg_kernels *set, const input *in, const rg_real *scale) {
     output out = output_make(in);
     rg_interface_args args =
@@ -283,9 +317,16 @@ static output run(const rg_kernels *set, const input *in, const rg_real *scale) 
     args.crack_stride = stride_of(in);
     args.scale = scale;
     args.step = 1e-9;
-    for (int step = 0; step < 3; step++)
+    rg_real *u = input_alloc(INPUT_EBLOCKS * RG_NODE_BLOCK * sizeof *u);
+    args.u = u;
+    for (int step = 0; step < 3; step++) {
+        static const double grown[3] = {1, 1.03, 0.98};
+        for (size_t k = 0; k < INPUT_EBLOCKS * RG_NODE_BLOCK; k++)
+            u[k] = (rg_real)(grown[step] * in->u[k]);
         set->interface(&args, 0, INPUT_IBLOCKS);
+    }
     set->interface_state(&(rg_interface_state_args){&args, out.energy}, 0, INPUT_IBLOCKS);
+    free(u);
     return out;
 }
 
@@ -401,7 +442,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_work),    cmocka_unit_test(test_potential), cmocka_unit_test(test_dissipation),
         cmocka_unit_test(test_balance), cmocka_unit_test(test_stiffness), cmocka_unit_test(test_kernels),
-        cmocka_unit_test(test_scale),
+        cmocka_unit_test(test_scale),   cmocka_unit_test(test_rate),      cmocka_unit_test(test_fatigue),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

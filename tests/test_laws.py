@@ -23,6 +23,7 @@ VARIANTS = {
     "exponential": interface("exponential"),
     "bilinear weibull": interface("bilinear", weibull={"modulus": 6, "area": 1e-9}),
     "free": interface("free"),
+    "fatigue": interface("fatigue"),
     "linear weibull sets": interface("linear", weibull={"modulus": 6, "area": 1e-9, "keep": "opening"},
                                      sets=[{"where": "abs(nz) > 0.9", "strength": 300e6}]),
 }
@@ -46,7 +47,7 @@ PULLED = {"mesh.cells": [2, 2, 6], "mesh.size": [0.2e-3, 0.2e-3, 0.6e-3], "mesh.
           "boundary": [{"set": "z+", "component": "z", "velocity": 2}, {"set": "z-", "component": "z", "velocity": -2}]}
 
 
-@pytest.mark.parametrize("law", ["linear", "free", *SLOPED])
+@pytest.mark.parametrize("law", ["linear", "rate", "fatigue", "free", *SLOPED])
 def test_ledger_closes(run, law):
     run = run(BENCH / "spall.yaml", threads=2, sets={**PULLED, **interface(law)})
     energy = run.energy
