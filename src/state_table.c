@@ -54,7 +54,9 @@ static size_t face_entries(const rg_solver *s, bool broken, entry *list) {
     for (size_t t = 0; t < d->tiles; t++) {
         for (size_t i = d->tile[t].ibegin * RG_LANES; i < d->tile[t].iend * RG_LANES; i++) {
             double normal[3];
-            if (broken ? s->broken[i] != 0 : rg_interface_area(d, i, normal) > 0) { /* not padding */
+            bool real =
+                rg_interface_area(d, i, normal) > 0; /* not padding, which may break in the intrinsic form */
+            if (real && (!broken || s->broken[i] != 0)) {
                 list[n++] = (entry){rg_face_number(d, &d->tile[t], i), i};
             }
         }
