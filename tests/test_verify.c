@@ -71,7 +71,7 @@ static void test_check(size_t i) {
     rg_verify_change change = {0, NULL};
     rg_verify_rows right = {0}, wrong = {0};
     checks[i].check(MPI_COMM_WORLD, &change, &right);
-    report(right.rows > 0 && as_expected(&right, "hhhhhhhh" + RG_VERIFY_ROWS - right.rows), checks[i].name,
+    report(right.rows > 0 && as_expected(&right, &"hhhhhhhh"[RG_VERIFY_ROWS - right.rows]), checks[i].name,
            "holds");
     change = (rg_verify_change){1, &checks[i].change};
     checks[i].check(MPI_COMM_WORLD, &change, &wrong);
