@@ -3,9 +3,10 @@
  *     #define RG_MATERIAL NAME
  *     #define RG_HISTORY  values of history per point
  *
- *     RG_INLINE void material_step(const rg_bulk_args *args, rg_vec H[3][3], rg_vec history[], rg_vec
- * P[3][3], rg_point *out); P (Pa) and `out` at the deformation gradient F = I + H. If args->advance, history
- * goes on by the step for which args->material was prepared, and `out->released` tells what that set free.
+ *     RG_INLINE void material_step(const rg_bulk_args *args, rg_vec H[3][3], rg_vec history[],
+ *                                  rg_vec P[3][3], rg_point *out);
+ *         P (Pa) and `out` at the deformation gradient F = I + H. If args->advance, history goes on by the
+ *         step for which args->material was prepared, and `out->released` tells what that set free.
  *
  *     RG_INLINE void material_state(const rg_material *m, rg_vec H[3][3], rg_vec history[], bool stress,
  *                                   rg_point_state *out);

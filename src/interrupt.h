@@ -1,8 +1,8 @@
 /* What asks a run to write a checkpoint or to stop: signals, and the clock.
  *
  *   SIGUSR1                    write a checkpoint and go on
- *   SIGTERM, SIGINT, SIGUSR2   write a checkpoint and stop; a second SIGINT or SIGTERM ends the program at
- * once the wall-time limit        write a checkpoint and stop, in time
+ *   SIGTERM, SIGINT, SIGUSR2   write a checkpoint and stop; a second SIGINT or SIGTERM ends it at once
+ *   the wall-time limit        write a checkpoint and stop, in time
  *
  * A signal to any one rank is enough: wishes travel with the time step's reduction (solver.c). (mpirun passes
  * SIGUSR1 and SIGUSR2 on; on SIGTERM and SIGINT it ends the ranks within a second, so it is SIGUSR2 that asks

@@ -5,9 +5,9 @@
  * for what the run holds. Each line says what the values belong to:
  *
  *   RG_OF_ELEMENT   `count` values of every element, in the layout of all fields, [block][count][lane]
- *   RG_OF_FACE      the same of the interfaces, [interface block][count][lane]; kept only for interfaces with
- * a broken point, and zero for others after a restart RG_OF_RUN       `count` values that all ranks agree on
- * (or that only rank 0 uses)
+ *   RG_OF_FACE      the same of the interfaces, [interface block][count][lane]; kept only for interfaces
+ *                   with a broken point, and zero for others after a restart
+ *   RG_OF_RUN       `count` values that all ranks agree on (or that only rank 0 uses)
  *
  * and rg_state_add_list takes rows of which only some elements have any. What follows from the case, the mesh
  * or other state needs no line: recompute it in rg_solver_resume. Nothing here depends on ranks or threads: a
