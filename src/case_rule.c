@@ -79,6 +79,15 @@ static void check_law_and_form(rg_check *ck, const rg_node *node) {
     }
 }
 
+/* Its speed is the difference of two openings, of which floats leave too little. */
+static void check_rate(rg_check *ck, const rg_node *node) {
+    if (sizeof(rg_real) < sizeof(double) && ck->c->interface.law == RG_LAW_RATE) {
+        rg_subject subject = {.key = "interface.law", .value = law_word(RG_LAW_RATE)};
+        rg_problem_add(ck->problems, node->at, &subject,
+                       "needs double precision, and this program is built with -Dprecision=single");
+    }
+}
+
 void rg_law_rule(rg_check *ck, const rg_node *node, bool good) {
     static const rg_key_group groups[] = {RG_GROUP_COHESIVE, RG_GROUP_ENERGY, RG_GROUP_SHEAR, RG_GROUP_LAW,
                                           RG_GROUP_SWITCH};
@@ -88,6 +97,7 @@ void rg_law_rule(rg_check *ck, const rg_node *node, bool good) {
     }
     if (good && ck->form) {
         check_law_and_form(ck, node);
+        check_rate(ck, node);
     }
 }
 

@@ -396,6 +396,11 @@ static rg_cohesive cohesive_of(const subject *s, bool intrinsic) {
     return law;
 }
 
+/* Case files with law `rate` are refused in single precision. */
+static bool exists(rg_law law) {
+    return sizeof(rg_real) == sizeof(double) || law != RG_LAW_RATE;
+}
+
 static void test_kernels(void **state) {
     const rg_kernels *sets[INPUT_SETS];
     int n = rg_kernels_available(sets, INPUT_SETS);
@@ -405,7 +410,7 @@ static void test_kernels(void **state) {
         scale[k] = (rg_real)(0.7 + 0.6 * rg_hash_uniform(rg_hash(3, k)));
     for (int k = 0; k < n; k++)
         for (int l = 0; l < (int)RG_LAWS; l++)
-            for (int kind = 0; kind < 2; kind++) {
+            for (int kind = 0; kind < 2 && exists((rg_law)l); kind++) {
                 subject s = make_subject((rg_law)l, true, kind == 0 ? 1 : 1.5);
                 rg_cohesive law = cohesive_of(&s, (s.facts.forms & RG_FORMS_DG) == 0);
                 check_kernel(sets[k], (input_kind)kind, &law, NULL);

@@ -59,7 +59,8 @@ static void set_velocity(problem *p, double L[3][3], int deformed) {
             for (int i = 0; i < 3; i++) {
                 double v = 0;
                 for (int j = 0; j < 3; j++)
-                    v += L[i][j] * (in->x[e][n][j] + deformed * in->u[rg_node_index(in->element[e], n, j)]);
+                    v += L[i][j] *
+                         (in->x[e][n][j] + deformed * (double)in->u[rg_node_index(in->element[e], n, j)]);
                 in->velocity[rg_node_index(in->element[e], n, i)] = (rg_real)v;
             }
 }
