@@ -48,7 +48,7 @@ def test_bar_rings_at_its_frequency(run):
 def test_incomplete_form_grows_without_bound(run):
     sets = {**BAR, "interface.form": "incomplete", "output.energy_limit": 1e9}
     bar = run(BENCH / "free-bar.yaml", sets=sets, expect=1)
-    assert "not finite" in bar.stderr
+    assert "the time step collapsed" in bar.stderr
     assert bar.summary["status"] != "completed" and bar.summary["steps"] < 20000
     total = bar.energy["total"]
     assert total[-1] > 1e3 * total[0] > 0
