@@ -34,9 +34,7 @@ static uint64_t mesh_hash(const rg_solver *s) {
     for (size_t slot = 0; slot < d->blocks * RG_LANES; slot++) {
         uint64_t h = rg_hash(3, (uint64_t)d->id[slot]);
         for (size_t k = 0; k < 12; k++) {
-            uint64_t bits;
-            memcpy(&bits, &d->corner[12 * slot + k], sizeof bits);
-            h = rg_hash(h, bits);
+            h = rg_hash_double(h, d->corner[12 * slot + k]);
         }
         for (size_t k = 0; k < RG_FACES; k++) {
             h = rg_hash(h, (uint64_t)d->set[4 * slot + k]);

@@ -3,6 +3,7 @@
 #define RG_HASH_H
 
 #include <stdint.h>
+#include <string.h>
 
 /* splitmix64 finalizer (Steele, Lea & Flood 2014): mixes one 64-bit word. */
 static inline uint64_t rg_mix(uint64_t z) {
@@ -14,6 +15,13 @@ static inline uint64_t rg_mix(uint64_t z) {
 /* Chains word `w` into hash `h`. */
 static inline uint64_t rg_hash(uint64_t h, uint64_t w) {
     return rg_mix(h + UINT64_C(0x9e3779b97f4a7c15) + rg_mix(w));
+}
+
+/* Chains the bits of `x`; 0 and -0 differ. */
+static inline uint64_t rg_hash_double(uint64_t h, double x) {
+    uint64_t bits;
+    memcpy(&bits, &x, sizeof bits);
+    return rg_hash(h, bits);
 }
 
 /* Uniform number in [0, 1) from a hash. */

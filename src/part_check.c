@@ -27,9 +27,7 @@ typedef struct {
 static uint64_t position_key(const double x[3]) {
     uint64_t h = 0;
     for (int i = 0; i < 3; i++) {
-        uint64_t bits;
-        memcpy(&bits, &x[i], sizeof bits);
-        h = rg_hash(h, bits);
+        h = rg_hash_double(h, x[i]);
     }
     return h;
 }

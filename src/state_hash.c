@@ -1,26 +1,18 @@
 #include "state_hash.h"
 
-#include <string.h>
-
 #include "crack_surface.h"
 #include "hash.h"
-
-static uint64_t chain(uint64_t h, double x) {
-    uint64_t bits;
-    memcpy(&bits, &x, sizeof bits);
-    return rg_hash(h, bits);
-}
 
 static uint64_t element_hash(const rg_solver *s, size_t slot) {
     uint64_t h = rg_hash(1, (uint64_t)s->domain->id[slot]);
     for (int k = 0; k < 3 * RG_NODES; k++) {
         size_t at = rg_node_index(slot, k / 3, k % 3);
-        h = chain(chain(h, s->u[at]), s->now[at]);
+        h = rg_hash_double(rg_hash_double(h, s->u[at]), s->now[at]);
     }
     for (size_t row = 0; row < rg_history_rows(s->histories); row++) {
-        h = chain(h, s->history[rg_history_index(slot, s->histories, row)]);
+        h = rg_hash_double(h, s->history[rg_history_index(slot, s->histories, row)]);
     }
-    return s->heat != NULL ? chain(h, s->heat[slot]) : h;
+    return s->heat != NULL ? rg_hash_double(h, s->heat[slot]) : h;
 }
 
 static uint64_t interface_hash(const rg_solver *s, const rg_tile *t, size_t i) {
@@ -28,7 +20,7 @@ static uint64_t interface_hash(const rg_solver *s, const rg_tile *t, size_t i) {
     rg_gid element = s->domain->id[t->begin * RG_LANES + (size_t)link / RG_FACES];
     uint64_t h = rg_hash(2, (uint64_t)(RG_FACES * element + link % RG_FACES));
     for (int q = 0; q < RG_POINTS; q++) {
-        h = chain(h, rg_damage(s, i, q));
+        h = rg_hash_double(h, rg_damage(s, i, q));
     }
     return h;
 }
@@ -36,7 +28,7 @@ static uint64_t interface_hash(const rg_solver *s, const rg_tile *t, size_t i) {
 static uint64_t body_hash(const rg_body *b, int number) {
     uint64_t h = rg_hash(3, (uint64_t)number);
     for (int c = 0; c < 3; c++) {
-        h = chain(chain(h, b->seen.x[c]), b->seen.v[c]);
+        h = rg_hash_double(rg_hash_double(h, b->seen.x[c]), b->seen.v[c]);
     }
     return h;
 }

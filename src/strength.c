@@ -1,7 +1,6 @@
 #include "strength.h"
 
 #include <math.h>
-#include <string.h>
 
 #include "cohesive_facts.h"
 #include "error.h"
@@ -28,10 +27,7 @@ static double face_uniform(int64_t seed, const double *x[RG_FCORNERS]) {
     for (int k = 0; k < RG_FCORNERS; k++) {
         uint64_t h = (uint64_t)seed;
         for (int c = 0; c < 3; c++) {
-            double value = x[k][c] + 0.0; /* one zero */
-            uint64_t bits;
-            memcpy(&bits, &value, sizeof bits);
-            h = rg_hash(h, bits);
+            h = rg_hash_double(h, x[k][c] + 0.0); /* one zero */
         }
         sum += h;
     }

@@ -36,9 +36,7 @@ static uint64_t ledger_hash(const rg_energy *e) {
                             e->failed_area, e->momentum[0], e->momentum[1], e->momentum[2]};
     uint64_t h = (uint64_t)e->step;
     for (size_t i = 0; i < sizeof value / sizeof *value; i++) {
-        uint64_t bits;
-        memcpy(&bits, &value[i], sizeof bits);
-        h = rg_hash(h, bits);
+        h = rg_hash_double(h, value[i]);
     }
     return h;
 }
