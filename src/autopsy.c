@@ -8,8 +8,10 @@
 
 #include "error.h"
 #include "files.h"
+#include "json.h"
 #include "mem.h"
 #include "quadrature.h"
+#include "spectrum.h"
 
 /* One element, as doubles: they travel as one message. */
 typedef struct {
@@ -161,33 +163,32 @@ static rg_gid find_worst(const rg_solver *s, finding *f) {
 }
 
 static const char *limited_by(const rg_solver *s) {
-    return s->stiffening_anywhere < 1.05 ? "the spectrum at rest" : "the stiffening of the element";
-}
-
-static void number(FILE *out, const char *key, double value) {
-    fprintf(out, isfinite(value) ? "  \"%s\": %.17g,\n" : "  \"%s\": null,\n", key, value);
+    return s->stiffening_anywhere < RG_STIFFENING_FREE ? "the spectrum at rest"
+                                                       : "the stiffening of the element";
 }
 
 static void write_json(const char *reason, const rg_solver *s, int64_t step, double time, rg_gid element,
                        const finding *f) {
     FILE *out = rg_open_in(s->input->output.dir, "autopsy.json");
-    fprintf(out, "{\n  \"reason\": \"%s\",\n  \"step\": %" PRId64 ",\n", reason, step);
-    number(out, "time_s", time);
-    number(out, "dt_s", s->dt);
-    fprintf(out, "  \"element\": %" PRId64 ",\n", element);
-    number(out, "x_m", f->x[0]);
-    number(out, "y_m", f->x[1]);
-    number(out, "z_m", f->x[2]);
-    number(out, "volume_m3", f->volume);
-    number(out, "quality", f->quality);
-    number(out, "smallest_jacobian", f->jacobian);
-    number(out, "stiffening", f->stiffening);
-    number(out, "largest_displacement_m", f->displacement);
-    number(out, "largest_speed_m_s", f->speed);
-    number(out, "broken_faces", f->broken_faces);
-    fprintf(out, "  \"step_limited_by\": \"%s\",\n", limited_by(s));
-    fprintf(out, "  \"spectrum_element\": %" PRId64 ",\n  \"spectrum_faces\": \"%s\"\n}\n", s->limiting,
-            s->limiting_state);
+    fputs("{\n", out);
+    rg_json_text(out, "reason", reason);
+    rg_json_integer(out, "step", step);
+    rg_json_number(out, "time_s", time);
+    rg_json_number(out, "dt_s", s->dt);
+    rg_json_integer(out, "element", element);
+    rg_json_number(out, "x_m", f->x[0]);
+    rg_json_number(out, "y_m", f->x[1]);
+    rg_json_number(out, "z_m", f->x[2]);
+    rg_json_number(out, "volume_m3", f->volume);
+    rg_json_number(out, "quality", f->quality);
+    rg_json_number(out, "smallest_jacobian", f->jacobian);
+    rg_json_number(out, "stiffening", f->stiffening);
+    rg_json_number(out, "largest_displacement_m", f->displacement);
+    rg_json_number(out, "largest_speed_m_s", f->speed);
+    rg_json_number(out, "broken_faces", f->broken_faces);
+    rg_json_text(out, "step_limited_by", limited_by(s));
+    rg_json_integer(out, "spectrum_element", s->limiting);
+    fprintf(out, "  \"spectrum_faces\": \"%s\"\n}\n", s->limiting_state);
     if (fclose(out) != 0) {
         rg_fatal(RG_FAILURE, "%s/autopsy.json: cannot be written: %s", s->input->output.dir, strerror(errno));
     }

@@ -17,9 +17,6 @@
 #include "schedule.h"
 #include "spectrum.h"
 
-/* Stiffening up to this costs no time step: the spectrum's margin and any sensible safety cover it. */
-#define STIFFENING_FREE 1.05
-
 enum { EXCHANGES = 6 };
 
 /* From this stiffening on an element may turn inside out in a step. */
@@ -49,7 +46,7 @@ typedef struct {
  * energy at a constant step). */
 static double stable_step(const run *r, double stiffening) {
     double dt = r->dt_reference;
-    return stiffening > STIFFENING_FREE ? dt / sqrt(exp2(ceil(4 * log2(stiffening)) / 4)) : dt;
+    return stiffening > RG_STIFFENING_FREE ? dt / sqrt(exp2(ceil(4 * log2(stiffening)) / 4)) : dt;
 }
 
 static bool collapsed(const run *r, double stiffening) {

@@ -4,6 +4,9 @@
 
 #include "solver.h"
 
+/* Stiffening up to this costs no time step: the margin and any sensible safety cover it. */
+#define RG_STIFFENING_FREE 1.05
+
 /* Fills omega2, limiting, limiting_state and pass_seconds of a solver at rest, and leaves its fields at rest.
  * Rank 0 applies rg_spectrum_whole to the patch alone: the vector of the largest frequency
  * decays within a few elements, so that a patch around the worst elements has it too. The patch's frequency

@@ -7,45 +7,9 @@
 
 #include "error.h"
 #include "files.h"
+#include "json.h"
 #include "revision.h"
 #include "state_hash.h"
-
-static void text(FILE *f, const char *key, const char *value) {
-    fprintf(f, "  \"%s\": \"", key);
-    for (const char *p = value; *p != '\0'; p++) {
-        if (*p == '"' || *p == '\\') {
-            fputc('\\', f);
-        }
-        fputc((unsigned char)*p < ' ' ? ' ' : *p, f);
-    }
-    fputs("\",\n", f);
-}
-
-static void integer(FILE *f, const char *key, int64_t value) {
-    fprintf(f, "  \"%s\": %" PRId64 ",\n", key, value);
-}
-
-/* JSON knows no infinity: null where there is no value. */
-static void number(FILE *f, const char *key, double value) {
-    if (isfinite(value)) {
-        fprintf(f, "  \"%s\": %.17g,\n", key, value);
-    } else {
-        fprintf(f, "  \"%s\": null,\n", key);
-    }
-}
-
-static void vector(FILE *f, const char *key, const double value[3]) {
-    fprintf(f, "  \"%s\": [", key);
-    for (int c = 0; c < 3; c++) {
-        const char *comma = c < 2 ? ", " : "";
-        if (isfinite(value[c])) {
-            fprintf(f, "%.17g%s", value[c], comma);
-        } else {
-            fprintf(f, "null%s", comma);
-        }
-    }
-    fputs("],\n", f);
-}
 
 static void write_bodies(FILE *f, const rg_bodies *b) {
     if (b->count == 0) {
@@ -55,58 +19,58 @@ static void write_bodies(FILE *f, const rg_bodies *b) {
     for (int i = 0; i < b->count; i++) {
         const rg_body_seen *seen = &b->body[i].seen;
         fputs("  {\n", f);
-        vector(f, "position", seen->x);
-        vector(f, "velocity", seen->v);
-        vector(f, "force", seen->force);
+        rg_json_vector(f, "position", seen->x);
+        rg_json_vector(f, "velocity", seen->v);
+        rg_json_vector(f, "force", seen->force);
         fprintf(f, "  \"name\": \"%s\"}%s\n", b->body[i].input->name, i + 1 < b->count ? "," : "],");
     }
 }
 
 static void write_run(FILE *f, const rg_summary *m, const rg_solver *s, const rg_estimate *e) {
-    text(f, "case", s->input->name);
-    integer(f, "elements", e->elements);
-    integer(f, "interfaces", e->interfaces);
-    integer(f, "dofs", e->dofs);
-    integer(f, "ranks", s->ranks);
-    integer(f, "threads", s->threads);
-    number(f, "imbalance", s->part->quality.imbalance);
-    number(f, "cost_imbalance", s->part->quality.cost_imbalance);
-    integer(f, "cut_faces", s->part->quality.cut_faces);
-    integer(f, "neighbours_max", s->part->quality.neighbours_max);
-    text(f, "instruction_set", s->kernels->name);
-    text(f, "precision", RG_PRECISION);
-    integer(f, "steps", s->step);
-    integer(f, "restarted_from_step", m->first_step);
-    number(f, "time_end", s->time);
-    number(f, "dt_critical", e->dt_critical);
-    number(f, "dt_first", m->dt_first);
-    number(f, "dt_last", s->dt);
-    integer(f, "limiting_element", s->limiting);
-    text(f, "limiting_state", s->limiting_state);
-    number(f, "setup_s", m->setup_seconds);
-    number(f, "wall_s", m->loop_seconds + m->output_seconds);
-    number(f, "output_s", m->output_seconds);
-    integer(f, "checkpoints", m->checkpoints);
-    number(f, "checkpoint_s", m->checkpoint_seconds);
-    number(f, "halo_wait_s", m->halo_wait_seconds);
-    number(f, "us_per_tet_step", m->us_per_tet_step);
+    rg_json_text(f, "case", s->input->name);
+    rg_json_integer(f, "elements", e->elements);
+    rg_json_integer(f, "interfaces", e->interfaces);
+    rg_json_integer(f, "dofs", e->dofs);
+    rg_json_integer(f, "ranks", s->ranks);
+    rg_json_integer(f, "threads", s->threads);
+    rg_json_number(f, "imbalance", s->part->quality.imbalance);
+    rg_json_number(f, "cost_imbalance", s->part->quality.cost_imbalance);
+    rg_json_integer(f, "cut_faces", s->part->quality.cut_faces);
+    rg_json_integer(f, "neighbours_max", s->part->quality.neighbours_max);
+    rg_json_text(f, "instruction_set", s->kernels->name);
+    rg_json_text(f, "precision", RG_PRECISION);
+    rg_json_integer(f, "steps", s->step);
+    rg_json_integer(f, "restarted_from_step", m->first_step);
+    rg_json_number(f, "time_end", s->time);
+    rg_json_number(f, "dt_critical", e->dt_critical);
+    rg_json_number(f, "dt_first", m->dt_first);
+    rg_json_number(f, "dt_last", s->dt);
+    rg_json_integer(f, "limiting_element", s->limiting);
+    rg_json_text(f, "limiting_state", s->limiting_state);
+    rg_json_number(f, "setup_s", m->setup_seconds);
+    rg_json_number(f, "wall_s", m->loop_seconds + m->output_seconds);
+    rg_json_number(f, "output_s", m->output_seconds);
+    rg_json_integer(f, "checkpoints", m->checkpoints);
+    rg_json_number(f, "checkpoint_s", m->checkpoint_seconds);
+    rg_json_number(f, "halo_wait_s", m->halo_wait_seconds);
+    rg_json_number(f, "us_per_tet_step", m->us_per_tet_step);
 }
 
 static void write_physics(FILE *f, const rg_summary *m, const rg_ledger *l) {
-    number(f, "energy_error_rel", l->worst);
-    number(f, "energy_largest_J", l->largest);
-    number(f, "dissipated_J", l->last.dissipated);
-    number(f, "plastic_J", l->last.plastic);
-    number(f, "damage_J", l->last.damage);
-    number(f, "viscous_J", l->last.viscous);
-    number(f, "first_fracture_time_s", m->first_fracture);
-    number(f, "broken_area_m2", l->last.broken_area);
-    number(f, "failed_area_m2", l->last.failed_area);
-    number(f, "halo_doubles_per_face",
-           (RG_TRACE_ROW + RG_SEAM_ROW) * (double)sizeof(rg_real) / sizeof(double));
-    vector(f, "momentum", l->last.momentum);
-    vector(f, "angular_momentum", l->last.angular_momentum);
-    text(f, "status", m->failure[0] == '\0' ? "completed" : m->failure);
+    rg_json_number(f, "energy_error_rel", l->worst);
+    rg_json_number(f, "energy_largest_J", l->largest);
+    rg_json_number(f, "dissipated_J", l->last.dissipated);
+    rg_json_number(f, "plastic_J", l->last.plastic);
+    rg_json_number(f, "damage_J", l->last.damage);
+    rg_json_number(f, "viscous_J", l->last.viscous);
+    rg_json_number(f, "first_fracture_time_s", m->first_fracture);
+    rg_json_number(f, "broken_area_m2", l->last.broken_area);
+    rg_json_number(f, "failed_area_m2", l->last.failed_area);
+    rg_json_number(f, "halo_doubles_per_face",
+                   (RG_TRACE_ROW + RG_SEAM_ROW) * (double)sizeof(rg_real) / sizeof(double));
+    rg_json_vector(f, "momentum", l->last.momentum);
+    rg_json_vector(f, "angular_momentum", l->last.angular_momentum);
+    rg_json_text(f, "status", m->failure[0] == '\0' ? "completed" : m->failure);
 }
 
 void rg_summary_write(rg_summary *m, rg_solver *s, const rg_ledger *l, const rg_fragment_table *fragments) {
@@ -125,12 +89,12 @@ void rg_summary_write(rg_summary *m, rg_solver *s, const rg_ledger *l, const rg_
     FILE *f = rg_open_in(s->input->output.dir, "summary.json");
     fputs("{\n", f);
     write_run(f, m, s, e);
-    number(f, "exchange_alone_s", s->exchange_seconds);
+    rg_json_number(f, "exchange_alone_s", s->exchange_seconds);
     rg_phases_write(&phases, f);
     write_physics(f, m, l);
     write_bodies(f, s->bodies);
     rg_fragment_table_summary(fragments, f);
-    number(f, "bytes_per_tet", e->bytes_per_element);
+    rg_json_number(f, "bytes_per_tet", e->bytes_per_element);
     fprintf(f, "  \"state_hash\": \"%016" PRIx64 "\",\n  \"revision\": \"%s\"\n}\n", hash, RG_REVISION);
     if (fclose(f) != 0) {
         rg_fatal(RG_FAILURE, "%s/summary.json: cannot be written: %s", s->input->output.dir, strerror(errno));
