@@ -60,13 +60,4 @@ static void body(const uint8_t *data, size_t size) {
     free(copy);
 }
 
-int LLVMFuzzerInitialize(int *argc, char ***argv) {
-    (void)argc;
-    (void)argv;
-    return 0;
-}
-
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
-    rg_fuzz_run(body, data, size);
-    return 0;
-}
+RG_FUZZ_TARGET(body)

@@ -19,6 +19,19 @@ typedef void rg_fuzz_body(const uint8_t *data, size_t size);
  * than 256 MB, or returned without freeing what it took. */
 bool rg_fuzz_run(rg_fuzz_body *body, const uint8_t *data, size_t size);
 
+/* A target that has nothing to prepare and runs `body` on every input. */
+#define RG_FUZZ_TARGET(body)                                                                                 \
+    int LLVMFuzzerInitialize(int *argc, char ***argv) {                                                      \
+        (void)argc;                                                                                          \
+        (void)argv;                                                                                          \
+        return 0;                                                                                            \
+    }                                                                                                        \
+                                                                                                             \
+    int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {                                           \
+        rg_fuzz_run(body, data, size);                                                                       \
+        return 0;                                                                                            \
+    }
+
 /* Aborts with a message unless `good`: for what must hold of an accepted input. */
 void rg_fuzz_require(bool good, const char *what);
 
