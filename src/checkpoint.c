@@ -53,8 +53,15 @@ static identity identity_of(const rg_checkpoints *k) {
 
 void rg_checkpoints_open(rg_checkpoints *k, const char *dir, rg_solver *s, const rg_state *state) {
     *k = (rg_checkpoints){.solver = s, .state = state, .folder = rg_join_path(dir, "checkpoints")};
-    k->slab = rg_slab_make(s->domain, s->part->total, s->comm);
-    k->mesh = mesh_hash(s);
+}
+
+/* What all checkpoints of a run share, made with the first: most runs write none. Collective. */
+static void prepare(rg_checkpoints *k) {
+    const rg_solver *s = k->solver;
+    if (k->slab == NULL) {
+        k->slab = rg_slab_make(s->domain, s->part->total, s->comm);
+        k->mesh = mesh_hash(s);
+    }
 }
 
 void rg_checkpoints_close(rg_checkpoints *k) {
@@ -163,6 +170,7 @@ static void put_all(rg_h5_file *f, rg_checkpoints *k) {
 void rg_checkpoint_write(rg_checkpoints *k, int keep) {
     double begin = MPI_Wtime();
     const rg_solver *s = k->solver;
+    prepare(k);
     rg_make_directory(k->folder, s->comm);
     char *path = rg_folder_path(k->folder, s->step);
     rg_h5_file f;
@@ -393,6 +401,7 @@ static int load_newest(const rg_checkpoints *k, int count, const int64_t *steps)
 void rg_checkpoint_load(rg_checkpoints *k) {
     const rg_solver *s = k->solver;
     int64_t *steps = NULL;
+    prepare(k);
     int count = s->rank == 0 ? rg_folder_list(k->folder, &steps) : 0;
     MPI_Bcast(&count, 1, MPI_INT, 0, s->comm);
     if (s->rank != 0) {

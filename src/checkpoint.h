@@ -21,8 +21,8 @@
 typedef struct {
     rg_solver *solver;
     const rg_state *state;
-    char *folder; /* where the checkpoints are */
-    rg_slab *slab;
+    char *folder;          /* where the checkpoints are */
+    rg_slab *slab;         /* NULL until the first checkpoint */
     char *record, *sorted; /* kept from one checkpoint to the next: fresh pages cost more than the disk */
     size_t room;           /* bytes of an element for which they are large enough */
     uint64_t mesh;         /* hash of the mesh */
@@ -32,7 +32,7 @@ typedef struct {
 } rg_checkpoints;
 
 /* The checkpoints of a run in `dir`/checkpoints, which is created when the first is written. Keeps
- * references. Collective; rg_checkpoints_close frees what it holds. */
+ * references; rg_checkpoints_close frees what it holds. */
 void rg_checkpoints_open(rg_checkpoints *k, const char *dir, rg_solver *s, const rg_state *state);
 
 /* Writes the state between two steps and removes all but the last `keep` checkpoints. Ends the run with a
