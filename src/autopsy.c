@@ -12,6 +12,7 @@
 #include "mem.h"
 #include "quadrature.h"
 #include "spectrum.h"
+#include "vector.h"
 
 /* One element, as doubles: they travel as one message. */
 typedef struct {
@@ -50,7 +51,7 @@ static void gradients(const rg_solver *s, size_t slot, double grad[4][3]) {
 }
 
 static double length(const double a[3]) {
-    return sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
+    return sqrt(rg_dot(a, a));
 }
 
 /* 3 inradius / circumradius: heights are 1/|grad l_k|, 1/r is the sum of theirs; the centre of the sphere

@@ -9,6 +9,7 @@
 #include "mem.h"
 #include "quadrature.h"
 #include "state.h"
+#include "vector.h"
 
 /* Of the height of an element: a body this deep in the solid at the start only touches it. */
 #define TOUCH 1e-6
@@ -18,7 +19,7 @@ enum { POWER_ITERATIONS = 200 };
 /* ---- The bodies ---- */
 
 static void unit(const double v[3], double out[3]) {
-    double norm = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+    double norm = sqrt(rg_dot(v, v));
     for (int c = 0; c < 3 && norm > 0; c++) {
         out[c] = v[c] / norm;
     }
