@@ -121,12 +121,12 @@ static void look_for_overlap(rg_fragment_table *t, const rg_solver *s, const rg_
     }
 }
 
-void rg_fragment_table_take(rg_fragment_table *t, const rg_solver *s, bool last) {
-    if (t->csv == NULL || (s->input->output.fragments == RG_FRAGMENTS_LAST && !last)) {
-        return;
-    }
+bool rg_fragment_table_due(const rg_fragment_table *t, const rg_solver *s, bool last) {
+    return t->csv != NULL && (s->input->output.fragments != RG_FRAGMENTS_LAST || last);
+}
+
+void rg_fragment_table_take(rg_fragment_table *t, const rg_solver *s, const rg_fragment_parts *p) {
     rg_fragment *rows;
-    rg_fragment_parts *p = rg_fragments_find(s);
     size_t own = rg_fragments_measure(s, p, &rows);
     t->heaviest = 0;
     memset(t->bin, 0, sizeof t->bin);
@@ -135,7 +135,6 @@ void rg_fragment_table_take(rg_fragment_table *t, const rg_solver *s, bool last)
     collect(t, s, rows, own);
     look_for_overlap(t, s, p);
     rg_free(rows);
-    rg_fragment_parts_free(p);
 }
 
 void rg_fragment_table_summary(const rg_fragment_table *t, FILE *out) {

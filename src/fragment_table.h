@@ -35,9 +35,12 @@ rg_fragment_table *rg_fragment_table_reopen(const rg_solver *s, const rg_fragmen
 /* Brings the table to the disk. */
 rg_fragment_mark rg_fragment_table_settle(rg_fragment_table *t);
 
-/* Adds the fragments of the current state, between its kick and its drift; `last`: the run ends with it. The
- * counts above are those of the last call, on rank 0. Warns, once, of fragments that overlap. Collective. */
-void rg_fragment_table_take(rg_fragment_table *t, const rg_solver *s, bool last);
+/* Whether the table wants the fragments of this output; `last`: the run ends with it. */
+bool rg_fragment_table_due(const rg_fragment_table *t, const rg_solver *s, bool last);
+
+/* Adds the fragments of the current state, between its kick and its drift. The counts above are those of the
+ * last call, on rank 0. Warns, once, of fragments that overlap. Collective. */
+void rg_fragment_table_take(rg_fragment_table *t, const rg_solver *s, const rg_fragment_parts *p);
 
 /* Writes members of a JSON object, each with a comma behind it. Rank 0. */
 void rg_fragment_table_summary(const rg_fragment_table *t, FILE *out);

@@ -91,6 +91,21 @@ static bool done(const run *r) {
            (c->time.steps > 0 && r->solver->step >= c->time.steps);
 }
 
+/* The fields, where asked for, and the table of fragments. */
+static void write_fields(run *r, bool fields) {
+    rg_solver *s = r->solver;
+    bool table = rg_fragment_table_due(r->fragments, s, done(r) || r->failure[0] != '\0');
+    bool show = fields && rg_snapshots_show_fragments(r->snapshots);
+    rg_fragment_parts *parts = table || show ? rg_fragments_find(s) : NULL;
+    if (fields) {
+        rg_snapshots_write(r->snapshots, s, parts);
+    }
+    if (table) {
+        rg_fragment_table_take(r->fragments, s, parts);
+    }
+    rg_fragment_parts_free(parts);
+}
+
 /* Ledger, fields and progress of the current state. */
 static void output(run *r, bool fields) {
     const rg_energy *e = rg_ledger_take(&r->ledger, r->solver);
@@ -105,10 +120,7 @@ static void output(run *r, bool fields) {
         r->keep.good_time = e->time;
     }
     rg_probes_flush(r->probes);
-    if (fields || r->failure[0] != '\0') {
-        rg_snapshots_write(r->snapshots, r->solver);
-    }
-    rg_fragment_table_take(r->fragments, r->solver, done(r) || r->failure[0] != '\0');
+    write_fields(r, fields || r->failure[0] != '\0');
     rg_progress_show(&r->progress, r->solver, e);
 }
 

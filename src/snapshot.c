@@ -7,7 +7,6 @@
 #include "crack_surface.h"
 #include "element.h"
 #include "error.h"
-#include "fragment.h"
 #include "mem.h"
 #include "principal.h"
 #include "tile.h"
@@ -242,6 +241,14 @@ static void write_part(rg_snapshots *w, int field, double *part) {
                      state_field[field].components, part);
 }
 
+static bool wants_states(const rg_snapshots *w) {
+    unsigned bits = 0;
+    for (int k = 0; k < STATE_FIELDS; k++) {
+        bits |= state_field[k].bit;
+    }
+    return (w->fields & bits) != 0;
+}
+
 static void write_states(rg_snapshots *w, rg_solver *s) {
     const rg_domain *d = s->domain;
 #pragma omp parallel
@@ -265,24 +272,25 @@ static void write_states(rg_snapshots *w, rg_solver *s) {
     }
 }
 
+/* One number of each own element, in `record`. */
+static void write_numbers(rg_snapshots *w, const char *name) {
+    send(w, 1);
+    keep_region(w, 1, w->sorted);
+    rg_writer_volume(w->writer, name, "1", RG_CENTER_CELL, 1, w->sorted);
+}
+
 static void write_ranks(rg_snapshots *w, const rg_solver *s) {
     for (size_t i = 0; i < w->slab->own; i++) {
         w->record[i] = s->rank;
     }
-    send(w, 1);
-    keep_region(w, 1, w->sorted);
-    rg_writer_volume(w->writer, "rank", "1", RG_CENTER_CELL, 1, w->sorted);
+    write_numbers(w, "rank");
 }
 
-static void write_fragments(rg_snapshots *w, const rg_solver *s) {
-    rg_fragment_parts *p = rg_fragments_find(s);
+static void write_fragments(rg_snapshots *w, const rg_fragment_parts *p) {
     for (size_t i = 0; i < w->slab->own; i++) {
         w->record[i] = (double)p->label[p->of[w->slab->slot[i]]].id;
     }
-    rg_fragment_parts_free(p);
-    send(w, 1);
-    keep_region(w, 1, w->sorted);
-    rg_writer_volume(w->writer, "fragment", "1", RG_CENTER_CELL, 1, w->sorted);
+    write_numbers(w, "fragment");
 }
 
 /* Faces in the region, by their present place; returns how many. */
@@ -323,7 +331,11 @@ static void write_cracks(rg_snapshots *w, const rg_solver *s) {
     rg_free(face);
 }
 
-void rg_snapshots_write(rg_snapshots *w, rg_solver *s) {
+bool rg_snapshots_show_fragments(const rg_snapshots *w) {
+    return (w->fields & RG_FIELD_FRAGMENT) != 0;
+}
+
+void rg_snapshots_write(rg_snapshots *w, rg_solver *s, const rg_fragment_parts *parts) {
     if (w->fields == 0) {
         return;
     }
@@ -334,15 +346,14 @@ void rg_snapshots_write(rg_snapshots *w, rg_solver *s) {
     if (w->fields & RG_FIELD_VELOCITY) {
         write_nodal(w, s, "velocity", "m/s", s->now);
     }
-    const unsigned others = RG_FIELD_DISPLACEMENT | RG_FIELD_VELOCITY | RG_FIELD_CRACK | RG_FIELD_RANK;
-    if (w->fields & ~others) {
+    if (wants_states(w)) {
         write_states(w, s);
     }
     if (w->fields & RG_FIELD_RANK) {
         write_ranks(w, s);
     }
-    if (w->fields & RG_FIELD_FRAGMENT) {
-        write_fragments(w, s);
+    if (rg_snapshots_show_fragments(w)) {
+        write_fragments(w, parts);
     }
     if (w->fields & RG_FIELD_CRACK) {
         write_cracks(w, s);

@@ -2,6 +2,7 @@
 #ifndef RG_SNAPSHOT_H
 #define RG_SNAPSHOT_H
 
+#include "fragment.h"
 #include "slab.h"
 #include "solver.h"
 #include "writer.h"
@@ -26,8 +27,12 @@ rg_snapshots *rg_snapshots_reopen(const rg_solver *s, const rg_writer_mark *mark
 /* Brings what was written to the disk; where the files stand now. Collective. */
 rg_writer_mark rg_snapshots_settle(rg_snapshots *w);
 
-/* Writes the current state, between its kick and its drift. Collective. */
-void rg_snapshots_write(rg_snapshots *w, rg_solver *s);
+/* Whether the fragments are one of the fields. */
+bool rg_snapshots_show_fragments(const rg_snapshots *w);
+
+/* Writes the current state, between its kick and its drift; `parts`: its fragments, NULL where they are not
+ * shown. Collective. */
+void rg_snapshots_write(rg_snapshots *w, rg_solver *s, const rg_fragment_parts *parts);
 
 void rg_snapshots_close(rg_snapshots *w);
 
