@@ -173,6 +173,10 @@ bool rg_expr_uses_position(const rg_expr *e);
 bool rg_expr_uses_time(const rg_expr *e);
 double rg_expr_value(const rg_expr *e, const double x[3], double t);
 
+/* Another one of the same text, for another thread; NULL for NULL. Free with rg_expr_free. */
+rg_expr *rg_expr_copy(const rg_expr *e);
+void rg_expr_free(rg_expr *e);
+
 /* The same of an expression of faces, which may also use the unit normal nx, ny, nz, of either sign. */
 bool rg_expr_uses_normal(const rg_expr *e);
 double rg_expr_face_value(const rg_expr *e, const double x[3], const double normal[3]);

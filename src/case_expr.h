@@ -14,6 +14,4 @@ rg_expr *rg_expr_new(const char *text, char **message);
 /* True if the text is just a number. */
 bool rg_expr_is_number(const rg_expr *e);
 
-void rg_expr_free(rg_expr *e);
-
 #endif

@@ -122,6 +122,11 @@ rg_expr *rg_expr_new(const char *text, char **message) {
     return e;
 }
 
+rg_expr *rg_expr_copy(const rg_expr *e) {
+    char *message = NULL;
+    return e == NULL ? NULL : rg_expr_new(e->text, &message);
+}
+
 void rg_expr_free(rg_expr *e) {
     if (e != NULL) {
         if (e->parser != NULL) {

@@ -304,6 +304,10 @@ static void begin(run *r, MPI_Comm comm) {
     const rg_case *c = r->input;
     double started = MPI_Wtime();
     make_state(r, comm);
+    measure_exchange(r->solver);
+    if (!r->options->restart) {
+        rg_solver_start(r->solver);
+    }
     r->summary.estimate = rg_estimate_run(r->solver);
     r->dt_reference = r->summary.estimate.dt;
     bool speaks = r->solver->rank == 0 && !r->options->quiet;
@@ -313,13 +317,11 @@ static void begin(run *r, MPI_Comm comm) {
     if (!r->options->quiet) {
         rg_affinity_print(comm, stdout);
     }
-    measure_exchange(r->solver);
     if (r->options->restart) {
         reopen_outputs(r);
         rg_solver_resume(r->solver);
     } else {
         open_outputs(r);
-        rg_solver_start(r->solver);
     }
     r->solver->phases = (rg_phases){.last = 0};
     if (speaks && r->options->restart) {
@@ -375,6 +377,7 @@ int rg_check(const rg_case *c, MPI_Comm comm) {
     rg_solver *s = rg_solver_make(c, comm);
     rg_probes_close(rg_probes_find(s));
     rg_spectrum(s);
+    rg_solver_start(s);
     rg_estimate estimate = rg_estimate_run(s);
     if (s->rank == 0) {
         rg_estimate_print(s, &estimate, stdout);

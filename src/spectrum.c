@@ -1,7 +1,6 @@
 #include "spectrum.h"
 
 #include <math.h>
-#include <omp.h>
 #include <string.h>
 
 #include "hash.h"
@@ -375,12 +374,11 @@ void rg_spectrum_whole(rg_solver *s) {
 
 /* ---- On the patch ---- */
 
-/* Rank 0 finds the spectrum of the patch on its own, with one thread: the patch is too small to share. */
+/* Rank 0 finds the spectrum of the patch on its own: the patch is too small to share among ranks. */
 static void patch_spectrum(rg_solver *s) {
     rg_case input = *s->input;
     input.boundaries = 0; /* their sets are not on the patch, and the operator is that of a free body */
     input.bodies = 0;     /* what they add to it is known */
-    omp_set_num_threads(1);
     rg_solver *local = rg_solver_make_from_part(&input, s->patch, MPI_COMM_SELF);
     s->patch = NULL;
     local->stiffest = s->stiffest;
@@ -390,7 +388,6 @@ static void patch_spectrum(rg_solver *s) {
     s->limiting = local->part->original[local->limiting];
     s->limiting_state = local->limiting_state;
     rg_solver_free(local);
-    omp_set_num_threads(s->threads);
 }
 
 void rg_spectrum(rg_solver *s) {
@@ -407,7 +404,4 @@ void rg_spectrum(rg_solver *s) {
     MPI_Bcast(&which, 1, MPI_INT, 0, s->comm);
     s->limiting_state = state_name[which];
     s->omega2 += s->bodies->omega2;
-    double begin = MPI_Wtime();
-    rg_solver_impulse(s, s->now, 0);
-    s->pass_seconds = MPI_Wtime() - begin;
 }

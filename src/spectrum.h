@@ -7,14 +7,14 @@
 /* Stiffening up to this costs no time step: the margin and any sensible safety cover it. */
 #define RG_STIFFENING_FREE 1.05
 
-/* Fills omega2, limiting, limiting_state and pass_seconds of a solver at rest, and leaves its fields at rest.
+/* Fills omega2, limiting and limiting_state of a solver at rest, and leaves its fields at rest.
  * Rank 0 applies rg_spectrum_whole to the patch alone: the vector of the largest frequency
  * decays within a few elements, so that a patch around the worst elements has it too. The patch's frequency
  * is a lower bound of the whole mesh's, below it by less than the margin (figures in spectrum.c). The result
  * has the same bits on any ranks and threads. Collective. */
 void rg_spectrum(rg_solver *s);
 
-/* The same from the solver's whole mesh, except for pass_seconds.
+/* The same from the solver's whole mesh.
  *
  * The operator is M^-1 times the derivative of the forces at rest, applied by the production kernels to a
  * tiny displacement; so it holds for every form, mass and penalty. Its largest eigenvalue is found by the
