@@ -1,6 +1,6 @@
 #include "phases.h"
 
-static const char *const phase_name[RG_PHASES] = {"compute", "jump", "exchange", "wait", "reduce"};
+static const char *const phase_name[RG_PHASES] = {"compute", "jump", "pack", "exchange", "wait", "reduce"};
 
 static rg_spread spread(double here, MPI_Comm comm) {
     double extreme[2] = {-here, here}, sum = here;

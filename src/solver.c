@@ -285,6 +285,7 @@ static void mark(rg_solver *s, rg_phase phase) {
 
 static void start(rg_solver *s, rg_halo *h) {
     rg_halo_pack(h);
+    mark(s, RG_PHASE_PACK);
 #pragma omp master
     rg_halo_start(h);
     mark(s, RG_PHASE_EXCHANGE);

@@ -78,7 +78,7 @@ def test_efficiency_is_written(tmp_path):
 
 @pytest.mark.skipif(shutil.which("smpirun") is None, reason="SimGrid is not installed (libsimgrid-dev)")
 def test_model_follows_simulation(tmp_path):
-    row = {"first": 2e-7, "second": 1e-7, "exchange_s": 1e-5, "faces": 200, "rest_s": 1e-5}
+    row = {"first": 2e-7, "second": 1e-7, "pack_s": 1e-5, "faces": 200, "rest_s": 1e-5}
     rows = [{**row, "tets": tets, "step_s": tets * 3e-7} for tets in (10_000, 200_000)]
     costs = {"alone": rows, "busy": rows, "alone_checks": [], "busy_checks": []}
     (tmp_path / "costs.json").write_text(json.dumps(costs))
