@@ -10,6 +10,7 @@
  * result never depends on the faces that share its block. All tractions are area-weighted: they carry the
  * reference area of the face as a factor (N). */
 #include "cohesive.h"
+#include "friction.h"
 #include "isa.h"
 #include "tet10.h"
 
@@ -396,6 +397,73 @@ RG_INLINE rg_mask broken_traction(interface *s, int q, const vec3 n, rg_mask bro
     return closed;
 }
 
+/* ---- Friction (friction.h) ---- */
+
+RG_INLINE rg_real *friction_state(const interface *s, int q, int k) {
+    return s->args->crack + rg_friction_index(s->block * RG_LANES, q, k, s->args->crack_stride) + s->lane;
+}
+
+/* Tangents of the deformed mid-surface at a point of normal n: along the chord from corner 0 to 1, and across
+ * it. */
+RG_INLINE void tangents(const interface *s, const vec3 n, vec3 along[2]) {
+    vec3 one[RG_FNODES], two[RG_FNODES];
+    traces(s, one, two);
+    for (int c = 0; c < 3; c++) {
+        along[0][c] = s->edge[0][c] + 0.5 * ((one[1][c] + two[1][c]) - (one[0][c] + two[0][c]));
+    }
+    rg_vec across = rg_dot(along[0], n);
+    for (int c = 0; c < 3; c++) {
+        along[0][c] -= across * n[c];
+    }
+    rg_vec length = rg_max(rg_sqrt(rg_dot(along[0], along[0])), rg_splat(RG_NO_AREA));
+    for (int c = 0; c < 3; c++) {
+        along[0][c] /= length;
+    }
+    rg_cross(n, along[0], along[1]);
+}
+
+/* mu D p of a point (N); 0 where it is open, or switched in this very state. */
+RG_INLINE rg_vec friction_limit(const interface *s, int q, const opening *o, rg_mask settled) {
+    const rg_cohesive *law = &s->args->law;
+    rg_vec damage = rg_splat(1.0);
+    if (law->separation > 0) {
+        rg_vec parted = s->opening * rg_splat(law->separation / law->opening);
+        damage = rg_min(rg_load(crack_state(s, q, RG_CRACK_OPENING)) / parted, damage);
+    }
+    rg_vec pressure = s->contact * rg_max(-o->normal, rg_splat(0.0));
+    return rg_select(settled, rg_splat(law->friction) * damage * pressure, rg_splat(0.0));
+}
+
+/* Adds friction to the traction of broken points; `now`: those that switched in this state. */
+static __attribute__((noinline)) void rub(interface *s, int q, const vec3 n, rg_mask broken, rg_mask now) {
+    opening o;
+    crack_opening(s, q, n, &o);
+    if (s->args->law.stick) {
+        for (int c = 0; c < 3; c++) {
+            s->total[q][c] += rg_select(broken, s->pen_iso * o.tangential[c], rg_splat(0.0));
+        }
+        return;
+    }
+    vec3 along[2];
+    rg_vec state[RG_FRICTION], traction[2];
+    tangents(s, n, along);
+    rg_friction_point p = {.slip = {rg_dot(o.tangential, along[0]), rg_dot(o.tangential, along[1])},
+                           .stiffness = s->pen_iso,
+                           .limit = friction_limit(s, q, &o, broken & ~now),
+                           .weight = rg_splat(rg_tri[q / 3].weight)};
+    for (int k = 0; k < RG_FRICTION; k++) {
+        state[k] = rg_load(friction_state(s, q, k));
+    }
+    rg_friction_return(&p, state, traction);
+    for (int k = 0; k < RG_FRICTION; k++) {
+        store_where(friction_state(s, q, k), broken, state[k]);
+    }
+    for (int c = 0; c < 3; c++) {
+        rg_vec t = traction[0] * along[0][c] + traction[1] * along[1][c];
+        s->total[q][c] += rg_select(broken, t, rg_splat(0.0));
+    }
+}
+
 RG_INLINE void damaged(interface *s, law_respond *respond, int memory) {
     const rg_interface_args *args = s->args;
     size_t first = s->block * RG_LANES + (size_t)s->lane;
@@ -407,11 +475,15 @@ RG_INLINE void damaged(interface *s, law_respond *respond, int memory) {
     memcpy(broken, args->broken + first, sizeof broken);
     for (int q = 0; q < RG_POINTS; q++) {
         rg_mask cracked = bit_mask(broken, q);
-        cracked |= switch_points(s, q, n[q], area[q], ~cracked);
+        rg_mask now = switch_points(s, q, n[q], area[q], ~cracked);
+        cracked |= now;
         set_bits(broken, q, cracked);
         rg_mask closed = {0};
         if (rg_any(cracked)) {
             closed = broken_traction(s, q, n[q], cracked, respond, memory);
+            if (args->law.friction > 0) {
+                rub(s, q, n[q], cracked, now);
+            }
         }
         set_bits(unlinked, q, cracked & ~closed);
     }
@@ -480,6 +552,11 @@ RG_INLINE void broken_energy(const interface *s, int q, const vec3 n, rg_mask br
     rg_mask touching = law->flux ? (rg_mask){0} : broken & (o.normal < rg_splat(law->contact_below));
     sum[RG_E_COHESIVE] += weight * rg_select(broken & unlinked, e.stored, zero);
     sum[RG_E_CONTACT] += weight * rg_select(touching, contact, zero);
+    if (law->friction > 0) {
+        rg_vec stretch[2] = {rg_load(friction_state(s, q, RG_FRICTION_STRETCH)),
+                             rg_load(friction_state(s, q, RG_FRICTION_STRETCH + 1))};
+        sum[RG_E_CONTACT] += weight * rg_select(broken, rg_friction_stored(s->pen_iso, stretch), zero);
+    }
     sum[RG_E_DISSIPATED] += weight * rg_select(broken, e.dissipated, zero);
 }
 

@@ -85,7 +85,9 @@ typedef struct {
     rg_law law;
     double shape[RG_LAW_SHAPE]; /* the law's own parameters */
     double separation;          /* effective opening of full separation (m) */
-    double slope; /* contact is at least so stiff (Pa/m): the law's own slope where it starts with one */
+    double slope;    /* contact is at least so stiff (Pa/m): the law's own slope where it starts with one */
+    double friction; /* coefficient mu of closed points (friction.h); 0: none, and no state of it */
+    bool stick; /* with friction: points stick without limit or memory (the linear part, for the time step) */
 } rg_cohesive;
 
 typedef struct {
@@ -107,8 +109,8 @@ typedef struct {
                           point under flux contact) */
     uint8_t *active;   /* [block] in/out: not 0 where some lane of the block has a broken point */
     rg_real *crack;    /* crack state, in/out */
-    size_t crack_stride; /* values from one block's crack state to the next: RG_CRACK_BLOCK and the memory of
-                            the law, or 0 to share one */
+    size_t crack_stride; /* values from one block's crack state to the next: RG_CRACK_BLOCK, the memory of the
+                            law and, with friction, RG_FRICTION_BLOCK; or 0 to share one */
     rg_real *force;      /* out: g, nodal force on the minus side (N) */
 } rg_interface_args;
 
@@ -156,7 +158,8 @@ typedef struct {
     double *energy; /* out: [row][lane] v M v / 2 (J) */
 } rg_kinetic_args;
 
-enum { RG_E_PENALTY, RG_E_COHESIVE, RG_E_CONTACT, RG_E_DISSIPATED, RG_E_INTERFACE }; /* parts of the energy */
+/* Parts of the energy; contact: of closed points, with what they store while friction holds them. */
+enum { RG_E_PENALTY, RG_E_COHESIVE, RG_E_CONTACT, RG_E_DISSIPATED, RG_E_INTERFACE };
 
 typedef struct {
     const rg_interface_args *interface;

@@ -19,7 +19,8 @@
  *   interface geometry              [interface block][RG_IGEOM][lane]
  *   interface nodal force           [interface block][6 nodes][3][lane]
  *   crack state                     [interface block]: [6 points][RG_CRACK][lane], then
- *                                   [6 points][memory of the law][lane]
+ *                                   [6 points][memory of the law][lane], then, with friction,
+ *                                   [6 points][RG_FRICTION][lane]
  *   ghost traces                    [seam block][6 nodes][3][lane]
  *   trace rows, traction rows       [row][6 nodes][3], [row][3 corners][3]
  *
@@ -83,6 +84,13 @@ enum { /* crack state of one interface point; meaningful only where the point's 
        RG_CRACK = 5,
 };
 
+enum {                          /* friction at one interface point (friction.h) */
+       RG_FRICTION_ANCHOR = 0,  /* slip at which its spring is relaxed, 2 components (m) */
+       RG_FRICTION_STRETCH = 2, /* of the spring, 2 components (m) */
+       RG_FRICTION_HEAT = 4,    /* dissipated at this point of the face so far (J) */
+       RG_FRICTION = 5,
+};
+
 /* History of a material with n values per point: those of the 4 points of the element, then the energy that
  * the element has set free since the start (J), by cause. */
 enum { RG_RELEASED_PLASTIC, RG_RELEASED_DAMAGE, RG_RELEASED };
@@ -97,6 +105,7 @@ enum { /* values per row, and per block */
        RG_IGEOM_BLOCK = RG_IGEOM * RG_LANES,
        RG_IFORCE_BLOCK = RG_IFORCE_ROW * RG_LANES,
        RG_CRACK_BLOCK = RG_POINTS * RG_CRACK * RG_LANES,
+       RG_FRICTION_BLOCK = RG_POINTS * RG_FRICTION * RG_LANES,
        RG_TRACE_ROW = RG_FNODES * 3,
        RG_SEAM_ROW = RG_FCORNERS * 3, /* tractions of one face */
        RG_GHOST_BLOCK = RG_TRACE_ROW * RG_LANES,
@@ -137,6 +146,12 @@ static inline size_t rg_iforce_index(size_t i, int n, int c) {
 
 static inline size_t rg_crack_index(size_t i, int q, int k) {
     return (i / RG_LANES) * RG_CRACK_BLOCK + (size_t)(q * RG_CRACK + k) * RG_LANES + i % RG_LANES;
+}
+
+/* Index of value k of friction at point q of interface i, in crack state of `stride` values a block. */
+static inline size_t rg_friction_index(size_t i, int q, int k, size_t stride) {
+    return (i / RG_LANES + 1) * stride - RG_FRICTION_BLOCK + (size_t)(q * RG_FRICTION + k) * RG_LANES +
+           i % RG_LANES;
 }
 
 /* Rows of the history of an element with n values per point (none for n = 0), and the index of one of them.

@@ -22,9 +22,9 @@ typedef struct {
     double effective;
 } opening;
 
-/* Crack state of a point, and the memory of its law. */
+/* Crack state of a point, the memory of its law, and its friction. */
 typedef struct {
-    rg_real *state[RG_CRACK], *memory[RG_LAW_MEMORY];
+    rg_real *state[RG_CRACK], *memory[RG_LAW_MEMORY], *friction[RG_FRICTION];
 } crack;
 
 /* Whether side k of interface i is what `side[0]` names: the minus side, or the own one of a seam. */
@@ -224,12 +224,61 @@ static void cohesive(const rg_interface_args *args, const point *p, const openin
 static crack crack_of(const rg_interface_args *args, size_t i, int q) {
     rg_real *block = args->crack + i / RG_LANES * args->crack_stride;
     int memory = rg_law_facts_of(args->law.law, args->law.shape, args->law.beta).memory;
-    crack found = {{NULL}, {NULL}};
+    crack found = {{NULL}, {NULL}, {NULL}};
     for (int k = 0; k < RG_CRACK; k++)
         found.state[k] = block + rg_crack_index(i % RG_LANES, q, k);
     for (int m = 0; m < memory; m++)
         found.memory[m] = block + RG_CRACK_BLOCK + (size_t)(q * memory + m) * RG_LANES + i % RG_LANES;
+    for (int k = 0; k < RG_FRICTION && args->law.friction > 0; k++)
+        found.friction[k] = args->crack + rg_friction_index(i, q, k, args->crack_stride);
     return found;
+}
+
+/* Unit tangents of the deformed mid-surface: along the edge from corner 0 to 1, and across it. */
+static void sample_tangents(const rg_interface_args *args, size_t i, const point *p, double tangent[2][3]) {
+    double chord[3];
+    for (int c = 0; c < 3; c++) {
+        double first = (side_value(args, i, 0, 0, c) + side_value(args, i, 1, 0, c)) / 2;
+        double second = (side_value(args, i, 0, 1, c) + side_value(args, i, 1, 1, c)) / 2;
+        chord[c] = edge(args, i, 0, c) + second - first;
+    }
+    rg_reference_cross(p->normal, chord, tangent[1]);
+    double length = sqrt(rg_reference_dot(tangent[1], tangent[1]));
+    for (int c = 0; c < 3; c++)
+        tangent[1][c] = length > 0 ? tangent[1][c] / length : 0;
+    rg_reference_cross(tangent[1], p->normal, tangent[0]);
+}
+
+/* Adds friction: a spring of the tangential penalty from an anchor, which slips where the spring would pull
+ * with more than mu times damage times pressure. */
+static void rub(const rg_interface_args *args, size_t i, const point *p, const opening *o, const crack *k,
+                bool fresh, double t[3]) {
+    const rg_cohesive *law = &args->law;
+    double tangent[2][3], slip[2], spring[2], slid = 0;
+    if (law->stick) {
+        for (int c = 0; c < 3; c++)
+            t[c] += p->iso * o->shear[c];
+        return;
+    }
+    sample_tangents(args, i, p, tangent);
+    double parts = p->opening * (law->separation / law->opening);
+    double damage = parts > 0 ? fmin(1, *k->state[RG_CRACK_OPENING] / parts) : 1;
+    double limit = fresh || o->normal >= 0 ? 0 : law->friction * damage * p->contact * -o->normal;
+    for (int d = 0; d < 2; d++) {
+        slip[d] = rg_reference_dot(o->shear, tangent[d]);
+        spring[d] = p->iso * (slip[d] - *k->friction[RG_FRICTION_ANCHOR + d]);
+    }
+    double force = hypot(spring[0], spring[1]), part = force > limit ? limit / force : 1;
+    for (int d = 0; d < 2; d++) {
+        double before = p->iso * *k->friction[RG_FRICTION_STRETCH + d], now = part * spring[d];
+        double stretch = p->iso > 0 ? now / p->iso : 0, moved = (spring[d] - now) / (p->iso > 0 ? p->iso : 1);
+        slid += (before + now) / 2 * moved;
+        *k->friction[RG_FRICTION_STRETCH + d] = (rg_real)stretch;
+        *k->friction[RG_FRICTION_ANCHOR + d] = (rg_real)(slip[d] - stretch);
+        for (int c = 0; c < 3; c++)
+            t[c] += now * tangent[d][c];
+    }
+    *k->friction[RG_FRICTION_HEAT] += (rg_real)(p->weight * fmax(0, slid));
 }
 
 static void set_bit(uint8_t *mask, int q, bool on) {
@@ -254,6 +303,8 @@ static void point_traction(const rg_interface_args *args, size_t i, int q, const
     bool closed = args->law.flux && o.normal < 0;
     if (!closed)
         cohesive(args, p, &o, &k, t);
+    if (args->law.friction > 0)
+        rub(args, i, p, &o, &k, !broken, t);
     set_bit(&args->unlinked[i], q, !closed);
 }
 
@@ -293,6 +344,10 @@ static void point_energy(const rg_interface_args *args, size_t i, int q, double 
         energy[RG_E_COHESIVE] += p.weight * p.area * a.stored;
     if (!law->flux && o.normal < law->contact_below)
         energy[RG_E_CONTACT] += p.weight * p.contact * o.normal * o.normal / 2;
+    for (int d = 0; d < 2 && law->friction > 0; d++) {
+        double stretch = *k.friction[RG_FRICTION_STRETCH + d];
+        energy[RG_E_CONTACT] += p.weight * p.iso * stretch * stretch / 2;
+    }
     energy[RG_E_DISSIPATED] += p.weight * p.area * a.dissipated;
 }
 

@@ -100,6 +100,7 @@ typedef struct {
         double strength, energy, beta;
         rg_activation activation;
         rg_contact contact;
+        double friction;                     /* coefficient of closed faces */
         double shape[RG_LAWS][RG_LAW_SHAPE]; /* parameters of its own of each law */
         int sets;
         rg_face_set *set; /* faces with properties of their own */

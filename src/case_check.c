@@ -249,6 +249,8 @@ static void learn(rg_check *ck, const rg_key *key, const rg_node *node, bool goo
         rg_law_rule(ck, node, good);
     } else if (key->offset == offsetof(rg_case, interface.contact) && node != NULL && good) {
         rg_contact_rule(ck, node);
+    } else if (key->offset == offsetof(rg_case, interface.friction) && node != NULL && good) {
+        rg_friction_rule(ck, node);
     } else if (key->offset == offsetof(rg_case, interface.weibull.modulus)) {
         ck->usage[RG_GROUP_WEIBULL] = node == NULL ? RG_UNUSED : good ? RG_USED : RG_UNSURE;
     } else if (key->offset == offsetof(rg_case, mesh.file) && node != NULL) {

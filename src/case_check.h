@@ -48,6 +48,9 @@ void rg_law_rule(rg_check *ck, const rg_node *node, bool good);
 /* Contact `flux` brings DG terms back: form intrinsic has none. */
 void rg_contact_rule(rg_check *ck, const rg_node *node);
 
+/* Friction acts on faces that contact `penalty` keeps closed. */
+void rg_friction_rule(rg_check *ck, const rg_node *node);
+
 /* "law is linear" */
 const char *rg_law_is(const rg_case *c);
 

@@ -105,6 +105,7 @@ static const rg_key case_keys[] = {
      CASE(interface.activation)},
     {.name = "interface.contact", CHOICE(contacts), DEFAULT(RG_CONTACT_PENALTY), GROUP(COHESIVE),
      CASE(interface.contact)},
+    {.name = "interface.friction", REAL, FROM(0), DEFAULT(0), GROUP(COHESIVE), CASE(interface.friction)},
 #define RG_LAW_PARAMETER(NAME, index, word, unit_, low_, high_, fallback_)                                   \
     {.name = word, .unit = unit_, REAL, FROM_TO(low_, high_), DEFAULT(fallback_), GROUP(LAW),                \
      .law = RG_LAW_##NAME, CASE(interface.shape[RG_LAW_##NAME][index])},

@@ -111,6 +111,15 @@ void rg_contact_rule(rg_check *ck, const rg_node *node) {
     }
 }
 
+void rg_friction_rule(rg_check *ck, const rg_node *node) {
+    if (ck->c->interface.friction > 0 && ck->c->interface.contact == RG_CONTACT_FLUX) {
+        rg_subject subject = {
+            .key = "interface.friction", .value = node->text, .allowed = "with contact flux: 0"};
+        rg_problem_add(ck->problems, node->at, &subject,
+                       "contact flux holds closed faces by all DG terms, so they do not slide");
+    }
+}
+
 /* ---- boundary: one prescribed motion per entry, one entry per set and component ---- */
 
 static bool one_motion(rg_check *ck, const rg_node *item, const char *path, rg_boundary *b) {

@@ -201,11 +201,11 @@ void rg_csv_row(rg_csv *t, const int64_t *number, size_t numbers, const double *
 }
 
 void rg_csv_energy_header(rg_csv *t) {
-    rg_csv_header(t,
-                  "step,time,kinetic,bodies,bulk,penalty,cohesive,contact,dissipated,plastic,damage,viscous,"
-                  "external_work,total,error_rel,broken_area,failed_area,momentum_x,momentum_y,momentum_z,"
-                  "angular_x,angular_y,"
-                  "angular_z");
+    rg_csv_header(
+        t, "step,time,kinetic,bodies,bulk,penalty,cohesive,contact,dissipated,plastic,damage,viscous,"
+           "friction,external_work,total,error_rel,broken_area,failed_area,momentum_x,momentum_y,momentum_z,"
+           "angular_x,angular_y,"
+           "angular_z");
 }
 
 void rg_csv_energy(rg_csv *t, const rg_energy *e) {
@@ -220,6 +220,7 @@ void rg_csv_energy(rg_csv *t, const rg_energy *e) {
                           e->plastic,
                           e->damage,
                           e->viscous,
+                          e->friction,
                           e->external,
                           e->total,
                           e->error,

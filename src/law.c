@@ -26,7 +26,8 @@ rg_cohesive rg_law_make(const rg_case *c) {
                        .beta = c->interface.beta,
                        .total = c->interface.activation == RG_ACTIVATION_TOTAL,
                        .flux = c->interface.contact == RG_CONTACT_FLUX,
-                       .intrinsic = c->interface.form == RG_FORM_INTRINSIC};
+                       .intrinsic = c->interface.form == RG_FORM_INTRINSIC,
+                       .friction = c->interface.friction};
     memcpy(law.shape, c->interface.shape[law.law], sizeof law.shape);
     rg_law_facts facts = facts_of(&law);
     if ((facts.forms & RG_NORMAL_MEASURE) != 0) {
@@ -43,7 +44,8 @@ rg_cohesive rg_law_make(const rg_case *c) {
 }
 
 size_t rg_crack_stride(const rg_cohesive *law) {
-    return RG_CRACK_BLOCK + (size_t)facts_of(law).memory * RG_POINTS * RG_LANES;
+    size_t friction = law->friction > 0 ? RG_FRICTION_BLOCK : 0;
+    return RG_CRACK_BLOCK + (size_t)facts_of(law).memory * RG_POINTS * RG_LANES + friction;
 }
 
 void rg_law_start(rg_solver *s) {

@@ -8,7 +8,7 @@
  */
 rg_cohesive rg_law_make(const rg_case *c);
 
-/* Values of crack state and memory of a block of interfaces. */
+/* Values of crack state, memory and friction of a block of interfaces. */
 size_t rg_crack_stride(const rg_cohesive *law);
 
 /* In the intrinsic form every point follows its law from the start, on the total jump. */

@@ -17,6 +17,7 @@ enum {
     EXTERNAL,
     RELEASED,
     VISCOUS = RELEASED + RG_RELEASED,
+    FRICTION,
     BROKEN,
     FAILED,
     VOLUME,
@@ -93,6 +94,14 @@ static void add_areas(rg_exact_sum sum[SUMS], const rg_solver *s, size_t i) {
     }
 }
 
+static void add_friction(rg_exact_sum sum[SUMS], const rg_solver *s, size_t i) {
+    for (int q = 0; q < RG_POINTS && s->law.friction > 0; q++) {
+        if (s->broken[i] >> q & 1) {
+            rg_exact_add(&sum[FRICTION], *rg_friction_value(s, i, q, RG_FRICTION_HEAT));
+        }
+    }
+}
+
 /* Of the two copies of a seam one is counted. */
 static void interface_energies(rg_solver *s, const rg_tile *t, const rg_workspace *w, double *energy,
                                rg_exact_sum sum[SUMS]) {
@@ -109,6 +118,7 @@ static void interface_energies(rg_solver *s, const rg_tile *t, const rg_workspac
         }
         if (s->broken[i]) {
             add_areas(sum, s, i);
+            add_friction(sum, s, i);
         }
     }
 }
@@ -161,6 +171,7 @@ const rg_energy *rg_ledger_take(rg_ledger *l, rg_solver *s) {
                      .plastic = v[RELEASED + RG_RELEASED_PLASTIC],
                      .damage = v[RELEASED + RG_RELEASED_DAMAGE],
                      .viscous = v[VISCOUS],
+                     .friction = v[FRICTION],
                      .external = v[EXTERNAL] + bodies.work,
                      .broken_area = v[BROKEN],
                      .failed_area = v[FAILED],
@@ -171,7 +182,7 @@ const rg_energy *rg_ledger_take(rg_ledger *l, rg_solver *s) {
         e->angular_momentum[c] += bodies.angular_momentum[c];
     }
     double stored = e->kinetic + e->bodies + e->bulk + e->penalty + e->cohesive + e->contact + e->dissipated +
-                    e->plastic + e->damage + e->viscous;
+                    e->plastic + e->damage + e->viscous + e->friction;
     e->total = stored - e->external;
     if (!l->begun) {
         *l = (rg_ledger){.begun = true, .start = e->total, .last = *e};

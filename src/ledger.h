@@ -1,5 +1,5 @@
-/* The energy ledger: kinetic + bulk + penalty + cohesive + contact + dissipated + plastic + damage - external
- * work = constant. */
+/* The energy ledger: kinetic + bulk + penalty + cohesive + contact + dissipated + plastic + damage + viscous
+ * + friction - external work = constant. */
 #ifndef RG_LEDGER_H
 #define RG_LEDGER_H
 
@@ -14,6 +14,8 @@ typedef struct {
     double plastic, damage; /* set free in the bulk by plastic flow and by growing microcracks (J); the latter
                          can be negative, where growth raises the stored energy (deshpande_evans_model.h) */
     double viscous;         /* dissipated by bulk viscosity (J) */
+    double friction;        /* dissipated where closed cracks slide (J); what they store while they stick is
+                             * part of contact */
     double external;        /* work done by prescribed motions (J) */
     double total;           /* sum of the parts less the external work (J) */
     double error;           /* change of the total since the start, over the largest energy seen (or what

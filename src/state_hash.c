@@ -2,6 +2,7 @@
 
 #include "crack_surface.h"
 #include "hash.h"
+#include "tile.h"
 
 static uint64_t element_hash(const rg_solver *s, size_t slot) {
     uint64_t h = rg_hash(1, (uint64_t)s->domain->id[slot]);
@@ -21,6 +22,9 @@ static uint64_t interface_hash(const rg_solver *s, const rg_tile *t, size_t i) {
     uint64_t h = rg_hash(2, (uint64_t)(RG_FACES * element + link % RG_FACES));
     for (int q = 0; q < RG_POINTS; q++) {
         h = rg_hash_double(h, rg_damage(s, i, q));
+        for (int k = 0; k < RG_FRICTION && s->law.friction > 0; k++) {
+            h = rg_hash_double(h, *rg_friction_value(s, i, q, k));
+        }
     }
     return h;
 }

@@ -63,6 +63,7 @@ static void write_physics(FILE *f, const rg_summary *m, const rg_ledger *l) {
     rg_json_number(f, "plastic_J", l->last.plastic);
     rg_json_number(f, "damage_J", l->last.damage);
     rg_json_number(f, "viscous_J", l->last.viscous);
+    rg_json_number(f, "friction_J", l->last.friction);
     rg_json_number(f, "first_fracture_time_s", m->first_fracture);
     rg_json_number(f, "broken_area_m2", l->last.broken_area);
     rg_json_number(f, "failed_area_m2", l->last.failed_area);

@@ -31,6 +31,11 @@ static inline rg_real *rg_crack_value(const rg_solver *s, size_t i, int q, int k
     return s->crack + i / RG_LANES * s->crack_stride + rg_crack_index(i % RG_LANES, q, k);
 }
 
+/* Value k (RG_FRICTION_ANCHOR...) of friction there; only where the law has some. */
+static inline rg_real *rg_friction_value(const rg_solver *s, size_t i, int q, int k) {
+    return s->crack + rg_friction_index(i, q, k, s->crack_stride);
+}
+
 /* Whether point q of interface i is broken: it has switched to its law, or in the intrinsic form, where all
  * points follow theirs from the start, it is fully separated. */
 bool rg_point_is_broken(const rg_solver *s, size_t i, int q);

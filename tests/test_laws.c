@@ -286,7 +286,8 @@ typedef struct {
 } output;
 
 static size_t stride_of(const input *in) {
-    return RG_CRACK_BLOCK +
+    size_t friction = in->law.friction > 0 ? RG_FRICTION_BLOCK : 0;
+    return RG_CRACK_BLOCK + friction +
            (size_t)rg_law_facts_of(in->law.law, in->law.shape, in->law.beta).memory * RG_POINTS * RG_LANES;
 }
 
@@ -368,6 +369,29 @@ static void compare_cracks(const char *set, const char *law, const output *out, 
         }
 }
 
+/* Value k of the friction of all points, 0 where they hold. */
+static double *friction_of(const output *out, const output *ref, int k, size_t stride) {
+    double *all = input_alloc(INPUT_ISLOTS * RG_POINTS * sizeof *all);
+    for (size_t i = 0; i < INPUT_ISLOTS; i++)
+        for (int q = 0; q < RG_POINTS; q++)
+            if (ref->broken[i] >> q & 1)
+                all[i * RG_POINTS + (size_t)q] = out->crack[rg_friction_index(i, q, k, stride)];
+    return all;
+}
+
+static void compare_friction(const char *set, const char *law, const output *out, const output *ref,
+                             size_t stride) {
+    for (int k = 0; k < RG_FRICTION; k++) {
+        double *got = friction_of(out, ref, k, stride), *expected = friction_of(ref, ref, k, stride), sum = 0;
+        compare(set, law, "friction", got, expected, INPUT_ISLOTS * RG_POINTS);
+        for (size_t i = 0; i < INPUT_ISLOTS * RG_POINTS; i++)
+            sum += fabs(expected[i]);
+        assert_true(sum > 0);
+        free(got);
+        free(expected);
+    }
+}
+
 static void check_kernel(const rg_kernels *set, input_kind kind, const rg_cohesive *law,
                          const rg_real *scale) {
     input *in = input_make(kind, *law, 7, 3);
@@ -379,6 +403,8 @@ static void check_kernel(const rg_kernels *set, input_kind kind, const rg_cohesi
     compare_reals(set->name, word, "force", out.force, ref.force, INPUT_IBLOCKS * RG_IFORCE_BLOCK);
     compare(set->name, word, "energy", out.energy, ref.energy, INPUT_ISLOTS * RG_E_INTERFACE);
     compare_cracks(set->name, word, &out, &ref, stride_of(in));
+    if (law->friction > 0 && !law->stick)
+        compare_friction(set->name, word, &out, &ref, stride_of(in));
     output_free(&out);
     output_free(&ref);
     input_free(in);
@@ -415,6 +441,10 @@ static void test_kernels(void **state) {
                 rg_cohesive law = cohesive_of(&s, (s.facts.forms & RG_FORMS_DG) == 0);
                 check_kernel(sets[k], (input_kind)kind, &law, NULL);
                 check_kernel(sets[k], (input_kind)kind, &law, scale);
+                law.friction = 0.4;
+                check_kernel(sets[k], (input_kind)kind, &law, kind == 0 ? scale : NULL);
+                law.stick = true;
+                check_kernel(sets[k], (input_kind)kind, &law, NULL);
             }
     free(scale);
 }

@@ -99,6 +99,7 @@ VARIANTS = {
     "incomplete": {"interface.form": "incomplete", "mass": "lumped"},
     "thesis": {"interface.activation": "total", "interface.contact": "flux"},
     "intrinsic": {"interface.form": "intrinsic", "interface.law": "xu-needleman"},
+    "friction": {"interface.friction": 0.5},
     "plain": {"output.fields": [], "output.probes": [], "boundary": []},
 }
 

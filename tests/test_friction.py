@@ -1,0 +1,108 @@
+"""sliding.yaml: a block slides on another one, to which it is pressed, until Coulomb friction has stopped it."""
+
+import types
+
+import numpy as np
+import pytest
+from conftest import CASES, launch
+
+MODULUS, DENSITY, COEFFICIENT = 260e9, 3690, 0.3
+EDGE, HEIGHT, AREA, APPROACH = 0.05e-3, 0.1e-3, 0.04e-6, 8e-9  # m, m, m2, m
+PRESSURE = MODULUS * APPROACH / (2 * HEIGHT + EDGE / 4)  # the contact gives way too: its stiffness is 4 E/h
+SLOWING = COEFFICIENT * PRESSURE / (DENSITY * HEIGHT)  # m/s2
+PRESSED = 0.15e-6  # s: from here on
+
+
+def table(run):
+    """Of the times at which the two blocks are fragments: velocity and place of the upper one, those of the other,
+    energy dissipated by friction."""
+    rows = np.genfromtxt(run.dir / "fragments.csv", delimiter=",", names=True)
+    rows = rows[rows["elements"] < rows["elements"].max()] if len(set(rows["elements"])) > 1 else rows
+    upper, lower = rows[rows["centroid_z"] > 0], rows[rows["centroid_z"] < 0]
+    late = upper["time"] > PRESSED
+    upper, lower = upper[late], lower[late]
+    heat = np.interp(upper["time"], run.energy["time"], run.energy["friction"])
+    return types.SimpleNamespace(time=upper["time"], velocity=upper["momentum_x"] / upper["mass"],
+                                 relative=upper["momentum_x"] / upper["mass"] - lower["momentum_x"] / lower["mass"],
+                                 slip=upper["centroid_x"] - lower["centroid_x"], heat=heat)
+
+
+@pytest.fixture(scope="module")
+def slide(run):
+    return run(CASES / "sliding.yaml")
+
+
+def test_block_slows_down_as_coulomb_says(slide):
+    blocks = table(slide)
+    sliding = blocks.relative > 0.3
+    assert sliding.sum() > 30
+    slowing = -np.polyfit(blocks.time[sliding], blocks.velocity[sliding], 1)[0]
+    assert slowing == pytest.approx(SLOWING, rel=0.005)
+
+
+def test_block_stops_after_the_stopping_distance(slide):
+    blocks = table(slide)
+    distance = blocks.slip[-1] - blocks.slip[0]
+    assert distance == pytest.approx(blocks.velocity[0] ** 2 / (2 * SLOWING), rel=0.01)
+    assert np.ptp(blocks.slip[-20:]) < 0.02 * distance
+
+
+def test_heat_is_friction_times_slip(slide):
+    blocks = table(slide)
+    last = np.flatnonzero(blocks.relative > 0.3)[-1]
+    slip, heat = blocks.slip[last] - blocks.slip[0], blocks.heat[last] - blocks.heat[0]
+    assert heat == pytest.approx(COEFFICIENT * PRESSURE * AREA * slip, rel=0.01)
+    assert slide.summary["friction_J"] == pytest.approx(slide.energy["friction"][-1])
+
+
+def test_ledger_closes(slide):
+    assert slide.summary["energy_error_rel"] < 2e-4
+    assert (np.diff(slide.energy["friction"]) >= 0).all()
+    work = abs(slide.energy["external_work"][0] - slide.energy["total"][0])
+    assert slide.energy["friction"][-1] > 0.3 * work
+
+
+def test_no_friction_no_slowing(run):
+    free = run(CASES / "sliding.yaml", sets={"interface.friction": 0})
+    blocks = table(free)
+    assert np.ptp(blocks.velocity) < 0.01 * blocks.velocity[0]
+    assert not free.energy["friction"].any()
+
+
+def shaken(run, share):
+    """The lower wall, at rest while it presses, then pushes with a share of what friction can pass on; a jolt of
+    1 mm/s breaks the faces first."""
+    push = share * SLOWING
+    boundary = [{"set": "z-", "component": "x",
+                 "velocity": f"t < 1e-8 ? 1e-3 : (t < {PRESSED} ? 0 : {push}*(t - {PRESSED}))"},
+                {"set": "z-", "component": "z",
+                 "velocity": f"t < {PRESSED} ? {APPROACH / PRESSED}*(1 - cos(2*pi*t/{PRESSED})) : 0"},
+                {"set": "z+", "component": "z", "velocity": 0}]
+    return run(CASES / "sliding.yaml", sets={"initial.velocity.x": 0, "boundary": boundary})
+
+
+def test_block_sticks_below_the_limit(run):
+    """Waves double the push at most. A sticking point gives way by traction over stiffness, 4 mu/h."""
+    stuck = shaken(run, 0.2)
+    blocks = table(stuck)
+    late = stuck.energy["time"] > 1.02 * PRESSED
+    assert stuck.summary["broken_area_m2"] == pytest.approx(AREA)
+    assert late.sum() > 50 and np.ptp(stuck.energy["friction"][late]) == 0
+    assert blocks.velocity[-1] > 0.8 * 0.2 * SLOWING * (blocks.time[-1] - PRESSED)
+    give = 0.2 * COEFFICIENT * PRESSURE * (EDGE / (2 * MODULUS) + HEIGHT / MODULUS * 2)
+    assert np.ptp(blocks.slip) < 4 * give
+
+
+def test_block_slips_above_it(run):
+    """The lower wall runs away; the upper block follows with what friction gives."""
+    slipped = shaken(run, 3)
+    blocks = table(slipped)
+    far = blocks.time > PRESSED + 5e-8
+    assert np.polyfit(blocks.time[far], blocks.velocity[far], 1)[0] == pytest.approx(SLOWING, rel=0.01)
+    assert slipped.energy["friction"][-1] > 0
+
+
+def test_friction_needs_contact_by_penalty(tmp_path):
+    process = launch("run", CASES / "sliding.yaml", "-q", "-o", tmp_path / "out", "--set", "interface.contact=flux")
+    assert process.returncode == 2
+    assert "sliding.yaml" in process.stderr and "interface.friction: 0.3" in process.stderr
