@@ -100,7 +100,9 @@ VARIANTS = {
     "thesis": {"interface.activation": "total", "interface.contact": "flux"},
     "intrinsic": {"interface.form": "intrinsic", "interface.law": "xu-needleman"},
     "friction": {"interface.friction": 0.5},
+    "fatigue": {"interface.law": "fatigue"},
     "plain": {"output.fields": [], "output.probes": [], "boundary": []},
+    **({} if SINGLE else {"rate": {"interface.law": "rate"}}),
 }
 
 
