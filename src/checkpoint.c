@@ -51,24 +51,25 @@ static identity identity_of(const rg_checkpoints *k) {
     return id;
 }
 
-void rg_checkpoints_open(rg_checkpoints *k, const char *dir, rg_solver *s, const rg_state *state) {
-    *k = (rg_checkpoints){.solver = s, .state = state, .folder = rg_join_path(dir, "checkpoints")};
+void rg_checkpoints_open(rg_checkpoints *k, const char *dir, rg_solver *s, const rg_state *state,
+                         rg_slab **slab) {
+    *k = (rg_checkpoints){
+        .solver = s, .state = state, .shared = slab, .folder = rg_join_path(dir, "checkpoints")};
 }
 
 /* What all checkpoints of a run share, made with the first: most runs write none. Collective. */
 static void prepare(rg_checkpoints *k) {
     const rg_solver *s = k->solver;
     if (k->slab == NULL) {
-        k->slab = rg_slab_make(s->domain, s->part->total, s->comm);
+        k->slab = rg_slab_shared(k->shared, s->domain, s->part->total, s->comm);
         k->mesh = mesh_hash(s);
     }
 }
 
 void rg_checkpoints_close(rg_checkpoints *k) {
     rg_free(k->folder);
-    rg_free(k->record);
-    rg_free(k->sorted);
-    rg_slab_free(k->slab);
+    rg_free(k->window);
+    rg_free(k->seconds);
 }
 
 /* ---- writing ---- */
@@ -104,29 +105,41 @@ static rg_h5_slab of_elements(const rg_slab *slab, const rg_state_array *a) {
                         .count = (int64_t)slab->count};
 }
 
-/* Room for an array of `bytes` an element. */
-static void make_room(rg_checkpoints *k, size_t bytes) {
-    if (bytes > k->room) {
-        rg_free(k->record);
-        rg_free(k->sorted);
-        k->record = RG_NEW(char, k->slab->own *bytes + 1);
-        k->sorted = RG_NEW(char, k->slab->count *bytes + 1);
-        k->room = bytes;
-    }
+/* The records of an array, by own element in the order of the slab. */
+typedef struct {
+    const rg_state_array *array;
+    const rg_lid *slot;
+} element_records;
+
+static void get_record(const void *of, size_t i, void *out) {
+    const element_records *r = of;
+    rg_state_get(r->array, (size_t)r->slot[i], out);
 }
 
-static void put_elements(rg_h5_file *f, hid_t group, rg_checkpoints *k, const rg_state_array *a) {
-    size_t bytes = rg_state_bytes(a);
-    make_room(k, bytes);
-#pragma omp parallel for schedule(static)
-    for (size_t i = 0; i < k->slab->own; i++) {
-        size_t place = rg_slab_place(k->slab, i);
-        char *to = place != SIZE_MAX ? k->sorted + place * bytes : k->record + i * bytes;
-        rg_state_get(a, (size_t)k->slab->slot[i], to);
+static char *make_window(rg_checkpoints *k, size_t bytes) {
+    if (bytes > k->window_bytes) {
+        rg_free(k->window);
+        k->window = RG_NEW(char, bytes);
+        k->window_bytes = bytes;
     }
-    rg_slab_send_others(k->slab, bytes, k->record, k->sorted);
+    return k->window;
+}
+
+/* Window by window, each written and read back while it is in the cache; the disk takes it while the next one
+ * comes. */
+static void put_elements(rg_h5_file *f, hid_t group, rg_checkpoints *k, const rg_state_array *a) {
+    size_t bytes = rg_state_bytes(a), rows = rg_slab_window(bytes), most = rg_slab_most(k->slab);
+    char *window = make_window(k, rows * bytes);
+    element_records records = {a, k->slab->slot};
     rg_h5_slab s = of_elements(k->slab, a);
-    rg_h5_write(f, group, &s, NULL, k->sorted);
+    hid_t dataset = rg_h5_begin(f, group, &s, NULL);
+    for (size_t first = 0; first < most; first += rows) {
+        s.count = (int64_t)rg_slab_gather(k->slab, first, rows, bytes, get_record, &records, window);
+        rg_h5_put(f, dataset, &s, window);
+        rg_h5_start_sync(f);
+        s.first += s.count;
+    }
+    rg_h5_note(f, H5Dclose(dataset) >= 0, "close", a->name);
 }
 
 static void put_rows(rg_h5_file *f, hid_t group, const rg_state_array *a) {
@@ -151,12 +164,12 @@ static void put_group(rg_h5_file *f, rg_checkpoints *k, const char *name, rg_sta
             put_elements(f, group, k, a);
         }
     }
-    rg_h5_agree(f, H5Gclose(group) >= 0, "close", NULL);
+    rg_h5_note(f, H5Gclose(group) >= 0, "close", NULL);
 }
 
 static void put_all(rg_h5_file *f, rg_checkpoints *k) {
     identity id = identity_of(k);
-    rg_h5_agree(f, put_identity(f, &id), "describe", "the file");
+    rg_h5_note(f, put_identity(f, &id), "describe", "the file");
     put_case(f, k->solver->input);
     put_group(f, k, "run", RG_OF_RUN);
     put_group(f, k, "element", RG_OF_ELEMENT);
@@ -168,17 +181,18 @@ static void put_all(rg_h5_file *f, rg_checkpoints *k) {
 }
 
 void rg_checkpoint_write(rg_checkpoints *k, int keep) {
-    double begin = MPI_Wtime();
     const rg_solver *s = k->solver;
+    MPI_Barrier(s->comm); /* so that waiting for a slower rank does not count */
+    double begin = MPI_Wtime();
     prepare(k);
     rg_make_directory(k->folder, s->comm);
     char *path = rg_folder_path(k->folder, s->step);
     rg_h5_file f;
     rg_h5_create(&f, path, RG_SEAL, s->comm);
     put_all(&f, k);
-    rg_h5_close(&f, true);
+    rg_h5_close(&f);
     rg_h5_agree_on(&f, rg_seal_put(f.part, s->step, s->comm), path, "seal the file", strerror(errno));
-    rg_h5_finish(&f);
+    rg_h5_finish(&f, true);
     rg_free(path);
     if (s->rank == 0) {
         rg_sync(k->folder);
@@ -186,9 +200,28 @@ void rg_checkpoint_write(rg_checkpoints *k, int keep) {
     }
     double seconds = MPI_Wtime() - begin;
     MPI_Bcast(&seconds, 1, MPI_DOUBLE, 0, s->comm);
-    k->written++;
-    k->seconds += seconds;
+    k->seconds = rg_realloc(k->seconds, (size_t)k->written + 1, sizeof *k->seconds);
+    k->seconds[k->written++] = seconds;
+    k->total += seconds;
     k->slowest = seconds > k->slowest ? seconds : k->slowest;
+}
+
+static int ascending(const void *a, const void *b) {
+    double p = *(const double *)a, q = *(const double *)b;
+    return (p > q) - (p < q);
+}
+
+double rg_checkpoints_median(const rg_checkpoints *k) {
+    size_t n = (size_t)k->written;
+    if (n == 0) {
+        return 0;
+    }
+    double *sorted = RG_NEW(double, n);
+    memcpy(sorted, k->seconds, n * sizeof *sorted);
+    qsort(sorted, n, sizeof *sorted, ascending);
+    double median = (sorted[(n - 1) / 2] + sorted[n / 2]) / 2;
+    rg_free(sorted);
+    return median;
 }
 
 /* ---- reading ---- */

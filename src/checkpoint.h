@@ -11,7 +11,7 @@
  *   face/rows        [elements][1]: how many of them each element has
  *   NAME/key, NAME/NAME, NAME/rows   the same of the list NAME
  *
- * It is written under another name, read back dataset by dataset, brought to the disk, sealed, and only then
+ * It is written under another name, read back piece by piece, sealed, brought to the disk, and only then
  * gets its name: what has the name is good, until somebody damages it, and then that is noticed. */
 #ifndef RG_CHECKPOINT_H
 #define RG_CHECKPOINT_H
@@ -21,19 +21,21 @@
 typedef struct {
     rg_solver *solver;
     const rg_state *state;
-    char *folder;          /* where the checkpoints are */
-    rg_slab *slab;         /* NULL until the first checkpoint */
-    char *record, *sorted; /* kept from one checkpoint to the next: fresh pages cost more than the disk */
-    size_t room;           /* bytes of an element for which they are large enough */
-    uint64_t mesh;         /* hash of the mesh */
+    char *folder;     /* where the checkpoints are */
+    rg_slab **shared; /* made with the first one, if there is none yet */
+    rg_slab *slab;    /* NULL until the first checkpoint */
+    char *window;     /* of the state of elements in global order, on its way to the disk */
+    size_t window_bytes;
+    uint64_t mesh; /* hash of the mesh */
     int written;
-    double seconds; /* that writing them took in all */
-    double slowest; /* time that the slowest one took to write so far (s) */
+    double *seconds;       /* [written]: wall time of each, from the call to the removal of an older one */
+    double total, slowest; /* sum of them, and the largest */
 } rg_checkpoints;
 
 /* The checkpoints of a run in `dir`/checkpoints, which is created when the first is written. Keeps
- * references; rg_checkpoints_close frees what it holds. */
-void rg_checkpoints_open(rg_checkpoints *k, const char *dir, rg_solver *s, const rg_state *state);
+ * references, also to `slab` (rg_slab_shared); rg_checkpoints_close frees what it holds. */
+void rg_checkpoints_open(rg_checkpoints *k, const char *dir, rg_solver *s, const rg_state *state,
+                         rg_slab **slab);
 
 /* Writes the state between two steps and removes all but the last `keep` checkpoints. Ends the run with a
  * message where that fails, and leaves the earlier checkpoints. Collective. */
@@ -43,6 +45,9 @@ void rg_checkpoint_write(rg_checkpoints *k, int keep);
  * run (RG_USAGE) with a message if there is none, or if it is of another case, mesh, precision or version.
  * Collective. */
 void rg_checkpoint_load(rg_checkpoints *k);
+
+/* Median of their wall times; 0 without any. */
+double rg_checkpoints_median(const rg_checkpoints *k);
 
 void rg_checkpoints_close(rg_checkpoints *k);
 

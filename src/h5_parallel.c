@@ -1,4 +1,4 @@
-#define _GNU_SOURCE /* fallocate */
+#define _GNU_SOURCE /* fallocate, sync_file_range */
 #include "h5_parallel.h"
 
 #include <errno.h>
@@ -56,12 +56,16 @@ void rg_h5_agree_on(const rg_h5_file *f, bool ok, const char *path, const char *
     }
 }
 
-void rg_h5_agree(const rg_h5_file *f, bool ok, const char *verb, const char *what) {
-    char words[RG_H5_GROUP + 100];
-    snprintf(words, sizeof words, "%s %s%s%s", verb, f->group, what != NULL ? "/" : "",
-             what != NULL ? what : "");
+void rg_h5_note(rg_h5_file *f, bool ok, const char *verb, const char *what) {
+    if (!ok && f->failure[0] == '\0') {
+        snprintf(f->failure, sizeof f->failure, "%s %s%s%s", verb, f->group, what != NULL ? "/" : "",
+                 what != NULL ? what : "");
+    }
+}
+
+void rg_h5_agree(const rg_h5_file *f) {
     bool known = f->reason[0] != '\0';
-    rg_h5_agree_on(f, ok, f->shown, words,
+    rg_h5_agree_on(f, f->failure[0] == '\0', f->shown, f->failure,
                    known ? f->reason : "it does not hold what was written (faulty MPI-IO?)");
 }
 
@@ -91,7 +95,7 @@ hid_t rg_h5_group(rg_h5_file *f, const char *name) {
     H5Pset_obj_track_times(plan, false); /* the same data are the same file */
     hid_t group = H5Gcreate2(f->file, name, H5P_DEFAULT, plan, H5P_DEFAULT);
     H5Pclose(plan);
-    rg_h5_agree(f, group >= 0, "create", NULL);
+    rg_h5_note(f, group >= 0, "create", NULL);
     return group;
 }
 
@@ -184,33 +188,51 @@ static void reserve(rg_h5_file *f, size_t bytes, const char *what) {
     int64_t more = (int64_t)bytes + METADATA_BYTES;
     bool ok = true;
     if (f->rank == 0) {
-        int file = open(f->part, O_WRONLY);
-        ok = file >= 0 && (fallocate(file, 0, f->reserved, more) == 0 || errno == EOPNOTSUPP);
+        ok = fallocate(f->disk, 0, f->reserved, more) == 0 || errno == EOPNOTSUPP;
         if (!ok) {
             snprintf(f->reason, sizeof f->reason, "%s", strerror(errno));
         }
-        if (file >= 0) {
-            close(file);
-        }
     }
     f->reserved += more;
-    rg_h5_agree(f, ok, "write", what);
+    rg_h5_note(f, ok, "write", what);
 }
 
-void rg_h5_write(rg_h5_file *f, hid_t place, const rg_h5_slab *s, const char *unit, const void *data) {
+hid_t rg_h5_begin(rg_h5_file *f, hid_t place, const rg_h5_slab *s, const char *unit) {
     hid_t dataset = create_dataset(place, s);
-    rg_h5_agree(f, dataset >= 0, "create", s->name);
+    rg_h5_note(f, dataset >= 0, "create", s->name);
     bool ok = unit == NULL || rg_h5_put_text(dataset, "unit", unit);
     ok =
         (s->columns != 6 || unit == NULL || rg_h5_put_text(dataset, "components", "xx xy xz yy yz zz")) && ok;
-    rg_h5_agree(f, ok, "describe", s->name);
+    rg_h5_note(f, ok, "describe", s->name);
     if (s->rows > 0) {
         size_t bytes = (size_t)s->rows * (size_t)s->columns * H5Tget_size(s->type);
         reserve(f, bytes + bytes / 64, s->name); /* what does not compress grows a little */
-        rg_h5_agree(f, write_slab(dataset, s, data), "write", s->name);
-        rg_h5_agree(f, verify_slab(dataset, s, data), "read back", s->name);
     }
-    rg_h5_agree(f, H5Dclose(dataset) >= 0, "close", s->name);
+    return dataset;
+}
+
+void rg_h5_put(rg_h5_file *f, hid_t dataset, const rg_h5_slab *s, const void *data) {
+    bool together = s->deflate > 0;
+    if (together) {
+        rg_h5_agree(f);
+    }
+    rg_h5_note(f, write_slab(dataset, s, data), "write", s->name);
+    if (together) {
+        rg_h5_agree(f);
+    }
+    rg_h5_note(f, verify_slab(dataset, s, data), "read back", s->name);
+}
+
+void rg_h5_start_sync(const rg_h5_file *f) {
+    sync_file_range(f->disk, 0, 0, SYNC_FILE_RANGE_WRITE); /* a wish: rg_h5_finish tells of failures */
+}
+
+void rg_h5_write(rg_h5_file *f, hid_t place, const rg_h5_slab *s, const char *unit, const void *data) {
+    hid_t dataset = rg_h5_begin(f, place, s, unit);
+    if (s->rows > 0) {
+        rg_h5_put(f, dataset, s, data);
+    }
+    rg_h5_note(f, H5Dclose(dataset) >= 0, "close", s->name);
 }
 
 bool rg_h5_read(hid_t place, const rg_h5_slab *s, void *data) {
@@ -244,7 +266,7 @@ static hid_t parallel_access(MPI_Comm comm) {
 }
 
 static void prepare(rg_h5_file *f, const char *path, MPI_Comm comm) {
-    *f = (rg_h5_file){.comm = comm, .file = -1};
+    *f = (rg_h5_file){.comm = comm, .file = -1, .disk = -1};
     MPI_Comm_rank(comm, &f->rank);
     f->path = rg_realloc(NULL, strlen(path) + 1, 1);
     strcpy(f->path, path);
@@ -266,6 +288,8 @@ void rg_h5_create(rg_h5_file *f, const char *path, hsize_t room, MPI_Comm comm) 
     H5Pclose(plan);
     H5Pclose(access);
     rg_h5_agree_on(f, f->file >= 0, f->shown, "create the file", f->reason);
+    f->disk = open(f->part, O_RDWR);
+    rg_h5_agree_on(f, f->disk >= 0, f->shown, "open the file", strerror(errno));
 }
 
 bool rg_h5_open(rg_h5_file *f, const char *path, MPI_Comm comm) {
@@ -280,19 +304,23 @@ bool rg_h5_open(rg_h5_file *f, const char *path, MPI_Comm comm) {
 
 static void release(rg_h5_file *f) {
     rg_h5_deafen();
+    if (f->disk >= 0) {
+        close(f->disk);
+    }
     rg_free(f->path);
     rg_free(f->part);
 }
 
-void rg_h5_close(rg_h5_file *f, bool sync) {
+void rg_h5_close(rg_h5_file *f) {
+    rg_h5_agree(f);
     bool ok = H5Fclose(f->file) >= 0;
     rg_h5_agree_on(f, ok, f->shown, "close the file", f->reason);
-    ok = !sync || rg_sync(f->part);
-    rg_h5_agree_on(f, ok, f->shown, "bring the file to the disk", strerror(errno));
 }
 
-void rg_h5_finish(rg_h5_file *f) {
-    bool ok = f->rank != 0 || rename(f->part, f->path) == 0;
+void rg_h5_finish(rg_h5_file *f, bool sync) {
+    bool ok = !sync || fsync(f->disk) == 0;
+    rg_h5_agree_on(f, ok, f->shown, "bring the file to the disk", strerror(errno));
+    ok = f->rank != 0 || rename(f->part, f->path) == 0;
     rg_h5_agree_on(f, ok, f->shown, "name the file", strerror(errno));
     release(f);
 }

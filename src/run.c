@@ -28,6 +28,7 @@ typedef struct {
     rg_solver *solver;
     rg_ledger ledger;
     rg_probes *probes;
+    rg_slab *slab; /* of the snapshots and the checkpoints; NULL before the first of them */
     rg_snapshots *snapshots;
     rg_fragment_table *fragments;
     rg_progress progress;
@@ -245,7 +246,7 @@ static void open_outputs(run *r) {
     r->energy = rg_csv_open(c->output.dir, "energy.csv", r->solver->rank);
     rg_csv_energy_header(r->energy);
     rg_probes_open(r->probes, r->solver);
-    r->snapshots = rg_snapshots_open(r->solver);
+    r->snapshots = rg_snapshots_open(r->solver, &r->slab);
     r->fragments = rg_fragment_table_open(r->solver);
 }
 
@@ -257,10 +258,10 @@ static void reopen_outputs(run *r) {
     rg_probes_reopen(r->probes, r->solver, r->keep.history_bytes);
     r->fragments = rg_fragment_table_reopen(r->solver, &r->keep.fragments);
     if (r->keep.fields.frames > 0) {
-        r->snapshots = rg_snapshots_reopen(r->solver, &r->keep.fields);
+        r->snapshots = rg_snapshots_reopen(r->solver, &r->slab, &r->keep.fields);
     } else {
         rg_remove_frames(c->output.dir, rank);
-        r->snapshots = rg_snapshots_open(r->solver);
+        r->snapshots = rg_snapshots_open(r->solver, &r->slab);
     }
     if (rank == 0) {
         rg_checkpoints_remove(c->output.dir, false);
@@ -275,6 +276,7 @@ static void close_outputs(run *r) {
     rg_fragment_table_close(r->fragments);
     rg_csv_close(r->energy);
     rg_checkpoints_close(&r->checkpoints);
+    rg_slab_free(r->slab);
 }
 
 /* ---- beginning and end ---- */
@@ -286,7 +288,7 @@ static void make_state(run *r, MPI_Comm comm) {
                                     : rg_solver_make(c, comm);
     r->probes = rg_probes_find(r->solver);
     rg_restart_register(&r->state, &r->keep, r->solver, &r->ledger, &r->summary);
-    rg_checkpoints_open(&r->checkpoints, c->output.dir, r->solver, &r->state);
+    rg_checkpoints_open(&r->checkpoints, c->output.dir, r->solver, &r->state, &r->slab);
     r->keep.next_output = c->output.interval_time;
     if (!r->options->restart) {
         rg_spectrum(r->solver);
@@ -348,7 +350,8 @@ static int conclude(run *r) {
     }
     r->summary.failure = r->failure;
     r->summary.checkpoints = r->checkpoints.written;
-    r->summary.checkpoint_seconds = r->checkpoints.seconds;
+    r->summary.checkpoint_seconds = r->checkpoints.total;
+    r->summary.checkpoint_median = rg_checkpoints_median(&r->checkpoints);
     rg_summary_write(&r->summary, r->solver, &r->ledger, r->fragments);
     if (failed && s->rank == 0) {
         fprintf(stderr, "rhegma: stopped: %s\n", r->failure);

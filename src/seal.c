@@ -47,21 +47,39 @@ static ssize_t read_all(int file, char *data, size_t size, off_t at) {
     return (ssize_t)got;
 }
 
-/* Sum over this rank's parts; false if the file cannot be read or is shorter. */
-static bool sum_parts(int file, int64_t bytes, int rank, int ranks, uint64_t *sum) {
-    uint64_t *data = RG_NEW(uint64_t, PART / sizeof(uint64_t));
-    bool ok = true;
-    int64_t parts = (bytes - RG_SEAL + PART - 1) / PART;
-    *sum = 0;
-    for (int64_t p = rank; ok && p < parts; p += ranks) {
-        int64_t at = RG_SEAL + p * PART, left = bytes - at;
-        size_t size = left < PART ? (size_t)left : PART, words = (size + 7) / 8;
-        data[words - 1] = 0;
-        ok = read_all(file, (char *)data, size, at) == (ssize_t)size;
-        *sum += hash_words((uint64_t)p + 1, data, words);
-    }
-    rg_free(data);
+/* Hash of part p; false, with errno set where that helps: it cannot be read or is shorter. */
+static bool hash_part(int file, int64_t bytes, int64_t p, uint64_t *data, uint64_t *hash) {
+    int64_t at = RG_SEAL + p * PART, left = bytes - at;
+    size_t size = left < PART ? (size_t)left : PART, words = (size + 7) / 8;
+    data[words - 1] = 0;
+    errno = 0;
+    bool ok = read_all(file, (char *)data, size, at) == (ssize_t)size;
+    *hash = ok ? hash_words((uint64_t)p + 1, data, words) : 0;
     return ok;
+}
+
+/* Sum over this rank's parts, which its threads share; false, with errno set where that helps, if the file
+ * cannot be read or is shorter. */
+static bool sum_parts(int file, int64_t bytes, int rank, int ranks, uint64_t *sum) {
+    int64_t parts = (bytes - RG_SEAL + PART - 1) / PART;
+    uint64_t all = 0;
+    int failed = -1; /* errno of a thread, 0 included */
+#pragma omp parallel reduction(+ : all) reduction(max : failed)
+    {
+        uint64_t *data = RG_NEW(uint64_t, PART / sizeof(uint64_t)), hash;
+#pragma omp for schedule(static)
+        for (int64_t p = rank; p < parts; p += ranks) {
+            if (hash_part(file, bytes, p, data, &hash)) {
+                all += hash;
+            } else {
+                failed = errno;
+            }
+        }
+        rg_free(data);
+    }
+    *sum = all;
+    errno = failed < 0 ? errno : failed;
+    return failed < 0;
 }
 
 /* Collective: sum over the file; false everywhere if some rank cannot read it. */
@@ -98,7 +116,7 @@ static int64_t size_of(const char *path) {
 
 static bool write_seal(const char *path, const char seal[RG_SEAL]) {
     int file = open(path, O_WRONLY);
-    bool ok = file >= 0 && pwrite(file, seal, RG_SEAL, 0) == RG_SEAL && fsync(file) == 0;
+    bool ok = file >= 0 && pwrite(file, seal, RG_SEAL, 0) == RG_SEAL;
     int reason = errno;
     ok = (file < 0 || close(file) == 0) && ok;
     errno = reason;

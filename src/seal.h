@@ -7,9 +7,11 @@
  *   rhegma checkpoint 1
  *   step N
  *   bytes N          of the whole file
- *   sum HHHHHHHHHHHHHHHH    of what is behind the seal, in 64-bit words (the last one filled up with zeros)
- * in parts of 1 MiB: the sum of the parts' hashes, each seeded with its number check HHHHHHHHHHHHHHHH  the
- * hash of the lines above */
+ *   sum H            of what is behind the seal
+ *   check H          hash of the lines above
+ *
+ * What is behind the seal is taken in 64-bit words (the last one filled up with zeros) and in parts of 1 MiB;
+ * its sum is that of the parts' hashes, each seeded with its number: ranks and threads share the parts. */
 #ifndef RG_SEAL_H
 #define RG_SEAL_H
 
@@ -20,8 +22,8 @@
 
 enum { RG_SEAL = 512 };
 
-/* Reads the file and writes its seal; collective. False, with errno set where that helps: it cannot be read
- * or written; on all ranks alike. */
+/* Reads the file and writes its seal, which it leaves to the caller to bring to the disk; collective. False,
+ * with errno set where that helps: it cannot be read or written; on all ranks alike. */
 bool rg_seal_put(const char *path, int64_t step, MPI_Comm comm);
 
 /* Whether the file is what was sealed; collective, the same everywhere. If not, `reason` (on every rank) says

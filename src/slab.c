@@ -7,6 +7,8 @@
 #include "layout.h"
 #include "mem.h"
 
+enum { WINDOW_BYTES = 16 << 20 }; /* little beside the state, and in the cache while it is written */
+
 typedef struct {
     rg_gid id;
     rg_lid slot;
@@ -64,6 +66,7 @@ rg_slab *rg_slab_make(const rg_domain *d, rg_gid total, MPI_Comm comm) {
                    .comm = comm};
     s->count = (size_t)(slab_begin(total, ranks, rank + 1) - s->first);
     s->slot = RG_NEW(rg_lid, s->own + 1);
+    s->row = RG_NEW(size_t, s->own + 1);
     s->place = RG_NEW(size_t, s->count + 1);
     int **counts[] = {&s->send, &s->send_at, &s->receive, &s->receive_at};
     for (int k = 0; k < 4; k++) {
@@ -74,7 +77,9 @@ rg_slab *rg_slab_make(const rg_domain *d, rg_gid total, MPI_Comm comm) {
     for (size_t i = 0; i < s->own; i++) {
         s->slot[i] = list[i].slot;
         id[i] = list[i].id;
-        s->send[rg_slab_owner(total, ranks, id[i])]++;
+        int owner = rg_slab_owner(total, ranks, id[i]);
+        s->row[i] = (size_t)(id[i] - slab_begin(total, ranks, owner));
+        s->send[owner]++;
     }
     MPI_Alltoall(s->send, 1, MPI_INT, s->receive, 1, MPI_INT, comm);
     offsets(s->send, s->send_at, ranks);
@@ -90,6 +95,13 @@ rg_slab *rg_slab_make(const rg_domain *d, rg_gid total, MPI_Comm comm) {
     return s;
 }
 
+rg_slab *rg_slab_shared(rg_slab **slab, const rg_domain *d, rg_gid total, MPI_Comm comm) {
+    if (*slab == NULL) {
+        *slab = rg_slab_make(d, total, comm);
+    }
+    return *slab;
+}
+
 static MPI_Datatype record_type(size_t bytes) {
     MPI_Datatype record;
     MPI_Type_contiguous((int)bytes, MPI_BYTE, &record);
@@ -97,40 +109,137 @@ static MPI_Datatype record_type(size_t bytes) {
     return record;
 }
 
-size_t rg_slab_place(const rg_slab *s, size_t i) {
-    size_t first = (size_t)s->send_at[s->rank];
-    bool stays = i >= first && i < first + (size_t)s->send[s->rank];
-    return stays ? s->place[(size_t)s->receive_at[s->rank] + i - first] : SIZE_MAX;
+/* ---- windows ---- */
+
+size_t rg_slab_window(size_t bytes) {
+    return WINDOW_BYTES / bytes + 1;
 }
 
-void rg_slab_send_others(const rg_slab *s, size_t bytes, const void *in, void *out) {
-    if (s->ranks == 1) {
-        return;
-    }
-    int *send = RG_NEW(int, 2 * (size_t)s->ranks), *receive = send + s->ranks;
-    memcpy(send, s->send, (size_t)s->ranks * sizeof *send);
-    memcpy(receive, s->receive, (size_t)s->ranks * sizeof *receive);
-    send[s->rank] = receive[s->rank] = 0;
-    MPI_Datatype record = record_type(bytes);
-    char *arrived = RG_NEW(char, s->count *bytes + 1);
-    MPI_Alltoallv(in, send, s->send_at, record, arrived, receive, s->receive_at, record, s->comm);
-    MPI_Type_free(&record);
-    size_t first = (size_t)s->receive_at[s->rank], end = first + (size_t)s->receive[s->rank];
-    for (size_t i = 0; i < s->count; i++) {
-        if (i < first || i >= end) {
-            memcpy((char *)out + s->place[i] * bytes, arrived + i * bytes, bytes);
+size_t rg_slab_most(const rg_slab *s) {
+    return (size_t)((s->total + s->ranks - 1) / s->ranks);
+}
+
+/* What a window has of the records that a rank sends to, or receives from, each of the others. */
+typedef struct {
+    size_t *begin;   /* [ranks]: the first one, among all that go between the two */
+    int *count, *at; /* [ranks]: how many; where they are among those on their way */
+    size_t here;     /* how many stay on the rank: not among `count` */
+    size_t total;    /* the others */
+} traffic;
+
+/* First of the ascending row[n] that is not below `least`. */
+static size_t first_from(const size_t *row, size_t n, size_t least) {
+    size_t low = 0, high = n;
+    while (low < high) {
+        size_t middle = low + (high - low) / 2;
+        if (row[middle] < least) {
+            low = middle + 1;
+        } else {
+            high = middle;
         }
     }
-    rg_free(arrived);
-    rg_free(send);
+    return low;
 }
 
-void rg_slab_send_bytes(const rg_slab *s, size_t bytes, const void *in, void *out) {
-    size_t first = (size_t)s->send_at[s->rank], end = first + (size_t)s->send[s->rank];
-    for (size_t i = first; i < end; i++) {
-        memcpy((char *)out + rg_slab_place(s, i) * bytes, (const char *)in + i * bytes, bytes);
+/* Of all records, rank r's are the `count`[r] from `at`[r] on, by ascending `row`. */
+static traffic traffic_of(const rg_slab *s, const size_t *row, const int *count, const int *at, size_t first,
+                          size_t rows) {
+    size_t ranks = (size_t)s->ranks;
+    traffic t = {.begin = RG_NEW(size_t, ranks), .count = RG_NEW(int, ranks), .at = RG_NEW(int, ranks)};
+    for (size_t r = 0; r < ranks; r++) {
+        const size_t *its = row + at[r];
+        size_t from = first_from(its, (size_t)count[r], first), n = (size_t)count[r] - from;
+        n = first_from(its + from, n, first + rows);
+        t.begin[r] = (size_t)at[r] + from;
+        t.at[r] = (int)t.total;
+        t.count[r] = r == (size_t)s->rank ? 0 : (int)n;
+        t.here = r == (size_t)s->rank ? n : t.here;
+        t.total += (size_t)t.count[r];
     }
-    rg_slab_send_others(s, bytes, in, out);
+    return t;
+}
+
+static void free_traffic(traffic *t) {
+    rg_free(t->begin);
+    rg_free(t->count);
+    rg_free(t->at);
+}
+
+static char *make_room(rg_slab *s, size_t bytes) {
+    if (bytes > s->room_bytes) {
+        rg_free(s->room);
+        s->room = RG_NEW(char, bytes);
+        s->room_bytes = bytes;
+    }
+    return s->room;
+}
+
+/* Records that stay go to their rows of the window, the others to `leaving`. */
+static void collect(const rg_slab *s, const traffic *out, size_t first, size_t bytes, rg_slab_get *get,
+                    const void *of, char *window, char *leaving) {
+#pragma omp parallel
+    for (int r = 0; r < s->ranks; r++) {
+        bool stays = r == s->rank;
+        size_t n = stays ? out->here : (size_t)out->count[r];
+        if (n == 0) {
+            continue;
+        }
+#pragma omp for schedule(static) nowait
+        for (size_t k = 0; k < n; k++) {
+            size_t i = out->begin[r] + k;
+            get(of, i,
+                stays ? window + (s->row[i] - first) * bytes : leaving + ((size_t)out->at[r] + k) * bytes);
+        }
+    }
+}
+
+static void place_arrived(const rg_slab *s, const traffic *in, size_t first, size_t bytes,
+                          const char *arrived, char *window) {
+    for (int r = 0; r < s->ranks; r++) {
+        for (size_t k = 0; k < (size_t)in->count[r]; k++) {
+            size_t row = s->place[in->begin[r] + k] - first;
+            memcpy(window + row * bytes, arrived + ((size_t)in->at[r] + k) * bytes, bytes);
+        }
+    }
+}
+
+size_t rg_slab_gather(rg_slab *s, size_t first, size_t rows, size_t bytes, rg_slab_get *get, const void *of,
+                      char *out) {
+    traffic leave = traffic_of(s, s->row, s->send, s->send_at, first, rows);
+    traffic arrive = traffic_of(s, s->place, s->receive, s->receive_at, first, rows);
+    char *leaving = make_room(s, (leave.total + arrive.total) * bytes);
+    char *arrived = leaving + leave.total * bytes;
+    collect(s, &leave, first, bytes, get, of, out, leaving);
+    if (s->ranks > 1) {
+        MPI_Datatype record = record_type(bytes);
+        MPI_Alltoallv(leaving, leave.count, leave.at, record, arrived, arrive.count, arrive.at, record,
+                      s->comm);
+        MPI_Type_free(&record);
+        place_arrived(s, &arrive, first, bytes, arrived, out);
+    }
+    size_t here = arrive.here + arrive.total;
+    free_traffic(&leave);
+    free_traffic(&arrive);
+    return here;
+}
+
+/* Records that lie in a row. */
+typedef struct {
+    const double *value;
+    size_t values;
+} records;
+
+static void get_record(const void *of, size_t i, void *out) {
+    const records *r = of;
+    memcpy(out, r->value + i * r->values, r->values * sizeof *r->value);
+}
+
+void rg_slab_send(rg_slab *s, int values, const double *in, double *out) {
+    records all = {in, (size_t)values};
+    size_t bytes = all.values * sizeof *in, rows = rg_slab_window(bytes), most = rg_slab_most(s);
+    for (size_t first = 0; first < most; first += rows) {
+        rg_slab_gather(s, first, rows, bytes, get_record, &all, (char *)out + first * bytes);
+    }
 }
 
 void rg_slab_fetch_bytes(const rg_slab *s, size_t bytes, const void *in, void *out) {
@@ -142,10 +251,6 @@ void rg_slab_fetch_bytes(const rg_slab *s, size_t bytes, const void *in, void *o
     MPI_Alltoallv(leaving, s->receive, s->receive_at, record, out, s->send, s->send_at, record, s->comm);
     rg_free(leaving);
     MPI_Type_free(&record);
-}
-
-void rg_slab_send(const rg_slab *s, int values, const double *in, double *out) {
-    rg_slab_send_bytes(s, (size_t)values * sizeof(double), in, out);
 }
 
 size_t rg_slab_row(const rg_slab *s, const rg_domain *d, rg_gid id) {
@@ -165,7 +270,7 @@ void rg_slab_free(rg_slab *s) {
     if (s == NULL) {
         return;
     }
-    void *blocks[] = {s->slot, s->place, s->send, s->send_at, s->receive, s->receive_at};
+    void *blocks[] = {s->slot, s->row, s->room, s->place, s->send, s->send_at, s->receive, s->receive_at};
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) {
         rg_free(blocks[i]);
     }

@@ -12,10 +12,16 @@ typedef struct {
     size_t count;
     size_t own;    /* own elements, in the order of `slot` */
     rg_lid *slot;  /* [own]: slots of the own elements by ascending global number */
+    size_t *row;   /* [own]: row that each of them has in the slab of its rank */
     size_t *place; /* [count]: row of the slab that each received record belongs to */
     int *send, *send_at, *receive, *receive_at; /* [ranks]: records */
+    char *room; /* for records on their way, kept from one window to the next */
+    size_t room_bytes;
     MPI_Comm comm;
 } rg_slab;
+
+/* Puts the record of own element i (in the order of `slot`) to `out`. Several threads call it at once. */
+typedef void rg_slab_get(const void *of, size_t i, void *out);
 
 /* Rank whose slab holds element `id` of `total`. */
 int rg_slab_owner(rg_gid total, int ranks, rg_gid id);
@@ -23,18 +29,24 @@ int rg_slab_owner(rg_gid total, int ranks, rg_gid id);
 /* Collective. Free with rg_slab_free. */
 rg_slab *rg_slab_make(const rg_domain *d, rg_gid total, MPI_Comm comm);
 
+/* The same, made when it is first asked for and kept in *slab, which is NULL until then. */
+rg_slab *rg_slab_shared(rg_slab **slab, const rg_domain *d, rg_gid total, MPI_Comm comm);
+
+/* Rows of a window that holds a few megabytes of records; rows of the largest slab. */
+size_t rg_slab_window(size_t bytes);
+size_t rg_slab_most(const rg_slab *s);
+
+/* Collective: the window of rows [first, first + rows) of every slab, as far as it has them, in global order:
+ * out[.][bytes]. Returns how many rows that is here. Who goes through all slabs window by window needs no
+ * copy of all records. */
+size_t rg_slab_gather(rg_slab *s, size_t first, size_t rows, size_t bytes, rg_slab_get *get, const void *of,
+                      char *out);
+
 /* Collective: in[own][values], in the order of `slot`, becomes out[count][values] in global order. */
-void rg_slab_send(const rg_slab *s, int values, const double *in, double *out);
+void rg_slab_send(rg_slab *s, int values, const double *in, double *out);
 
-/* The same for records of `bytes` bytes, and back again. */
-void rg_slab_send_bytes(const rg_slab *s, size_t bytes, const void *in, void *out);
+/* Collective: records of `bytes` bytes, in[count] in global order, go to out[own] in the order of `slot`. */
 void rg_slab_fetch_bytes(const rg_slab *s, size_t bytes, const void *in, void *out);
-
-/* Row of the slab to which record i (in the order of `slot`) belongs if that is this rank's, else SIZE_MAX.
- * Who puts those there at once has only the others to send: `in` is not read where records stay. The sending
- * is collective. */
-size_t rg_slab_place(const rg_slab *s, size_t i);
-void rg_slab_send_others(const rg_slab *s, size_t bytes, const void *in, void *out);
 
 /* Row of own element `id` in the order of `slot`. */
 size_t rg_slab_row(const rg_slab *s, const rg_domain *d, rg_gid id);

@@ -91,11 +91,11 @@ static rg_writer_style style_of(const rg_case *c) {
 }
 
 /* All but the writer; the positions are in `sorted`. */
-static rg_snapshots *prepare(const rg_solver *s) {
+static rg_snapshots *prepare(const rg_solver *s, rg_slab **slab) {
     rg_snapshots *w = RG_NEW(rg_snapshots, 1);
     w->fields = s->input->output.fields;
     if (w->fields != 0) {
-        w->slab = rg_slab_make(s->domain, s->part->total, s->comm);
+        w->slab = rg_slab_shared(slab, s->domain, s->part->total, s->comm);
         w->record = RG_NEW(double, w->slab->own *NODAL + 1);
         w->sorted = RG_NEW(double, w->slab->count *NODAL + 1);
         collect_positions(w, s);
@@ -105,8 +105,8 @@ static rg_snapshots *prepare(const rg_solver *s) {
     return w;
 }
 
-rg_snapshots *rg_snapshots_open(const rg_solver *s) {
-    rg_snapshots *w = prepare(s);
+rg_snapshots *rg_snapshots_open(const rg_solver *s, rg_slab **slab) {
+    rg_snapshots *w = prepare(s, slab);
     if (w->fields != 0) {
         w->writer = rg_writer_open(s->input->output.dir, s->comm, style_of(s->input), w->total, w->first,
                                    (int64_t)w->written, w->sorted);
@@ -114,8 +114,8 @@ rg_snapshots *rg_snapshots_open(const rg_solver *s) {
     return w;
 }
 
-rg_snapshots *rg_snapshots_reopen(const rg_solver *s, const rg_writer_mark *mark) {
-    rg_snapshots *w = prepare(s);
+rg_snapshots *rg_snapshots_reopen(const rg_solver *s, rg_slab **slab, const rg_writer_mark *mark) {
+    rg_snapshots *w = prepare(s, slab);
     if (w->fields != 0) {
         w->writer = rg_writer_resume(s->input->output.dir, s->comm, style_of(s->input), w->total, w->first,
                                      (int64_t)w->written, mark);
@@ -364,7 +364,6 @@ void rg_snapshots_write(rg_snapshots *w, rg_solver *s, const rg_fragment_parts *
 void rg_snapshots_close(rg_snapshots *w) {
     if (w->fields != 0) {
         rg_writer_close(w->writer);
-        rg_slab_free(w->slab);
         rg_free(w->record);
         rg_free(w->sorted);
         rg_free(w->row);

@@ -17,12 +17,12 @@ typedef struct {
     int64_t first, total;    /* of those of all slabs: the first one here, and how many */
 } rg_snapshots;
 
-/* Opens the field file in the case's output directory; does nothing where no fields are asked for.
- * Collective. */
-rg_snapshots *rg_snapshots_open(const rg_solver *s);
+/* Opens the field file in the case's output directory; does nothing where no fields are asked for. Keeps a
+ * reference to the slab (rg_slab_shared). Collective. */
+rg_snapshots *rg_snapshots_open(const rg_solver *s, rg_slab **slab);
 
 /* The same, going on with the files of an earlier run from `mark` (writer.h), which has frames. */
-rg_snapshots *rg_snapshots_reopen(const rg_solver *s, const rg_writer_mark *mark);
+rg_snapshots *rg_snapshots_reopen(const rg_solver *s, rg_slab **slab, const rg_writer_mark *mark);
 
 /* Brings what was written to the disk; where the files stand now. Collective. */
 rg_writer_mark rg_snapshots_settle(rg_snapshots *w);

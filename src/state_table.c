@@ -54,9 +54,9 @@ static size_t face_entries(const rg_solver *s, bool broken, entry *list) {
     for (size_t t = 0; t < d->tiles; t++) {
         for (size_t i = d->tile[t].ibegin * RG_LANES; i < d->tile[t].iend * RG_LANES; i++) {
             double normal[3];
-            bool real =
-                rg_interface_area(d, i, normal) > 0; /* not padding, which may break in the intrinsic form */
-            if (real && (!broken || s->broken[i] != 0)) {
+            if ((!broken || s->broken[i] != 0) &&
+                rg_interface_area(d, i, normal) >
+                    0) { /* not padding, which may break in the intrinsic form */
                 list[n++] = (entry){rg_face_number(d, &d->tile[t], i), i};
             }
         }
@@ -64,11 +64,20 @@ static size_t face_entries(const rg_solver *s, bool broken, entry *list) {
     return n;
 }
 
+/* At least as many as face_entries finds. */
+static size_t most_faces(const rg_solver *s, bool broken) {
+    size_t all = s->domain->iblocks * RG_LANES, n = 0;
+    for (size_t i = 0; i < all; i++) {
+        n += s->broken[i] != 0;
+    }
+    return broken ? n : all;
+}
+
 /* Those that have something to keep, or (all) those that there are. */
 static entry *entries(const rg_state_table *t, const rg_solver *s, bool all, size_t *count) {
     const rg_state_array *a = t->array[0];
     bool faces = a->of == RG_OF_FACE;
-    size_t most = faces ? s->domain->iblocks * RG_LANES : a->records;
+    size_t most = faces ? most_faces(s, !all) : a->records;
     entry *list = RG_NEW(entry, most + 1);
     *count = faces ? face_entries(s, !all, list) : most;
     for (size_t i = 0; !faces && i < most; i++) {
@@ -172,7 +181,7 @@ void rg_state_table_write(rg_h5_file *f, const rg_state_table *t, const rg_solve
         column_out(&sorted, from, size, column);
         rg_h5_write(f, group, &c, NULL, column);
     }
-    rg_h5_agree(f, H5Gclose(group) >= 0, "close", NULL);
+    rg_h5_note(f, H5Gclose(group) >= 0, "close", NULL);
     rg_free(column);
     rg_free(sorted.row);
 }

@@ -52,6 +52,7 @@ static void write_run(FILE *f, const rg_summary *m, const rg_solver *s, const rg
     rg_json_number(f, "output_s", m->output_seconds);
     rg_json_integer(f, "checkpoints", m->checkpoints);
     rg_json_number(f, "checkpoint_s", m->checkpoint_seconds);
+    rg_json_number(f, "checkpoint_median_s", m->checkpoint_median);
     rg_json_number(f, "halo_wait_s", m->halo_wait_seconds);
     rg_json_number(f, "us_per_tet_step", m->us_per_tet_step);
 }

@@ -20,8 +20,8 @@ rg_tile_graph *rg_tile_graph_make(const rg_mesh *mesh, int tile);
 void rg_tile_graph_free(rg_tile_graph *g);
 
 /* METIS partition (the best of several, by what the slowest part has to do), an edge weighing as many faces
- * as two tiles share, a tile its cost; fixed seed: part[tiles] in 0..parts-1, no part empty. Ends the run
- * with a message if there are more parts than tiles. */
+ * as two tiles share, a tile its cost; fixed seed: part[tiles] in 0..parts-1, no part empty, numbered in the
+ * order of their tiles. Ends the run with a message if there are more parts than tiles. */
 void rg_tile_graph_partition(const rg_tile_graph *g, int parts, int32_t *part);
 
 /* Of a partition in `parts` parts. */

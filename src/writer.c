@@ -132,8 +132,8 @@ static void write_mesh(rg_writer *w, const double *x) {
     create_file(w, -1);
     write_points(w, w->h5.file, 10, w->total, w->first, w->count, x);
     write_cells(w, w->h5.file, 10, w->total, w->first, w->count);
-    rg_h5_close(&w->h5, false);
-    rg_h5_finish(&w->h5);
+    rg_h5_close(&w->h5);
+    rg_h5_finish(&w->h5, false);
 }
 
 /* fields.h5 with links to all frames so far, in the place of the old one. Rank 0. */
@@ -264,7 +264,7 @@ void rg_writer_frame(rg_writer *w, int64_t step, double time) {
     create_file(w, w->frames);
     bool ok = rg_h5_put_attribute(w->h5.file, "step", H5T_NATIVE_INT64, &step);
     ok = rg_h5_put_attribute(w->h5.file, "time", H5T_NATIVE_DOUBLE, &time) && ok;
-    rg_h5_agree(&w->h5, ok, "describe", "the frame");
+    rg_h5_note(&w->h5, ok, "describe", "the frame");
     if (w->xdmf != NULL) {
         char name[40];
         rg_xdmf_frame(w->xdmf, file_name(name, w->frames), time);
@@ -318,10 +318,10 @@ void rg_writer_surface_field(rg_writer *w, const char *name, const char *unit, i
 }
 
 void rg_writer_frame_end(rg_writer *w) {
-    rg_h5_agree(&w->h5, w->crack < 0 || H5Gclose(w->crack) >= 0, "finish", "the frame");
+    rg_h5_note(&w->h5, w->crack < 0 || H5Gclose(w->crack) >= 0, "finish", "the frame");
     w->crack = -1;
-    rg_h5_close(&w->h5, false);
-    rg_h5_finish(&w->h5);
+    rg_h5_close(&w->h5);
+    rg_h5_finish(&w->h5, false);
     w->frames++;
     write_index(w);
     bool ok = true;
