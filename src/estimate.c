@@ -7,6 +7,7 @@
 #include "material.h"
 #include "mem.h"
 #include "mesh_info.h"
+#include "snapshot.h"
 
 #define MOST_STEPS 1e15
 
@@ -39,11 +40,11 @@ static double largest_edge(const rg_solver *s) {
     return sqrt(square);
 }
 
-/* Of the fields, or at most: with cracks everywhere and the three buffers of field output. */
+/* Of the fields, or at most: with cracks everywhere and the buffers of field output. */
 static double bytes_per_element(const rg_solver *s, bool at_most) {
     double crack = (double)s->domain->iblocks * (double)s->crack_stride * sizeof *s->crack;
     double now = (double)rg_alloc_total(), elements = (double)s->domain->elements;
-    double output = s->input->output.fields == 0 ? 0 : 3 * RG_NODES * 3 * sizeof(double) * elements;
+    double output = (double)rg_snapshots_bytes(s->input, s->domain->elements);
     double sum[2] = {now + (at_most ? output : -crack), elements};
     MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPI_DOUBLE, MPI_SUM, s->comm);
     return sum[0] / sum[1];

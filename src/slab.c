@@ -223,25 +223,6 @@ size_t rg_slab_gather(rg_slab *s, size_t first, size_t rows, size_t bytes, rg_sl
     return here;
 }
 
-/* Records that lie in a row. */
-typedef struct {
-    const double *value;
-    size_t values;
-} records;
-
-static void get_record(const void *of, size_t i, void *out) {
-    const records *r = of;
-    memcpy(out, r->value + i * r->values, r->values * sizeof *r->value);
-}
-
-void rg_slab_send(rg_slab *s, int values, const double *in, double *out) {
-    records all = {in, (size_t)values};
-    size_t bytes = all.values * sizeof *in, rows = rg_slab_window(bytes), most = rg_slab_most(s);
-    for (size_t first = 0; first < most; first += rows) {
-        rg_slab_gather(s, first, rows, bytes, get_record, &all, (char *)out + first * bytes);
-    }
-}
-
 void rg_slab_fetch_bytes(const rg_slab *s, size_t bytes, const void *in, void *out) {
     MPI_Datatype record = record_type(bytes);
     char *leaving = RG_NEW(char, s->count *bytes + 1);
@@ -251,19 +232,6 @@ void rg_slab_fetch_bytes(const rg_slab *s, size_t bytes, const void *in, void *o
     MPI_Alltoallv(leaving, s->receive, s->receive_at, record, out, s->send, s->send_at, record, s->comm);
     rg_free(leaving);
     MPI_Type_free(&record);
-}
-
-size_t rg_slab_row(const rg_slab *s, const rg_domain *d, rg_gid id) {
-    size_t low = 0, high = s->own;
-    while (low < high) {
-        size_t middle = low + (high - low) / 2;
-        if (d->id[s->slot[middle]] < id) {
-            low = middle + 1;
-        } else {
-            high = middle;
-        }
-    }
-    return low;
 }
 
 void rg_slab_free(rg_slab *s) {

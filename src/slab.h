@@ -42,14 +42,8 @@ size_t rg_slab_most(const rg_slab *s);
 size_t rg_slab_gather(rg_slab *s, size_t first, size_t rows, size_t bytes, rg_slab_get *get, const void *of,
                       char *out);
 
-/* Collective: in[own][values], in the order of `slot`, becomes out[count][values] in global order. */
-void rg_slab_send(rg_slab *s, int values, const double *in, double *out);
-
 /* Collective: records of `bytes` bytes, in[count] in global order, go to out[own] in the order of `slot`. */
 void rg_slab_fetch_bytes(const rg_slab *s, size_t bytes, const void *in, void *out);
-
-/* Row of own element `id` in the order of `slot`. */
-size_t rg_slab_row(const rg_slab *s, const rg_domain *d, rg_gid id);
 
 void rg_slab_free(rg_slab *s);
 

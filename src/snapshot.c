@@ -11,7 +11,8 @@
 #include "principal.h"
 #include "tile.h"
 
-enum { NODAL = 3 * RG_NODES }; /* values of the largest record */
+enum { NODAL = 3 * RG_NODES };   /* values of a vector field's record */
+enum { WINDOW_BYTES = 4 << 20 }; /* of the records that are on their way at a time */
 
 /* Output is right-handed: where the sorted corners are not, corners 0 and 1 change places. */
 static const int plain[RG_NODES] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9};
@@ -31,21 +32,6 @@ static const int *output_order(const double *corner) {
     return det > 0 ? plain : mirrored;
 }
 
-static void send(rg_snapshots *w, int values) {
-    rg_slab_send(w->slab, values, w->record, w->sorted);
-}
-
-static void collect_positions(rg_snapshots *w, const rg_solver *s) {
-    for (size_t i = 0; i < w->slab->own; i++) {
-        const double *corner = s->domain->corner + 12 * (size_t)w->slab->slot[i];
-        const int *order = output_order(corner);
-        for (int n = 0; n < RG_NODES; n++) {
-            rg_node_position(corner, order[n], w->record + i * NODAL + 3 * n);
-        }
-    }
-    send(w, NODAL);
-}
-
 /* ---- region ---- */
 
 static bool in_region(const rg_expr *region, const double *points, int count) {
@@ -56,13 +42,107 @@ static bool in_region(const rg_expr *region, const double *points, int count) {
     return region == NULL || rg_expr_value(region, x, 0) != 0;
 }
 
-/* From the positions in `sorted`: which elements are written, and their numbers among all that are. */
-static void choose(rg_snapshots *w, const rg_solver *s) {
-    w->row = RG_NEW(size_t, w->slab->count + 1);
-    for (size_t i = 0; i < w->slab->count; i++) {
-        if (in_region(s->input->output.region, w->sorted + i * NODAL, 4)) { /* corners: at the centroid */
-            w->row[w->written++] = i;
+/* ---- windows ---- */
+
+/* Records by own element, in the order of the slab, on their way to the writer. */
+typedef struct {
+    const rg_snapshots *w;
+    rg_slab_get *get;
+    const void *of;
+    size_t values, rows; /* of a record; of a window */
+    size_t next;         /* entry of w->row from which on the rows lie in windows to come */
+    bool everything;     /* whether or not in the region */
+} window_source;
+
+/* Keeps of a window's `n` records from row `first` on those that are written; returns how many. */
+static size_t keep_region(window_source *x, size_t first, size_t n, double *record) {
+    const rg_snapshots *w = x->w;
+    if (w->row == NULL || x->everything) {
+        return n;
+    }
+    size_t kept = 0;
+    for (; x->next < w->written && w->row[x->next] < first + n; x->next++) {
+        memmove(record + kept++ * x->values, record + (w->row[x->next] - first) * x->values,
+                x->values * sizeof *record);
+    }
+    return kept;
+}
+
+static size_t get_window(void *of, size_t k, double *out) {
+    window_source *x = of;
+    size_t first = k * x->rows;
+    size_t n =
+        rg_slab_gather(x->w->slab, first, x->rows, x->values * sizeof *out, x->get, x->of, (char *)out);
+    return keep_region(x, first, n, out);
+}
+
+/* Compressed data are written at once. */
+static window_source open_source(const rg_snapshots *w, const rg_case *c, size_t values, rg_slab_get *get,
+                                 const void *of) {
+    size_t rows =
+        c->output.compression > 0 ? rg_slab_most(w->slab) : WINDOW_BYTES / (values * sizeof(double));
+    return (window_source){.w = w, .get = get, .of = of, .values = values, .rows = rows};
+}
+
+static rg_cell_source cells_of(window_source *x) {
+    return (rg_cell_source){.windows = (rg_slab_most(x->w->slab) + x->rows - 1) / x->rows,
+                            .cells = x->rows,
+                            .values = x->values,
+                            .get = get_window,
+                            .of = x};
+}
+
+/* A vector field by slot, or the positions. */
+typedef struct {
+    const rg_domain *domain;
+    const rg_lid *slot;
+    const rg_real *field;
+} nodal_records;
+
+static void get_position(const void *of, size_t i, void *out) {
+    const nodal_records *r = of;
+    const double *corner = r->domain->corner + 12 * (size_t)r->slot[i];
+    const int *order = output_order(corner);
+    for (int n = 0; n < RG_NODES; n++) {
+        rg_node_position(corner, order[n], (double *)out + 3 * n);
+    }
+}
+
+static void get_vector(const void *of, size_t i, void *out) {
+    const nodal_records *r = of;
+    size_t slot = (size_t)r->slot[i];
+    const int *order = output_order(r->domain->corner + 12 * slot);
+    for (int k = 0; k < NODAL; k++) {
+        ((double *)out)[k] = r->field[rg_node_index(slot, order[k / 3], k % 3)];
+    }
+}
+
+/* Which elements are written. */
+static void find_region(rg_snapshots *w, const rg_solver *s) {
+    nodal_records positions = {s->domain, w->slab->slot, NULL};
+    window_source x = open_source(w, s->input, NODAL, get_position, &positions);
+    rg_cell_source cells = cells_of(&x);
+    double *record = RG_NEW(double, cells.cells *NODAL + 1);
+    size_t *row = RG_NEW(size_t, w->slab->count + 1);
+    x.everything = true;
+    for (size_t k = 0; k < cells.windows; k++) {
+        size_t n = cells.get(&x, k, record);
+        for (size_t i = 0; i < n; i++) {
+            if (in_region(s->input->output.region, record + i * NODAL, 4)) { /* corners: at the centroid */
+                row[w->written++] = k * x.rows + i;
+            }
         }
+    }
+    w->row = row;
+    rg_free(record);
+}
+
+/* Which elements are written, and their numbers among all that are. */
+static void choose(rg_snapshots *w, const rg_solver *s) {
+    w->written = w->slab->count;
+    if (s->input->output.region != NULL) {
+        w->written = 0;
+        find_region(w, s);
     }
     int64_t count = (int64_t)w->written;
     MPI_Scan(&count, &w->first, 1, MPI_INT64_T, MPI_SUM, s->comm);
@@ -77,30 +157,19 @@ static void choose(rg_snapshots *w, const rg_solver *s) {
     }
 }
 
-/* Keeps of `values` for each row of the slab those of the elements that are written. */
-static void keep_region(const rg_snapshots *w, size_t values, double *data) {
-    for (size_t i = 0; w->written < w->slab->count && i < w->written; i++) {
-        memmove(data + i * values, data + w->row[i] * values, values * sizeof *data);
-    }
-}
-
 /* ---- files ---- */
 
 static rg_writer_style style_of(const rg_case *c) {
     return (rg_writer_style){c->output.precision == RG_OUTPUT_SINGLE, (int)c->output.compression};
 }
 
-/* All but the writer; the positions are in `sorted`. */
+/* All but the writer. */
 static rg_snapshots *prepare(const rg_solver *s, rg_slab **slab) {
     rg_snapshots *w = RG_NEW(rg_snapshots, 1);
     w->fields = s->input->output.fields;
     if (w->fields != 0) {
         w->slab = rg_slab_shared(slab, s->domain, s->part->total, s->comm);
-        w->record = RG_NEW(double, w->slab->own *NODAL + 1);
-        w->sorted = RG_NEW(double, w->slab->count *NODAL + 1);
-        collect_positions(w, s);
         choose(w, s);
-        keep_region(w, NODAL, w->sorted);
     }
     return w;
 }
@@ -108,8 +177,11 @@ static rg_snapshots *prepare(const rg_solver *s, rg_slab **slab) {
 rg_snapshots *rg_snapshots_open(const rg_solver *s, rg_slab **slab) {
     rg_snapshots *w = prepare(s, slab);
     if (w->fields != 0) {
+        nodal_records positions = {s->domain, w->slab->slot, NULL};
+        window_source x = open_source(w, s->input, NODAL, get_position, &positions);
+        rg_cell_source cells = cells_of(&x);
         w->writer = rg_writer_open(s->input->output.dir, s->comm, style_of(s->input), w->total, w->first,
-                                   (int64_t)w->written, w->sorted);
+                                   (int64_t)w->written, &cells);
     }
     return w;
 }
@@ -133,18 +205,18 @@ rg_writer_mark rg_snapshots_settle(rg_snapshots *w) {
 
 /* ---- fields ---- */
 
+/* Fields that are all in the same records. */
+static void write_volume(rg_snapshots *w, const rg_solver *s, size_t fields, const rg_volume_field *field,
+                         size_t values, rg_slab_get *get, const void *of) {
+    window_source x = open_source(w, s->input, values, get, of);
+    rg_cell_source cells = cells_of(&x);
+    rg_writer_volume(w->writer, fields, field, &cells);
+}
+
 static void write_nodal(rg_snapshots *w, const rg_solver *s, const char *name, const char *unit,
                         const rg_real *field) {
-    for (size_t i = 0; i < w->slab->own; i++) {
-        size_t slot = (size_t)w->slab->slot[i];
-        const int *order = output_order(s->domain->corner + 12 * slot);
-        for (int k = 0; k < NODAL; k++) {
-            w->record[i * NODAL + (size_t)k] = field[rg_node_index(slot, order[k / 3], k % 3)];
-        }
-    }
-    send(w, NODAL);
-    keep_region(w, NODAL, w->sorted);
-    rg_writer_volume(w->writer, name, unit, RG_CENTER_NODE, 3, w->sorted);
+    nodal_records records = {s->domain, w->slab->slot, field};
+    write_volume(w, s, 1, &(rg_volume_field){name, unit, RG_CENTER_NODE, 3, 0}, NODAL, get_vector, &records);
 }
 
 /* What an element puts out of its state: mean Cauchy stress, mean stress, principal stresses, triaxiality,
@@ -161,16 +233,15 @@ enum {
 /* Fields made of them. */
 static const struct {
     unsigned bit;
-    const char *name, *unit;
-    int from, components;
+    rg_volume_field field;
 } state_field[] = {
-    {RG_FIELD_STRESS, "stress", "Pa", STRESS, 6},
-    {RG_FIELD_MEAN, "mean_stress", "Pa", MEAN, 1},
-    {RG_FIELD_PRINCIPAL, "principal_stress", "Pa", PRINCIPAL, 3},
-    {RG_FIELD_DAMAGE, "damage", "1", INTERNAL + RG_INTERNAL_DAMAGE, 1},
-    {RG_FIELD_REGIME, "regime", "1", INTERNAL + RG_INTERNAL_REGIME, 1},
-    {RG_FIELD_PLASTIC, "plastic_strain", "1", INTERNAL + RG_INTERNAL_PLASTIC, 1},
-    {RG_FIELD_TRIAXIALITY, "triaxiality", "1", TRIAXIALITY, 1},
+    {RG_FIELD_STRESS, {"stress", "Pa", RG_CENTER_CELL, 6, STRESS}},
+    {RG_FIELD_MEAN, {"mean_stress", "Pa", RG_CENTER_CELL, 1, MEAN}},
+    {RG_FIELD_PRINCIPAL, {"principal_stress", "Pa", RG_CENTER_CELL, 3, PRINCIPAL}},
+    {RG_FIELD_DAMAGE, {"damage", "1", RG_CENTER_CELL, 1, INTERNAL + RG_INTERNAL_DAMAGE}},
+    {RG_FIELD_REGIME, {"regime", "1", RG_CENTER_CELL, 1, INTERNAL + RG_INTERNAL_REGIME}},
+    {RG_FIELD_PLASTIC, {"plastic_strain", "1", RG_CENTER_CELL, 1, INTERNAL + RG_INTERNAL_PLASTIC}},
+    {RG_FIELD_TRIAXIALITY, {"triaxiality", "1", RG_CENTER_CELL, 1, TRIAXIALITY}},
 };
 enum { STATE_FIELDS = sizeof state_field / sizeof *state_field };
 
@@ -209,88 +280,94 @@ static void element_internal(const double *internal, double out[STATE]) {
     }
 }
 
-/* Room for the state at the Gauss points of a tile. */
+/* The state at the Gauss points of the tile that a thread was asked for last: neighbours in the order of the
+ * slab are mostly of one tile. */
 typedef struct {
     double *cauchy, *internal;
-} gauss_state;
+    const rg_tile *tile;
+} tile_state;
 
-/* State of tile t, to its consecutive records. */
-static void tile_states(rg_snapshots *w, const rg_solver *s, const rg_tile *t, const gauss_state *g) {
+typedef struct {
+    const rg_solver *s;
+    const rg_lid *slot;
+    tile_state *thread; /* [threads] */
+} state_records;
+
+/* Tile that has the slot. */
+static const rg_tile *tile_of(const rg_domain *d, size_t slot) {
+    size_t low = 0, high = d->tiles;
+    while (high - low > 1) {
+        size_t middle = low + (high - low) / 2;
+        *(d->tile[middle].begin * RG_LANES <= slot ? &low : &high) = middle;
+    }
+    return &d->tile[low];
+}
+
+static void evaluate(const rg_solver *s, const rg_tile *t, tile_state *state) {
     const rg_workspace *work = &s->work[omp_get_thread_num()];
-    size_t row = rg_slab_row(w->slab, s->domain, t->first), at = t->begin * RG_LANES;
     rg_bulk_args bulk = rg_tile_bulk(s, t, work);
-    rg_bulk_state_args args = {.bulk = &bulk, .cauchy = g->cauchy, .internal = g->internal};
+    rg_bulk_state_args args = {.bulk = &bulk, .cauchy = state->cauchy, .internal = state->internal};
     rg_tile_receive(s, t, work);
     s->kernels->bulk_state(&args, 0, rg_tile_eblocks(t));
-    for (size_t i = 0; at + i < t->end * RG_LANES && s->domain->id[at + i] >= 0; i++) {
-        size_t first = i / RG_LANES * RG_GAUSS, lane = i % RG_LANES;
-        double *record = w->record + STATE * (row + i);
-        element_stress(g->cauchy + first * 6 * RG_LANES + lane, record);
-        element_internal(g->internal + first * RG_INTERNAL * RG_LANES + lane, record);
-    }
+    state->tile = t;
 }
 
-static void write_part(rg_snapshots *w, int field, double *part) {
-    size_t components = (size_t)state_field[field].components;
-    for (size_t i = 0; i < w->written; i++) {
-        for (size_t k = 0; k < components; k++) {
-            part[i * components + k] = w->sorted[i * STATE + (size_t)state_field[field].from + k];
-        }
+static void get_state(const void *of, size_t i, void *out) {
+    const state_records *r = of;
+    tile_state *state = &r->thread[omp_get_thread_num()];
+    size_t slot = (size_t)r->slot[i];
+    if (state->tile == NULL || slot < state->tile->begin * RG_LANES || slot >= state->tile->end * RG_LANES) {
+        evaluate(r->s, tile_of(r->s->domain, slot), state);
     }
-    rg_writer_volume(w->writer, state_field[field].name, state_field[field].unit, RG_CENTER_CELL,
-                     state_field[field].components, part);
+    size_t at = slot - state->tile->begin * RG_LANES;
+    size_t first = at / RG_LANES * RG_GAUSS, lane = at % RG_LANES;
+    element_stress(state->cauchy + first * 6 * RG_LANES + lane, out);
+    element_internal(state->internal + first * RG_INTERNAL * RG_LANES + lane, out);
 }
 
-static bool wants_states(const rg_snapshots *w) {
-    unsigned bits = 0;
-    for (int k = 0; k < STATE_FIELDS; k++) {
-        bits |= state_field[k].bit;
-    }
-    return (w->fields & bits) != 0;
-}
-
-static void write_states(rg_snapshots *w, rg_solver *s) {
-    const rg_domain *d = s->domain;
-#pragma omp parallel
-    {
-        size_t points = d->tile_blocks * RG_GAUSS * RG_LANES;
-        gauss_state g = {RG_NEW(double, points * 6), RG_NEW(double, points *RG_INTERNAL)};
-#pragma omp for schedule(static)
-        for (size_t t = 0; t < d->tiles; t++) {
-            tile_states(w, s, &d->tile[t], &g);
-        }
-        rg_free(g.cauchy);
-        rg_free(g.internal);
-    }
-    send(w, STATE);
-    keep_region(w, STATE, w->sorted);
-    double *part = w->sorted + STATE * w->slab->count; /* behind the values of the elements */
+static void write_states(rg_snapshots *w, const rg_solver *s) {
+    rg_volume_field wanted[STATE_FIELDS];
+    size_t fields = 0, points = s->domain->tile_blocks * RG_GAUSS * RG_LANES;
     for (int k = 0; k < STATE_FIELDS; k++) {
         if (w->fields & state_field[k].bit) {
-            write_part(w, k, part);
+            wanted[fields++] = state_field[k].field;
         }
     }
-}
-
-/* One number of each own element, in `record`. */
-static void write_numbers(rg_snapshots *w, const char *name) {
-    send(w, 1);
-    keep_region(w, 1, w->sorted);
-    rg_writer_volume(w->writer, name, "1", RG_CENTER_CELL, 1, w->sorted);
-}
-
-static void write_ranks(rg_snapshots *w, const rg_solver *s) {
-    for (size_t i = 0; i < w->slab->own; i++) {
-        w->record[i] = s->rank;
+    if (fields == 0) {
+        return;
     }
-    write_numbers(w, "rank");
+    state_records records = {s, w->slab->slot, RG_NEW(tile_state, (size_t)s->threads)};
+    for (int t = 0; t < s->threads; t++) {
+        records.thread[t] =
+            (tile_state){RG_NEW(double, points * 6), RG_NEW(double, points *RG_INTERNAL), NULL};
+    }
+    write_volume(w, s, fields, wanted, STATE, get_state, &records);
+    for (int t = 0; t < s->threads; t++) {
+        rg_free(records.thread[t].cauchy);
+        rg_free(records.thread[t].internal);
+    }
+    rg_free(records.thread);
 }
 
-static void write_fragments(rg_snapshots *w, const rg_fragment_parts *p) {
-    for (size_t i = 0; i < w->slab->own; i++) {
-        w->record[i] = (double)p->label[p->of[w->slab->slot[i]]].id;
-    }
-    write_numbers(w, "fragment");
+/* One number of each element. */
+static void write_numbers(rg_snapshots *w, const rg_solver *s, const char *name, rg_slab_get *get,
+                          const void *of) {
+    write_volume(w, s, 1, &(rg_volume_field){name, "1", RG_CENTER_CELL, 1, 0}, 1, get, of);
+}
+
+static void get_rank(const void *of, size_t i, void *out) {
+    (void)i;
+    *(double *)out = ((const rg_slab *)of)->rank;
+}
+
+typedef struct {
+    const rg_fragment_parts *parts;
+    const rg_lid *slot;
+} fragment_records;
+
+static void get_fragment(const void *of, size_t i, void *out) {
+    const fragment_records *r = of;
+    *(double *)out = (double)r->parts->label[r->parts->of[r->slot[i]]].id;
 }
 
 /* Faces in the region, by their present place; returns how many. */
@@ -346,14 +423,12 @@ void rg_snapshots_write(rg_snapshots *w, rg_solver *s, const rg_fragment_parts *
     if (w->fields & RG_FIELD_VELOCITY) {
         write_nodal(w, s, "velocity", "m/s", s->now);
     }
-    if (wants_states(w)) {
-        write_states(w, s);
-    }
+    write_states(w, s);
     if (w->fields & RG_FIELD_RANK) {
-        write_ranks(w, s);
+        write_numbers(w, s, "rank", get_rank, w->slab);
     }
     if (rg_snapshots_show_fragments(w)) {
-        write_fragments(w, parts);
+        write_numbers(w, s, "fragment", get_fragment, &(fragment_records){parts, w->slab->slot});
     }
     if (w->fields & RG_FIELD_CRACK) {
         write_cracks(w, s);
@@ -361,11 +436,15 @@ void rg_snapshots_write(rg_snapshots *w, rg_solver *s, const rg_fragment_parts *
     rg_writer_frame_end(w->writer);
 }
 
+size_t rg_snapshots_bytes(const rg_case *c, size_t elements) {
+    size_t slab = sizeof(rg_lid) + 2 * sizeof(size_t), record = NODAL * sizeof(double); /* of an element */
+    size_t window = c->output.compression > 0 ? elements * record : WINDOW_BYTES;
+    return c->output.fields == 0 ? 0 : elements * slab + 4 * window; /* gathered, sent, received, written */
+}
+
 void rg_snapshots_close(rg_snapshots *w) {
     if (w->fields != 0) {
         rg_writer_close(w->writer);
-        rg_free(w->record);
-        rg_free(w->sorted);
         rg_free(w->row);
     }
     rg_free(w);

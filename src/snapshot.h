@@ -11,10 +11,9 @@ typedef struct {
     unsigned fields;
     rg_slab *slab;
     rg_writer *writer;
-    double *record, *sorted; /* one field of the own elements, and of the slab */
-    size_t written;          /* elements of the slab that are written: those in output.region */
-    size_t *row;             /* [written]: their rows of the slab, ascending */
-    int64_t first, total;    /* of those of all slabs: the first one here, and how many */
+    size_t written;       /* elements of the slab that are written: those in output.region */
+    size_t *row;          /* [written]: their rows of the slab, ascending; NULL where all are written */
+    int64_t first, total; /* of those of all slabs: the first one here, and how many */
 } rg_snapshots;
 
 /* Opens the field file in the case's output directory; does nothing where no fields are asked for. Keeps a
@@ -35,5 +34,8 @@ bool rg_snapshots_show_fragments(const rg_snapshots *w);
 void rg_snapshots_write(rg_snapshots *w, rg_solver *s, const rg_fragment_parts *parts);
 
 void rg_snapshots_close(rg_snapshots *w);
+
+/* Memory (bytes) that snapshots of so many elements take at most on a rank, in round numbers. */
+size_t rg_snapshots_bytes(const rg_case *c, size_t elements);
 
 #endif

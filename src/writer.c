@@ -26,7 +26,7 @@
 #include "mem.h"
 #include "xdmf.h"
 
-enum { FORMAT_VERSION = 2 };
+enum { FORMAT_VERSION = 2, CELLS_AT_ONCE = 1 << 16 };
 
 struct rg_writer {
     MPI_Comm comm;
@@ -65,45 +65,88 @@ static void write_reals(rg_writer *w, hid_t place, const rg_h5_slab *s, const ch
     rg_free(narrow);
 }
 
-/* Connectivity where every cell has its own nodes: row i is n i, n i + 1, ... */
+/* Connectivity where every cell has its own nodes: row i is n i, n i + 1, ... What is compressed is written
+ * at once, by all ranks together. */
 static void write_cells(rg_writer *w, hid_t place, int nodes, int64_t rows, int64_t first, int64_t count) {
-    int64_t *cells = rg_realloc(NULL, (size_t)(count * nodes), sizeof *cells);
-    for (int64_t i = 0; i < count * nodes; i++) {
-        cells[i] = first * nodes + i;
+    int64_t step = w->style.deflate > 0 || count < CELLS_AT_ONCE ? count : CELLS_AT_ONCE;
+    int64_t *cells = rg_realloc(NULL, (size_t)(step * nodes) + 1, sizeof *cells);
+    rg_h5_slab s = {"cells", H5T_NATIVE_INT64, nodes, rows, first, 0, w->style.deflate};
+    hid_t dataset = rg_h5_begin(&w->h5, place, &s, NULL);
+    bool once = rows > 0;
+    for (int64_t end = first + count; once || s.first < end; once = false) {
+        s.count = end - s.first < step ? end - s.first : step;
+        for (int64_t i = 0; i < s.count * nodes; i++) {
+            cells[i] = s.first * nodes + i;
+        }
+        rg_h5_put(&w->h5, dataset, &s, cells);
+        s.first += s.count;
     }
-    rg_h5_slab s = {"cells", H5T_NATIVE_INT64, nodes, rows, first, count, w->style.deflate};
-    rg_h5_write(&w->h5, place, &s, NULL, cells);
+    rg_h5_note(&w->h5, H5Dclose(dataset) >= 0, "close", s.name);
     rg_free(cells);
 }
 
-/* Points of `rows` cells with their own `nodes` nodes. */
-static void write_points(rg_writer *w, hid_t place, int nodes, int64_t rows, int64_t first, int64_t count,
-                         const double *x) {
-    rg_h5_slab s = real_slab(w, "points", 3);
-    s.rows = nodes * rows;
-    s.first = nodes * first;
-    s.count = nodes * count;
-    write_reals(w, place, &s, "m", x);
+/* Values per cell. */
+static size_t width(const rg_volume_field *f) {
+    return (size_t)f->components * (f->center == RG_CENTER_CELL ? 1 : 10);
 }
 
-/* Symmetric tensors in the order of the file: xx yy zz yz xz xy become xx xy xz yy yz zz. The caller owns the
- * result. */
-static double *reorder_tensors(int64_t rows, const double *data) {
-    static const int from[6] = {0, 5, 4, 1, 3, 2};
-    double *out = rg_realloc(NULL, (size_t)(6 * rows), sizeof *out);
-    for (int64_t i = 0; i < rows; i++) {
-        for (int k = 0; k < 6; k++) {
-            out[6 * i + k] = data[6 * i + from[k]];
+/* Takes the values of a field from the records of `n` cells, in the order and precision of the file: of
+ * tensors xx yy zz yz xz xy become xx xy xz yy yz zz. */
+static void extract(const rg_writer *w, const rg_volume_field *f, size_t n, size_t values,
+                    const double *record, void *out) {
+    static const size_t tensor[6] = {0, 5, 4, 1, 3, 2};
+    size_t per_cell = width(f);
+    double *wide = out;
+    float *narrow = out;
+    for (size_t i = 0; i < n; i++) {
+        for (size_t k = 0; k < per_cell; k++) {
+            double x = record[i * values + f->from + (f->components == 6 ? tensor[k] : k)];
+            if (w->style.single) {
+                narrow[i * per_cell + k] = (float)x;
+            } else {
+                wide[i * per_cell + k] = x;
+            }
         }
     }
-    return out;
 }
 
-static void write_field(rg_writer *w, hid_t place, const rg_h5_slab *s, const char *unit,
-                        const double *data) {
-    double *reordered = s->columns == 6 ? reorder_tensors(s->count, data) : NULL;
-    write_reals(w, place, s, unit, reordered != NULL ? reordered : data);
-    rg_free(reordered);
+static rg_h5_slab slab_of(const rg_writer *w, const rg_volume_field *f) {
+    int64_t nodes = f->center == RG_CENTER_CELL ? 1 : 10;
+    rg_h5_slab s = real_slab(w, f->name, f->components);
+    s.rows = nodes * w->total;
+    s.first = nodes * w->first;
+    return s;
+}
+
+/* Window by window: the records, then each field of theirs. */
+static void write_fields(rg_writer *w, size_t fields, const rg_volume_field *field,
+                         const rg_cell_source *source) {
+    rg_h5_slab *slab = RG_NEW(rg_h5_slab, fields);
+    hid_t *dataset = RG_NEW(hid_t, fields);
+    size_t widest = 0;
+    for (size_t f = 0; f < fields; f++) {
+        slab[f] = slab_of(w, &field[f]);
+        dataset[f] = rg_h5_begin(&w->h5, w->h5.file, &slab[f], field[f].unit);
+        widest = width(&field[f]) > widest ? width(&field[f]) : widest;
+    }
+    double *record = RG_NEW(double, source->cells * source->values + 1);
+    double *part = RG_NEW(double, source->cells *widest + 1);
+    for (size_t k = 0; k < source->windows; k++) {
+        size_t n = source->get(source->of, k, record);
+        for (size_t f = 0; f < fields; f++) {
+            slab[f].count = (int64_t)(n * width(&field[f])) / field[f].components;
+            extract(w, &field[f], n, source->values, record, part);
+            rg_h5_put(&w->h5, dataset[f], &slab[f], part);
+            slab[f].first += slab[f].count;
+        }
+    }
+    for (size_t f = 0; f < fields; f++) {
+        rg_h5_note(&w->h5, H5Dclose(dataset[f]) >= 0, "close", field[f].name);
+    }
+    rg_free(part);
+    rg_free(record);
+    rg_free(dataset);
+    rg_free(slab);
 }
 
 /* ---- files ---- */
@@ -128,9 +171,10 @@ static void create_file(rg_writer *w, int64_t frame) {
     rg_free(path);
 }
 
-static void write_mesh(rg_writer *w, const double *x) {
+static void write_mesh(rg_writer *w, const rg_cell_source *x) {
+    static const rg_volume_field points = {"points", "m", RG_CENTER_NODE, 3, 0};
     create_file(w, -1);
-    write_points(w, w->h5.file, 10, w->total, w->first, w->count, x);
+    write_fields(w, 1, &points, x);
     write_cells(w, w->h5.file, 10, w->total, w->first, w->count);
     rg_h5_close(&w->h5);
     rg_h5_finish(&w->h5, false);
@@ -189,7 +233,7 @@ static rg_writer *make(const char *dir, MPI_Comm comm, rg_writer_style style, in
 }
 
 rg_writer *rg_writer_open(const char *dir, MPI_Comm comm, rg_writer_style style, int64_t total, int64_t first,
-                          int64_t count, const double *x) {
+                          int64_t count, const rg_cell_source *x) {
     rg_writer *w = make(dir, comm, style, total, first, count);
     rg_make_directory(w->dir, comm);
     write_mesh(w, x);
@@ -271,17 +315,12 @@ void rg_writer_frame(rg_writer *w, int64_t step, double time) {
     }
 }
 
-void rg_writer_volume(rg_writer *w, const char *name, const char *unit, enum rg_center center, int components,
-                      const double *data) {
-    int64_t nodes = center == RG_CENTER_CELL ? 1 : 10;
-    rg_h5_slab s = real_slab(w, name, components);
-    s.rows = nodes * w->total;
-    s.first = nodes * w->first;
-    s.count = nodes * w->count;
+void rg_writer_volume(rg_writer *w, size_t fields, const rg_volume_field *field,
+                      const rg_cell_source *source) {
     w->h5.group[0] = '\0';
-    write_field(w, w->h5.file, &s, unit, data);
-    if (w->xdmf != NULL) {
-        rg_xdmf_volume(w->xdmf, name, center, components);
+    write_fields(w, fields, field, source);
+    for (size_t f = 0; w->xdmf != NULL && f < fields; f++) {
+        rg_xdmf_volume(w->xdmf, field[f].name, field[f].center, field[f].components);
     }
 }
 
@@ -297,7 +336,11 @@ static void number_triangles(rg_writer *w, int64_t count) {
 void rg_writer_surface(rg_writer *w, int64_t count, const double *x) {
     number_triangles(w, count);
     w->crack = rg_h5_group(&w->h5, "crack");
-    write_points(w, w->crack, 3, w->triangles, w->triangle_first, count, x);
+    rg_h5_slab s = real_slab(w, "points", 3);
+    s.rows = 3 * w->triangles;
+    s.first = 3 * w->triangle_first;
+    s.count = 3 * count;
+    write_reals(w, w->crack, &s, "m", x);
     write_cells(w, w->crack, 3, w->triangles, w->triangle_first, count);
     if (w->xdmf != NULL) {
         rg_xdmf_surface(w->xdmf, w->triangles);
@@ -311,7 +354,7 @@ void rg_writer_surface_field(rg_writer *w, const char *name, const char *unit, i
     s.first = w->triangle_first;
     s.count = w->triangle_count;
     snprintf(w->h5.group, sizeof w->h5.group, "/crack");
-    write_field(w, w->crack, &s, unit, data);
+    write_reals(w, w->crack, &s, unit, data);
     if (w->xdmf != NULL) {
         rg_xdmf_surface_field(w->xdmf, name, components);
     }

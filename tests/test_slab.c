@@ -80,8 +80,7 @@ static bool there_and_back(rg_slab *s, const rg_domain *d) {
     for (size_t i = 0; i < s->own; i++) {
         get(&of, i, in + VALUES * i);
     }
-    rg_slab_send(s, VALUES, in, out);
-    bool good = right(s, 0, s->count, out);
+    bool good = rg_slab_gather(s, 0, rg_slab_most(s), VALUES * sizeof *in, get, &of, (char *)out) == s->count;
     rg_slab_fetch_bytes(s, VALUES * sizeof *in, out, back);
     good = memcmp(in, back, VALUES * s->own * sizeof *in) == 0 && good;
     rg_free(in);

@@ -109,11 +109,33 @@ static share share_of(int64_t n, int idle) {
 
 /* ---- writing ---- */
 
+static rg_writer_style style; /* of all that is written and read */
+
+/* Records of a share, in two windows (compressed, in one); `data` are those to come. */
+typedef struct {
+    const double *data;
+    size_t count, values;
+} two_windows;
+
+static size_t get_window(void *of, size_t k, double *out) {
+    two_windows *x = of;
+    size_t half = style.deflate > 0 ? x->count : x->count / 2, n = k == 0 ? half : x->count - half;
+    memcpy(out, x->data, n * x->values * sizeof *out);
+    x->data += n * x->values;
+    return n;
+}
+
+static rg_cell_source source_of(two_windows *x) {
+    return (rg_cell_source){style.deflate > 0 ? 1 : 2, x->count + 1, x->values, get_window, x};
+}
+
 static void put_volume(rg_writer *w, const char *name, enum rg_center center, int components, enum tag tag,
                        int frame, share s) {
     int64_t n = components * (center == RG_CENTER_NODE ? 10 : 1);
     double *data = content(tag, frame, n * s.first, n * s.count);
-    rg_writer_volume(w, name, "Pa", center, components, data);
+    two_windows x = {data, (size_t)s.count, (size_t)n};
+    rg_cell_source source = source_of(&x);
+    rg_writer_volume(w, 1, &(rg_volume_field){name, "Pa", center, components, 0}, &source);
     rg_free(data);
 }
 
@@ -148,11 +170,11 @@ static void put_frame(rg_writer *w, int frame, share s, int idle) {
     rg_writer_frame_end(w);
 }
 
-static rg_writer_style style; /* of all that is written and read */
-
 static rg_writer *open_writer(MPI_Comm comm, int64_t total, share s) {
     double *x = content(POINTS, 0, 30 * s.first, 30 * s.count);
-    rg_writer *w = rg_writer_open(dir, comm, style, total, s.first, s.count, x);
+    two_windows positions = {x, (size_t)s.count, 30};
+    rg_cell_source source = source_of(&positions);
+    rg_writer *w = rg_writer_open(dir, comm, style, total, s.first, s.count, &source);
     rg_free(x);
     return w;
 }
