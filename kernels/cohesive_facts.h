@@ -8,6 +8,7 @@ enum {
     RG_FORMS_DG = 1,
     RG_FORMS_INTRINSIC = 2,
     RG_NORMAL_MEASURE = 4, /* the law's history is that of the normal opening alone */
+    RG_PACED = 8,          /* the time step can follow its opening */
 };
 
 typedef struct {

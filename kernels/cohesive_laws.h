@@ -6,7 +6,8 @@
  *   NAME, name    for identifiers: RG_LAW_NAME, rg_name_respond
  *   word          in case files
  *   forms         RG_FORMS_DG: starts rigid, at the strength;
- *                 RG_FORMS_INTRINSIC: starts with a slope, at zero; or both
+ *                 RG_FORMS_INTRINSIC: starts with a slope, at zero; or both;
+ *                 RG_PACED besides: memory and a parameter are those of rg_law_pace
  *   work          work of separation over strength times critical opening
  *   separation    effective opening of full separation over the critical opening
  *   normal_slope  bound on the stiffness of opening, in strength over critical opening;

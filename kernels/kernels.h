@@ -58,6 +58,10 @@ enum {
     RG_LAW_MEMORY = 4, /* values that a point may remember besides its crack state */
 };
 
+/* Of a law whose opening the time step follows (RG_PACED, src/pace.h): its parameter N, steps to climb to the
+ * strength; and of a point's memory the last effective opening (m) and the pace (1/s). */
+enum { RG_PACE_STEPS = 1, RG_PACE_LAST = 0, RG_PACE_RATE = 1, RG_PACED_MEMORY = 2 };
+
 /* Bulk viscosity (viscosity.c), after the bulk: adds to its forces, and to its stiffening what damping takes
  * from the step. */
 typedef struct {

@@ -10,6 +10,7 @@
 #include "files.h"
 #include "json.h"
 #include "mem.h"
+#include "pace.h"
 #include "quadrature.h"
 #include "spectrum.h"
 #include "vector.h"
@@ -164,8 +165,9 @@ static rg_gid find_worst(const rg_solver *s, finding *f) {
 }
 
 static const char *limited_by(const rg_solver *s) {
-    return s->stiffening_anywhere < RG_STIFFENING_FREE ? "the spectrum at rest"
-                                                       : "the stiffening of the element";
+    return rg_pace_limits(s)                             ? "the pace of the opening"
+           : s->stiffening_anywhere < RG_STIFFENING_FREE ? "the spectrum at rest"
+                                                         : "the stiffening of the element";
 }
 
 static void write_json(const char *reason, const rg_solver *s, int64_t step, double time, rg_gid element,

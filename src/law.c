@@ -43,6 +43,10 @@ rg_cohesive rg_law_make(const rg_case *c) {
     return law;
 }
 
+double rg_law_steps(const rg_cohesive *law) {
+    return (facts_of(law).forms & RG_PACED) != 0 ? law->shape[RG_PACE_STEPS] : 0;
+}
+
 size_t rg_crack_stride(const rg_cohesive *law) {
     size_t friction = law->friction > 0 ? RG_FRICTION_BLOCK : 0;
     return RG_CRACK_BLOCK + (size_t)facts_of(law).memory * RG_POINTS * RG_LANES + friction;

@@ -8,6 +8,9 @@
  */
 rg_cohesive rg_law_make(const rg_case *c);
 
+/* N of the adaptive time step (pace.h); 0: the law has none, or it is not asked for. */
+double rg_law_steps(const rg_cohesive *law);
+
 /* Values of crack state, memory and friction of a block of interfaces. */
 size_t rg_crack_stride(const rg_cohesive *law);
 

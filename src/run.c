@@ -12,6 +12,7 @@
 #include "interrupt.h"
 #include "mem.h"
 #include "mesh_case.h"
+#include "pace.h"
 #include "progress.h"
 #include "restart.h"
 #include "schedule.h"
@@ -43,11 +44,12 @@ typedef struct {
     char failure[RG_FAILURE_WORDS];
 } run;
 
-/* Time step for the current stiffening, in steps of 9 % so that it seldom changes (a leapfrog conserves
- * energy at a constant step). */
+/* Time step for the current stiffening and pace, in steps of 9 % so that it seldom changes (a leapfrog
+ * conserves energy at a constant step). */
 static double stable_step(const run *r, double stiffening) {
     double dt = r->dt_reference;
-    return stiffening > RG_STIFFENING_FREE ? dt / sqrt(exp2(ceil(4 * log2(stiffening)) / 4)) : dt;
+    dt = stiffening > RG_STIFFENING_FREE ? dt / sqrt(exp2(ceil(4 * log2(stiffening)) / 4)) : dt;
+    return rg_pace_step(r->solver, dt);
 }
 
 static bool collapsed(const run *r, double stiffening) {

@@ -11,6 +11,7 @@
 #include "material.h"
 #include "mem.h"
 #include "mesh_case.h"
+#include "pace.h"
 #include "patch.h"
 #include "strength.h"
 #include "tile.h"
@@ -29,6 +30,7 @@ static void allocate_fields(rg_solver *s) {
     s->now = RG_NEW(rg_real, blocks * RG_NODE_BLOCK);
     s->stiffening = RG_NEW(rg_real, blocks * RG_LANES);
     s->tile_stiffening = RG_NEW(rg_real, d->tiles);
+    s->tile_pace = rg_law_steps(&s->law) > 0 ? RG_NEW(double, d->tiles) : NULL;
     s->crack_stride = rg_crack_stride(&s->law);
     s->crack = rg_alloc_sparse(d->iblocks * s->crack_stride, sizeof *s->crack);
     s->history = s->histories > 0 ? RG_NEW(rg_real, rg_solver_history(s)) : NULL;
@@ -250,6 +252,9 @@ static void across(rg_solver *s, size_t tile, const rg_workspace *w, const impul
     rg_tile_receive(s, t, w);
     s->kernels->interface(&interface, rg_tile_inside(t), rg_tile_iblocks(t));
     mark_cracked(s, t, t->sbegin, t->iend);
+    if (s->tile_pace != NULL && p->constrain) {
+        s->tile_pace[tile] = rg_pace_of_tile(s, t);
+    }
     kick(s, tile, w, p, true);
     if (p->constrain) {
         rg_constraints_kick(s->constraints, tile, p->velocity,
@@ -347,6 +352,9 @@ static void evaluate(rg_solver *s, const impulse *p) {
     MPI_Wait(&s->stiffening_request, MPI_STATUS_IGNORE);
     s->stiffening_anywhere = s->anywhere[0];
     s->wish = (int)s->anywhere[1];
+    if (s->tile_pace != NULL && p->constrain) {
+        rg_pace_agree(s);
+    }
     if (p->constrain) {
         rg_bodies_kick(s->bodies, s->time, s->dt, s->dt_next);
     }
@@ -513,6 +521,7 @@ void rg_solver_free(rg_solver *s) {
                       s->cracked,   s->broken,   s->unlinked, s->active,  s->rows[0],    s->rows[1],
                       s->tractions, s->watched,  s->work,     s->history, s->heat};
     rg_free(s->scale);
+    rg_free(s->tile_pace);
     rg_constraints_free(s->constraints);
     rg_bodies_free(s->bodies);
     rg_halo_free(s->halo_u[0]);

@@ -369,21 +369,28 @@ static void compare_cracks(const char *set, const char *law, const output *out, 
         }
 }
 
-/* Value k of the friction of all points, 0 where they hold. */
-static double *friction_of(const output *out, const output *ref, int k, size_t stride) {
+/* Some of what points keep: `count` values each, the first of a block at `first`. */
+typedef struct {
+    const char *what;
+    size_t stride, first, count;
+} kept;
+
+/* Value k of all points, 0 where they hold. */
+static double *values_of(const kept *part, const output *out, const output *ref, size_t k) {
     double *all = input_alloc(INPUT_ISLOTS * RG_POINTS * sizeof *all);
     for (size_t i = 0; i < INPUT_ISLOTS; i++)
-        for (int q = 0; q < RG_POINTS; q++)
+        for (size_t q = 0; q < RG_POINTS; q++)
             if (ref->broken[i] >> q & 1)
-                all[i * RG_POINTS + (size_t)q] = out->crack[rg_friction_index(i, q, k, stride)];
+                all[i * RG_POINTS + q] = out->crack[i / RG_LANES * part->stride + part->first +
+                                                    (q * part->count + k) * RG_LANES + i % RG_LANES];
     return all;
 }
 
-static void compare_friction(const char *set, const char *law, const output *out, const output *ref,
-                             size_t stride) {
-    for (int k = 0; k < RG_FRICTION; k++) {
-        double *got = friction_of(out, ref, k, stride), *expected = friction_of(ref, ref, k, stride), sum = 0;
-        compare(set, law, "friction", got, expected, INPUT_ISLOTS * RG_POINTS);
+static void compare_kept(const char *set, const char *law, const kept *part, const output *out,
+                         const output *ref) {
+    for (size_t k = 0; k < part->count; k++) {
+        double *got = values_of(part, out, ref, k), *expected = values_of(part, ref, ref, k), sum = 0;
+        compare(set, law, part->what, got, expected, INPUT_ISLOTS * RG_POINTS);
         for (size_t i = 0; i < INPUT_ISLOTS * RG_POINTS; i++)
             sum += fabs(expected[i]);
         assert_true(sum > 0);
@@ -402,9 +409,12 @@ static void check_kernel(const rg_kernels *set, input_kind kind, const rg_cohesi
     assert_memory_equal(out.unlinked, ref.unlinked, sizeof out.unlinked);
     compare_reals(set->name, word, "force", out.force, ref.force, INPUT_IBLOCKS * RG_IFORCE_BLOCK);
     compare(set->name, word, "energy", out.energy, ref.energy, INPUT_ISLOTS * RG_E_INTERFACE);
-    compare_cracks(set->name, word, &out, &ref, stride_of(in));
+    size_t stride = stride_of(in), memory = (size_t)rg_law_facts_of(law->law, law->shape, law->beta).memory;
+    compare_cracks(set->name, word, &out, &ref, stride);
+    compare_kept(set->name, word, &(kept){"memory", stride, RG_CRACK_BLOCK, memory}, &out, &ref);
     if (law->friction > 0 && !law->stick)
-        compare_friction(set->name, word, &out, &ref, stride_of(in));
+        compare_kept(set->name, word, &(kept){"friction", stride, stride - RG_FRICTION_BLOCK, RG_FRICTION},
+                     &out, &ref);
     output_free(&out);
     output_free(&ref);
     input_free(in);

@@ -22,6 +22,7 @@ LAYOUTS = [(1, 2), (2, 1), (3, 1)]
 VARIANTS = {
     "exponential": interface("exponential"),
     "bilinear weibull": interface("bilinear", weibull={"modulus": 6, "area": 1e-9}),
+    "bilinear steps": interface("bilinear", bilinear={"ascent": 0.05, "steps": 20}),
     "free": interface("free"),
     "fatigue": interface("fatigue"),
     "linear weibull sets": interface("linear", weibull={"modulus": 6, "area": 1e-9, "keep": "opening"},
@@ -58,6 +59,22 @@ def test_ledger_closes(run, law):
     assert (np.diff(energy["dissipated"]) >= -1e-12 * energy["external_work"].max()).all()
     if law in POTENTIALS or law in ("exponential", "tvergaard", "bilinear"):
         assert energy["penalty"].max() == 0 and energy["cohesive"].max() > 0
+
+
+def test_step_follows_the_opening(run):
+    """(3.14): while faces climb to the strength or soften, the step shrinks, the more the larger N; and the ledger
+    closes."""
+    def pulled(steps):
+        sets = {**PULLED, **interface("bilinear", bilinear={"ascent": 0.05, "steps": steps}),
+                "output.interval": 2e-8, "output.probes": [{"name": "a", "at": [1e-5, 1e-5, 1e-5]}]}
+        return run(BENCH / "spall.yaml", threads=2, sets=sets)
+
+    fixed, once, twice = (np.diff(pulled(steps).history["time"])[:-1] for steps in (0, 60, 120))
+    assert np.ptp(fixed) < 1e-9 * fixed[0] and once[0] == pytest.approx(fixed[0])
+    assert once.min() < 0.5 * fixed[0]
+    assert 0.35 < twice.min() / once.min() < 0.7
+    assert pulled(60).summary["broken_area_m2"] > 0
+    assert pulled(60).summary["energy_error_rel"] < 1e-4 and pulled(0).summary["energy_error_rel"] < 2e-4
 
 
 def test_wave_speed_of_intrinsic_faces(run):

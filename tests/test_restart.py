@@ -101,6 +101,8 @@ VARIANTS = {
     "intrinsic": {"interface.form": "intrinsic", "interface.law": "xu-needleman"},
     "friction": {"interface.friction": 0.5},
     "fatigue": {"interface.law": "fatigue"},
+    "steps": {"interface.form": "intrinsic", "interface.law": "bilinear",
+              "interface.bilinear": {"ascent": 0.05, "steps": 5}},
     "plain": {"output.fields": [], "output.probes": [], "boundary": []},
     **({} if SINGLE else {"rate": {"interface.law": "rate"}}),
 }
