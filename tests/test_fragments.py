@@ -28,15 +28,21 @@ def by_step(run):
     return [(step, rows[rows["step"] == step]) for step in np.unique(rows["step"])]
 
 
+STRENGTHS = {"uniform": {}, "weibull": {"interface.weibull": {"modulus": 10, "area": 7.8e-9}}}
+
+
 @pytest.mark.parametrize("ranks, threads", LAYOUTS)
-def test_same_fragments_on_any_layout(run, torn, ranks, threads):
-    other = run(CASES / "fragments.yaml", ranks=ranks, threads=threads, sets=SETS)
-    assert len(by_step(torn)[-1][1]) > 4
-    assert (other.dir / "fragments.csv").read_bytes() == (torn.dir / "fragments.csv").read_bytes()
-    for key in ("fragments", "fragment_mass_heaviest_kg", "fragment_mass_bins"):
-        assert other.summary[key] == torn.summary[key], key
-    for one, two in zip(torn.frames(), other.frames()):
-        assert np.array_equal(one["fragment"], two["fragment"])
+@pytest.mark.parametrize("strengths", STRENGTHS)
+def test_same_fragments_on_any_layout(run, strengths, ranks, threads):
+    sets = {**SETS, **STRENGTHS[strengths]}
+    one = run(CASES / "fragments.yaml", sets=sets)
+    other = run(CASES / "fragments.yaml", ranks=ranks, threads=threads, sets=sets)
+    assert len(by_step(one)[-1][1]) > 4
+    assert (other.dir / "fragments.csv").read_bytes() == (one.dir / "fragments.csv").read_bytes()
+    for key in ("fragments", "fragment_mass_heaviest_kg", "fragment_mass_bins", "state_hash"):
+        assert other.summary[key] == one.summary[key], key
+    for a, b in zip(one.frames(), other.frames()):
+        assert np.array_equal(a["fragment"], b["fragment"])
 
 
 def test_fragments_add_up_to_the_body(torn):
