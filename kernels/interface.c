@@ -397,7 +397,50 @@ RG_INLINE rg_mask broken_traction(interface *s, int q, const vec3 n, rg_mask bro
     return closed;
 }
 
-/* ---- Friction (friction.h) ---- */
+RG_INLINE void damaged(interface *s, law_respond *respond, int memory) {
+    const rg_interface_args *args = s->args;
+    size_t first = s->block * RG_LANES + (size_t)s->lane;
+    vec3 n[RG_POINTS];
+    rg_vec area[RG_POINTS];
+    load_law(s);
+    mid_surface(s, n, area);
+    uint8_t broken[RG_VLEN], unlinked[RG_VLEN] = {0}, any = 0;
+    memcpy(broken, args->broken + first, sizeof broken);
+    for (int q = 0; q < RG_POINTS; q++) {
+        rg_mask cracked = bit_mask(broken, q);
+        cracked |= switch_points(s, q, n[q], area[q], ~cracked);
+        set_bits(broken, q, cracked);
+        rg_mask closed = {0};
+        if (rg_any(cracked)) {
+            closed = broken_traction(s, q, n[q], cracked, respond, memory);
+        }
+        set_bits(unlinked, q, cracked & ~closed);
+    }
+    memcpy(args->broken + first, broken, sizeof broken);
+    memcpy(args->unlinked + first, unlinked, sizeof unlinked);
+    for (int l = 0; l < RG_VLEN; l++) {
+        any |= broken[l];
+    }
+    if (any) {
+        args->active[s->block] = 1;
+    }
+}
+
+/* The same around each law. */
+#define RG_LAW(NAME, name, word, forms, work, separation, normal_slope, shear_slope, memory)                 \
+    static __attribute__((noinline)) void damaged_##name(interface *s) {                                     \
+        damaged(s, rg_##name##_respond, memory);                                                             \
+    }
+#include "cohesive_laws.h"
+#undef RG_LAW
+
+static void (*const damaged_by_law[])(interface *s) = {
+#define RG_LAW(NAME, name, ...) damaged_##name,
+#include "cohesive_laws.h"
+#undef RG_LAW
+};
+
+/* ---- Friction (friction.h): apart from the rest, which runs without it need not pay for ---- */
 
 RG_INLINE rg_real *friction_state(const interface *s, int q, int k) {
     return s->args->crack + rg_friction_index(s->block * RG_LANES, q, k, s->args->crack_stride) + s->lane;
@@ -435,7 +478,7 @@ RG_INLINE rg_vec friction_limit(const interface *s, int q, const opening *o, rg_
 }
 
 /* Adds friction to the traction of broken points; `now`: those that switched in this state. */
-static __attribute__((noinline)) void rub(interface *s, int q, const vec3 n, rg_mask broken, rg_mask now) {
+RG_INLINE void rub_point(interface *s, int q, const vec3 n, rg_mask broken, rg_mask now) {
     opening o;
     crack_opening(s, q, n, &o);
     if (s->args->law.stick) {
@@ -464,52 +507,33 @@ static __attribute__((noinline)) void rub(interface *s, int q, const vec3 n, rg_
     }
 }
 
-RG_INLINE void damaged(interface *s, law_respond *respond, int memory) {
-    const rg_interface_args *args = s->args;
-    size_t first = s->block * RG_LANES + (size_t)s->lane;
+/* The law, then friction on top. */
+static __attribute__((noinline)) void damaged_with_friction(interface *s) {
+    const uint8_t *bits = s->args->broken + s->block * RG_LANES + s->lane;
+    uint8_t before[RG_VLEN];
     vec3 n[RG_POINTS];
     rg_vec area[RG_POINTS];
-    load_law(s);
+    memcpy(before, bits, sizeof before);
+    damaged_by_law[s->args->law.law](s);
     mid_surface(s, n, area);
-    uint8_t broken[RG_VLEN], unlinked[RG_VLEN] = {0}, any = 0;
-    memcpy(broken, args->broken + first, sizeof broken);
     for (int q = 0; q < RG_POINTS; q++) {
-        rg_mask cracked = bit_mask(broken, q);
-        rg_mask now = switch_points(s, q, n[q], area[q], ~cracked);
-        cracked |= now;
-        set_bits(broken, q, cracked);
-        rg_mask closed = {0};
-        if (rg_any(cracked)) {
-            closed = broken_traction(s, q, n[q], cracked, respond, memory);
-            if (args->law.friction > 0) {
-                rub(s, q, n[q], cracked, now);
-            }
+        rg_mask broken = bit_mask(bits, q);
+        if (rg_any(broken)) {
+            rub_point(s, q, n[q], broken, broken & ~bit_mask(before, q));
         }
-        set_bits(unlinked, q, cracked & ~closed);
-    }
-    memcpy(args->broken + first, broken, sizeof broken);
-    memcpy(args->unlinked + first, unlinked, sizeof unlinked);
-    for (int l = 0; l < RG_VLEN; l++) {
-        any |= broken[l];
-    }
-    if (any) {
-        args->active[s->block] = 1;
     }
 }
 
-/* The same around each law. */
-#define RG_LAW(NAME, name, word, forms, work, separation, normal_slope, shear_slope, memory)                 \
-    static __attribute__((noinline)) void damaged_##name(interface *s) {                                     \
-        damaged(s, rg_##name##_respond, memory);                                                             \
+/* What springs store counts as contact. */
+static __attribute__((noinline)) void friction_energy(const interface *s, rg_vec sum[RG_E_INTERFACE]) {
+    const uint8_t *bits = s->args->broken + s->block * RG_LANES + s->lane;
+    for (int q = 0; q < RG_POINTS; q++) {
+        rg_vec stretch[2] = {rg_load(friction_state(s, q, RG_FRICTION_STRETCH)),
+                             rg_load(friction_state(s, q, RG_FRICTION_STRETCH + 1))};
+        rg_vec stored = rg_splat(rg_tri[q / 3].weight) * rg_friction_stored(s->pen_iso, stretch);
+        sum[RG_E_CONTACT] += rg_select(bit_mask(bits, q), stored, rg_splat(0.0));
     }
-#include "cohesive_laws.h"
-#undef RG_LAW
-
-static void (*const damaged_by_law[])(interface *s) = {
-#define RG_LAW(NAME, name, ...) damaged_##name,
-#include "cohesive_laws.h"
-#undef RG_LAW
-};
+}
 
 RG_INLINE void interface_vector(const rg_interface_args *args, size_t block, int lane, bool seam) {
     interface s;
@@ -518,7 +542,11 @@ RG_INLINE void interface_vector(const rg_interface_args *args, size_t block, int
     mean_traction(&s);
     dg_traction(&s);
     if (args->active[block] || any_to_test(&s)) {
-        damaged_by_law[args->law.law](&s);
+        if (args->law.friction > 0) {
+            damaged_with_friction(&s);
+        } else {
+            damaged_by_law[args->law.law](&s);
+        }
     }
     store_nodal_force(&s);
 }
@@ -552,11 +580,6 @@ RG_INLINE void broken_energy(const interface *s, int q, const vec3 n, rg_mask br
     rg_mask touching = law->flux ? (rg_mask){0} : broken & (o.normal < rg_splat(law->contact_below));
     sum[RG_E_COHESIVE] += weight * rg_select(broken & unlinked, e.stored, zero);
     sum[RG_E_CONTACT] += weight * rg_select(touching, contact, zero);
-    if (law->friction > 0) {
-        rg_vec stretch[2] = {rg_load(friction_state(s, q, RG_FRICTION_STRETCH)),
-                             rg_load(friction_state(s, q, RG_FRICTION_STRETCH + 1))};
-        sum[RG_E_CONTACT] += weight * rg_select(broken, rg_friction_stored(s->pen_iso, stretch), zero);
-    }
     sum[RG_E_DISSIPATED] += weight * rg_select(broken, e.dissipated, zero);
 }
 
@@ -600,6 +623,9 @@ RG_INLINE void state_vector(const rg_interface_state_args *args, size_t block, s
     }
     if (s.args->active[block]) {
         energy_by_law[s.args->law.law](&s, sum);
+        if (s.args->law.friction > 0) {
+            friction_energy(&s, sum);
+        }
     }
     for (size_t k = 0; k < RG_E_INTERFACE; k++) {
         rg_store_wide(args->energy + (row * RG_E_INTERFACE + k) * RG_LANES + lane, sum[k]);
