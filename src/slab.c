@@ -207,7 +207,7 @@ size_t rg_slab_gather(rg_slab *s, size_t first, size_t rows, size_t bytes, rg_sl
                       char *out) {
     traffic leave = traffic_of(s, s->row, s->send, s->send_at, first, rows);
     traffic arrive = traffic_of(s, s->place, s->receive, s->receive_at, first, rows);
-    char *leaving = make_room(s, (leave.total + arrive.total) * bytes);
+    char *leaving = make_room(s, (leave.total + arrive.total) * bytes + 1);
     char *arrived = leaving + leave.total * bytes;
     collect(s, &leave, first, bytes, get, of, out, leaving);
     if (s->ranks > 1) {
