@@ -96,7 +96,7 @@ static size_t least(size_t a, size_t b, size_t c) {
 }
 
 size_t rg_edit_distance(const char *a, size_t m, const char *b, size_t n) {
-    size_t *row = RG_NEW(size_t, n + 1);
+    size_t row[RG_LONGEST_WORD + 1];
     for (size_t j = 0; j <= n; j++) {
         row[j] = j;
     }
@@ -110,9 +110,7 @@ size_t rg_edit_distance(const char *a, size_t m, const char *b, size_t n) {
             corner = above;
         }
     }
-    size_t distance = row[n];
-    rg_free(row);
-    return distance;
+    return row[n];
 }
 
 const char *rg_nearest(const char *word, const char *const list[]) {

@@ -42,10 +42,11 @@ void rg_problems_flush(rg_problems *all, FILE *out);
 /* Longer than any key or value that could be meant: comparing them would take long, a megabyte forever. */
 enum { RG_LONGEST_WORD = 128 };
 
-/* Edits (insertions, deletions, replacements; letter case is ignored) that turn a[0..m) into b[0..n). */
+/* Edits (insertions, deletions, replacements; letter case is ignored) that turn a[0..m) into b[0..n);
+ * n <= RG_LONGEST_WORD. */
 size_t rg_edit_distance(const char *a, size_t m, const char *b, size_t n);
 
-/* The entry of the NULL-terminated `list` closest to `word`, or NULL if none is close. */
+/* The entry of the NULL-terminated `list`, words as short, closest to `word`, or NULL if none is close. */
 const char *rg_nearest(const char *word, const char *const list[]);
 
 #endif

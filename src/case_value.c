@@ -5,6 +5,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 #include "case_expr.h"
 #include "mem.h"
@@ -29,8 +30,7 @@ static bool is_special(const char *text) {
     text += text[0] == '+' || text[0] == '-' ? 1 : 0;
     text += text[0] == '.' ? 1 : 0;
     for (int i = 0; i < 3; i++) {
-        if (strlen(text) == strlen(special[i]) &&
-            rg_edit_distance(text, strlen(text), special[i], strlen(special[i])) == 0) {
+        if (strcasecmp(text, special[i]) == 0) {
             return true;
         }
     }
