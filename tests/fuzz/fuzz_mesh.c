@@ -14,6 +14,7 @@
 #include "../../src/mesh_file.h"
 #include "../../src/mesh_info.h"
 #include "../../src/mesh_rows.h"
+#include "h5_changes.h"
 #include "host.h"
 
 enum { MESHES = 2, FIELDS = 14, ATTRIBUTES = 8, CHANGE = 5, MOST_CHANGES = 16 };
@@ -130,32 +131,15 @@ static void find_fields(base *b, const char *path) {
 
 /* ---- changes ---- */
 
-/* A value that is near, far, at a limit or not finite. */
-static int64_t integer(uint8_t code) {
-    static const int64_t special[16] = {
-        INT8_MAX,  INT8_MIN,  INT16_MAX, INT32_MAX, INT32_MIN,       INT64_MAX, INT64_MIN,    1 << 20,
-        1LL << 32, 1LL << 40, -1,        1000,      (1LL << 40) + 1, 1LL << 62, -(1LL << 40), 256};
-    return code < 240 ? (int64_t)code - 120 : special[code - 240];
-}
-
-static double real(uint8_t code) {
-    static const double special[8] = {0.0 / 1.0,  1e300,       -1e300, 1e-300,
-                                      1e308 * 10, -1e308 * 10, 0.5,    1 + 1e-12};
-    if (code == 255) {
-        return special[4] - special[4]; /* not a number */
-    }
-    return code < 240 ? 0.0625 * ((int)code - 16) : special[code % 8];
-}
-
 static void set_value(uint8_t *image, const field *p, int64_t i, uint8_t code) {
     uint8_t *to = image + p->at + (size_t)i * p->width;
     if (p->rows->type == RG_ROWS_NAME) {
         memset(to, code, code % 2 == 0 ? RG_SET_NAME : 1);
     } else if (p->rows->type == RG_ROWS_DOUBLE) {
-        double value = real(code);
+        double value = rg_fuzz_real(code);
         memcpy(to, &value, sizeof value);
     } else {
-        int64_t value = integer(code); /* little-endian */
+        int64_t value = rg_fuzz_integer(code); /* little-endian */
         memcpy(to, &value, p->width);
     }
 }
@@ -180,38 +164,6 @@ static void repair_sums(uint8_t *image, const field *p) {
     free(values);
 }
 
-static void change_attribute(hid_t file, const char *name, int64_t value, bool other_type) {
-    if (other_type) {
-        H5Adelete(file, name);
-        hid_t space = H5Screate_simple(1, (hsize_t[]){(hsize_t)(value & 3)}, NULL);
-        hid_t made =
-            H5Acreate2(file, name, value & 4 ? H5T_NATIVE_DOUBLE : H5T_C_S1, space, H5P_DEFAULT, H5P_DEFAULT);
-        H5Aclose(made);
-        H5Sclose(space);
-        return;
-    }
-    hid_t a = H5Aopen(file, name, H5P_DEFAULT), space = H5Aget_space(a);
-    if (H5Sget_simple_extent_npoints(space) == 1) { /* not made another before */
-        H5Awrite(a, H5T_NATIVE_INT64, &value);
-    }
-    H5Sclose(space);
-    H5Aclose(a);
-}
-
-/* Another dataset in place of this one: none, without values, of any size and type. */
-static void change_shape(hid_t file, const char *name, int64_t rows, uint8_t code) {
-    H5Ldelete(file, name, H5P_DEFAULT);
-    if (code == 0) {
-        return;
-    }
-    const hid_t type[4] = {H5T_NATIVE_INT32, H5T_NATIVE_DOUBLE, H5T_C_S1, H5T_NATIVE_INT8};
-    hsize_t size[2] = {rows < 0 ? 0 : (hsize_t)rows, 1 + code % 5u};
-    hid_t space = H5Screate_simple(1 + code % 2, size, NULL);
-    hid_t made = H5Dcreate2(file, name, type[code / 2 % 4], space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
-    H5Dclose(made);
-    H5Sclose(space);
-}
-
 /* Kinds 0 to 3 change the image; others the file, later. */
 static void change_image(const base *b, uint8_t *image, size_t *size, const uint8_t *c) {
     size_t where = (size_t)c[2] + 256 * (size_t)c[3];
@@ -229,9 +181,10 @@ static void change_image(const base *b, uint8_t *image, size_t *size, const uint
 static void change_file(const base *b, hid_t file, const uint8_t *c) {
     int64_t where = c[2] + 256 * c[3];
     if (c[0] == 4 || c[0] == 5) {
-        change_attribute(file, attribute[c[1] % ATTRIBUTES], integer(c[4]), c[0] == 5);
+        rg_fuzz_change_attribute(file, attribute[c[1] % ATTRIBUTES], rg_fuzz_integer(c[4]), c[0] == 5);
     } else if (c[0] == 6) {
-        change_shape(file, b->field[c[1] % FIELDS].rows->name, where == 65535 ? integer(c[1]) : where, c[4]);
+        rg_fuzz_change_shape(file, b->field[c[1] % FIELDS].rows->name,
+                             where == 65535 ? rg_fuzz_integer(c[1]) : where, c[4]);
     }
 }
 
@@ -266,17 +219,6 @@ static void body(const uint8_t *data, size_t size) {
     } else {
         rg_part_free(rg_part_read(path, NULL, MPI_COMM_SELF));
     }
-}
-
-/* What a reader that refused the file left open. */
-static void close_all(void) {
-    hid_t id[64];
-    ssize_t count = H5Fget_obj_ids(H5F_OBJ_ALL, H5F_OBJ_ALL, 64, id);
-    for (ssize_t i = 0; i < count; i++) {
-        while (H5Iis_valid(id[i]) > 0 && H5Idec_ref(id[i]) >= 0) {
-        }
-    }
-    H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
 }
 
 static void make_file(const base *b, const uint8_t *data, size_t size) {
@@ -319,17 +261,13 @@ int LLVMFuzzerInitialize(int *argc, char ***argv) {
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
-    static int count;
     if (size < 2) {
         return 0;
     }
-    H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
+    rg_fuzz_h5_begin();
     make_file(&bases[data[0] % 8 == 1], data, size); /* the larger one now and then: it is slow */
     bool accepted = rg_fuzz_run(body, data, size);
     rg_fuzz_require(accepted || size >= 2 + CHANGE, "the good file is read");
-    close_all();
-    if (++count % 512 == 0) {
-        H5close(); /* with what is tied to no file */
-    }
+    rg_fuzz_h5_close();
     return 0;
 }
