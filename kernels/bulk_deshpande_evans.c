@@ -22,9 +22,9 @@ RG_INLINE void material_state(const rg_material *m, rg_vec H[3][3], rg_vec histo
                               rg_point_state *out) {
     const rg_de_constants *c = &m->of.deshpande_evans.constants;
     rg_vec F[3][3], size = history[RG_DE_GROWTH] + 1.0;
-    rg_de_strain d;
+    rg_hencky d;
     rg_plus_identity(H, F);
-    rg_de_strain_at(F, history, &d);
+    rg_hencky_at(F, history + RG_DE_FLOW, &d);
     rg_de_cracks k = rg_de_cracks_at(c, history[RG_DE_GROWTH]);
     rg_de_stress s = rg_de_stress_at(c, &k, d.ekk, d.eb);
     out->energy = rg_de_stored(&s, d.ekk, d.eb);
@@ -33,7 +33,7 @@ RG_INLINE void material_state(const rg_material *m, rg_vec H[3][3], rg_vec histo
     out->internal[RG_INTERNAL_REGIME] = rg_de_regime(&k, &s);
     out->internal[RG_INTERNAL_PLASTIC] = history[RG_DE_STRAIN];
     if (stress) {
-        rg_de_piola(&s, &d, out->P);
+        rg_hencky_piola(s.mean, s.mises, &d, out->P);
     }
 }
 

@@ -1,19 +1,7 @@
 /* Deshpande-Evans ceramic at a point: deshpande_evans_model.h has the equations.
  *
- * Frame. The model is one of small strains; here F = Fe Fp with det Fp = 1, its strain is the Hencky strain
- * e = 1/2 log b, b = Fe Fe^T = F Cp^-1 F^T, and its stress the Kirchhoff stress tau = dw(e)/de, P = tau F^-T.
- * W is isotropic, so tau is conjugate to e exactly: the solid is hyperelastic between updates at any strain,
- * tr e = log det F, and the history (Cp^-1 = Fp^-1 Fp^-T, referred to the undeformed solid) does not change
- * under a rotation of space: objectivity is exact, not a matter of step size as with a rate. Flow along the
- * deviator is the exponential map (Weber & Anand 1990; Simo 1992), b <- b exp(-2 dep (3/2) s/se), which is a
- * scaling of e' and keeps det Fp = 1. Cost against a rotated rate form: one logarithm, about 130 operations,
- * no polar decomposition, no stored stress.
- *
- * Logarithm of b without eigenvectors: with x = 3 b/tr b - I, log(1 + x) = int_0^1 x/(1 + t x) dt by Gauss's
- * rule (the diagonal Pade approximant), and 1/(1 + t x) by Cayley-Hamilton: x^3 = q x + r, so
- *     (1 + t x)^-1 = ((1 - q t^2) - t x + t^2 x^2)/(1 - q t^2 + r t^3).
- * Sums of positive terms for any b, no case of equal eigenvalues. With 6 points the relative error of e' is
- * 4e-15 at principal values of 10 %, 4e-12 at 20 %, 6e-8 at 40 %.
+ * Frame. The model is one of small strains; here its strain is the Hencky strain of F Fp^-1 and its stress
+ * the Kirchhoff stress (hencky.h).
  *
  * One step at fixed F: plastic flow with the cracks as they are (backward Euler), then growth of the cracks
  * with the strain as it is. Both are relaxations at constant F, so what they release is exactly the fall of
@@ -33,96 +21,10 @@
 #define RG_DESHPANDE_EVANS_H
 
 #include "deshpande_evans_model.h"
-#include "vec_math.h"
+#include "hencky.h"
 
 enum { RG_DE_NEWTON = 8 }; /* steps of the flow's iteration, at most; two where it is under way */
 #define RG_DE_NEAR 1e-6    /* size of its last step in log dep: the next one would be the square */
-
-/* Cofactor matrix J F^-T. */
-RG_INLINE void rg_cofactor(rg_vec F[3][3], rg_vec cof[3][3]) {
-    for (int i = 0; i < 3; i++) {
-        rg_cross(F[(i + 1) % 3], F[(i + 2) % 3], cof[i]);
-    }
-}
-
-static const int rg_sym_row[6] = {0, 1, 2, 1, 0, 0}, rg_sym_column[6] = {0, 1, 2, 2, 2, 1};
-static const int rg_sym[3][3] = {{0, 5, 4}, {5, 1, 3}, {4, 3, 2}};
-
-/* out = G S G^T, S symmetric. */
-RG_INLINE void rg_congruence(rg_vec G[3][3], rg_vec S[6], rg_vec out[6]) {
-    rg_vec T[3][3];
-    for (int i = 0; i < 3; i++) {
-        for (int j = 0; j < 3; j++) {
-            T[i][j] = G[i][0] * S[rg_sym[0][j]] + G[i][1] * S[rg_sym[1][j]] + G[i][2] * S[rg_sym[2][j]];
-        }
-    }
-    for (int k = 0; k < 6; k++) {
-        out[k] = rg_dot(T[rg_sym_row[k]], G[rg_sym_column[k]]);
-    }
-}
-
-/* out = S T, S and T symmetric and coaxial. */
-RG_INLINE void rg_coaxial_product(rg_vec S[6], rg_vec T[6], rg_vec out[6]) {
-    for (int k = 0; k < 6; k++) {
-        const int *row = rg_sym[rg_sym_row[k]], *column = rg_sym[rg_sym_column[k]];
-        out[k] = S[row[0]] * T[column[0]] + S[row[1]] * T[column[1]] + S[row[2]] * T[column[2]];
-    }
-}
-
-RG_INLINE rg_vec rg_sym_dot(rg_vec S[6], rg_vec T[6]) {
-    return S[0] * T[0] + S[1] * T[1] + S[2] * T[2] + 2.0 * (S[3] * T[3] + S[4] * T[4] + S[5] * T[5]);
-}
-
-/* Deviator of 1/2 log b. */
-RG_INLINE void rg_hencky_deviator(rg_vec b[6], rg_vec e[6]) {
-    /* Gauss's points are 1/2 -+ half a gap; the six determinants share one division */
-    static const double gap[3] = {0.2386191860831969, 0.6612093864662645, 0.9324695142031521};
-    static const double weight[3] = {0.4679139345726910, 0.3607615730481386, 0.1713244923791704};
-    rg_vec x[6], x2[6], scale = 3.0 / (b[0] + b[1] + b[2]);
-    for (int k = 0; k < 6; k++) {
-        x[k] = b[k] * scale - (k < 3 ? 1.0 : 0.0);
-    }
-    rg_coaxial_product(x, x, x2);
-    rg_vec q = 0.5 * (x2[0] + x2[1] + x2[2]), r = (1.0 / 3) * rg_sym_dot(x, x2);
-    rg_vec both[3], sum[3], moment[3], s0 = {0}, s1 = {0};
-    for (int n = 0; n < 3; n++) {
-        double t = 0.5 - 0.5 * gap[n], u = 0.5 + 0.5 * gap[n], w = 0.25 * weight[n];
-        rg_vec dt = (r * t - q) * (t * t) + 1.0, du = (r * u - q) * (u * u) + 1.0;
-        both[n] = dt * du;
-        sum[n] = w * (dt + du);
-        moment[n] = (w * t) * du + (w * u) * dt;
-    }
-    rg_vec inverse = 1.0 / (both[0] * both[1] * both[2]);
-    for (int n = 0; n < 3; n++) {
-        rg_vec others = both[(n + 1) % 3] * both[(n + 2) % 3];
-        s0 += sum[n] * others;
-        s1 += moment[n] * others;
-    }
-    s0 *= inverse;
-    s1 *= inverse;
-    for (int k = 0; k < 6; k++) {
-        e[k] = s0 * x[k] - s1 * (k < 3 ? x2[k] - (2.0 / 3) * q : x2[k]);
-    }
-}
-
-/* exp(y) - I for symmetric y with trace 0, by Horner's scheme on a + b y + c y^2, y^3 = q y + r. To rounding
- * for |y| up to 0.5. */
-RG_INLINE void rg_deviator_expm1(rg_vec y[6], rg_vec out[6]) {
-    rg_vec y2[6];
-    rg_coaxial_product(y, y, y2);
-    rg_vec q = 0.5 * (y2[0] + y2[1] + y2[2]), r = (1.0 / 3) * rg_sym_dot(y, y2);
-    rg_vec a = rg_splat(1.0), b = {0}, c = {0};
-    for (int n = 13; n >= 2; n--) { /* 1 + y/n (...) */
-        rg_vec before = a;
-        a = c * r * (1.0 / n) + 1.0;
-        rg_vec next = (before + c * q) * (1.0 / n);
-        c = b * (1.0 / n);
-        b = next;
-    }
-    for (int k = 0; k < 6; k++) { /* y (a + b y + c y^2) */
-        out[k] = (a + c * q) * y[k] + b * y2[k] + (k < 3 ? c * r : rg_splat(0.0));
-    }
-}
 
 /* ---- Cracks ---- */
 
@@ -278,82 +180,7 @@ RG_INLINE rg_vec rg_de_flow(const rg_de_constants *c, const rg_de_cracks *k, rg_
     return rg_select(flows, rg_min(rg_exp(z), eb), rg_splat(0.0));
 }
 
-/* Cp^-1 - I after flow that scales e' by 1 - part: F^-1 b (exp(-2 part e') - I) F^-T is added. */
-RG_INLINE void rg_de_flow_history(rg_vec cof[3][3], rg_vec inv_J, rg_vec b[6], rg_vec e[6], rg_vec part,
-                                  rg_vec history[RG_DE_HISTORY], rg_mask flows) {
-    rg_vec y[6], change[6], inverse[3][3];
-    for (int k = 0; k < 6; k++) {
-        y[k] = -2.0 * part * e[k];
-    }
-    rg_deviator_expm1(y, change);
-    rg_coaxial_product(b, change, y);
-    for (int i = 0; i < 3; i++) {
-        for (int j = 0; j < 3; j++) {
-            inverse[i][j] = cof[j][i] * inv_J;
-        }
-    }
-    rg_congruence(inverse, y, change);
-    for (int k = 0; k < 6; k++) {
-        rg_vec *flow = &history[RG_DE_FLOW + k];
-        *flow = rg_select(flows, *flow + change[k], *flow);
-    }
-}
-
 /* ---- The point ---- */
-
-/* Elastic strain of a deformation gradient. */
-typedef struct {
-    rg_vec cof[3][3], J, inv_J; /* cofactors of F, det F and its inverse */
-    rg_vec b[6], e[6];          /* F Cp^-1 F^T, deviator of 1/2 log b */
-    rg_vec ekk, eb;             /* log J, sqrt(2/3 e:e) */
-} rg_de_strain;
-
-RG_INLINE void rg_de_strain_at(rg_vec F[3][3], rg_vec history[RG_DE_HISTORY], rg_de_strain *d) {
-    rg_vec metric[6];
-    for (int k = 0; k < 6; k++) {
-        metric[k] = history[RG_DE_FLOW + k] + (k < 3 ? 1.0 : 0.0);
-    }
-    rg_cofactor(F, d->cof);
-    d->J = rg_dot(F[0], d->cof[0]);
-    d->inv_J = 1.0 / d->J;
-    rg_congruence(F, metric, d->b);
-    rg_hencky_deviator(d->b, d->e);
-    d->ekk = rg_log(d->J);
-    d->eb = rg_sqrt((2.0 / 3) * rg_sym_dot(d->e, d->e));
-}
-
-/* P = tau F^-T with tau = sm I + (2/3)(se/|e|) e', where |e| = sqrt(2/3 e':e') of this e'. */
-RG_INLINE void rg_de_piola(const rg_de_stress *s, rg_de_strain *d, rg_vec P[3][3]) {
-    rg_vec shear = (2.0 / 3) * (s->mises / rg_max(d->eb, rg_splat(1e-150)));
-    rg_vec tau[6];
-    for (int k = 0; k < 6; k++) {
-        tau[k] = (shear * d->e[k] + (k < 3 ? s->mean : rg_splat(0.0))) * d->inv_J;
-    }
-    for (int i = 0; i < 3; i++) {
-        for (int j = 0; j < 3; j++) {
-            P[i][j] = tau[rg_sym[i][0]] * d->cof[0][j] + tau[rg_sym[i][1]] * d->cof[1][j] +
-                      tau[rg_sym[i][2]] * d->cof[2][j];
-        }
-    }
-}
-
-/* Bound on how much the acoustic tensor exceeds its largest value lambda + 2 mu in the intact solid at F = I.
- * Cracks and flow only soften (W - W0 is convex), so d tau/de is at most the elastic one and secant moduli
- * at most G; with n = F^-T N what remains over the elastic value is |n|^2 <= the largest row sum of F^-1
- * F^-T, the pressure, the deviator (spread of s/2 + |s| <= 1.25 se) and the spread x = e_i - e_j of the
- * strains, x coth x - 1 <= x^2/3 <= eb^2, in 4/3 G. Not a number where F is not or J <= 0. */
-RG_INLINE rg_vec rg_de_stiffening(const rg_de_constants *c, const rg_de_stress *s, rg_de_strain *d) {
-    rg_vec row[3] = {{0}, {0}, {0}}, (*cof)[3] = d->cof;
-    for (int i = 0; i < 3; i++) {
-        for (int j = 0; j < 3; j++) {
-            row[i] += rg_abs(cof[0][i] * cof[0][j] + cof[1][i] * cof[1][j] + cof[2][i] * cof[2][j]);
-        }
-    }
-    rg_vec norm = rg_max(row[0], rg_max(row[1], row[2])) * (d->inv_J * d->inv_J);
-    rg_vec extra =
-        rg_max(-s->mean, rg_splat(0.0)) + 1.25 * s->mises + (4.0 / 9) * c->von_mises * (d->eb * d->eb);
-    return norm * (1.0 + extra * (1.0 / c->p_modulus)) + 0.0 * (d->ekk + norm);
-}
 
 /* What a point gives besides its stress. */
 typedef struct {
@@ -366,12 +193,13 @@ typedef struct {
 /* The point at a given history, which stays: first Piola-Kirchhoff stress P (Pa), nothing released. */
 RG_INLINE rg_de_result rg_de_at_rest(const rg_de_constants *c, rg_vec F[3][3], rg_vec history[RG_DE_HISTORY],
                                      rg_vec P[3][3]) {
-    rg_de_strain d;
-    rg_de_strain_at(F, history, &d);
+    rg_hencky d;
+    rg_hencky_at(F, history + RG_DE_FLOW, &d);
     rg_de_cracks k = rg_de_cracks_at(c, history[RG_DE_GROWTH]);
     rg_de_stress s = rg_de_stress_at(c, &k, d.ekk, d.eb);
-    rg_de_piola(&s, &d, P);
-    return (rg_de_result){.stiffening = rg_de_stiffening(c, &s, &d), .energy = rg_de_stored(&s, d.ekk, d.eb)};
+    rg_hencky_piola(s.mean, s.mises, &d, P);
+    return (rg_de_result){.stiffening = rg_hencky_stiffening(c->p_modulus, c->von_mises, s.mean, s.mises, &d),
+                          .energy = rg_de_stored(&s, d.ekk, d.eb)};
 }
 
 /* 1, 2 or 3; 0 where there is no stress. */
@@ -383,12 +211,12 @@ RG_INLINE rg_vec rg_de_regime(const rg_de_cracks *k, const rg_de_stress *s) {
 
 /* Flow of one step with the cracks as they are: history, eb and stress after it; returns the energy released
  * and lowers the one stored by it. */
-RG_INLINE rg_vec rg_de_relax(const rg_de_constants *c, const rg_de_cracks *k, rg_de_strain *d,
+RG_INLINE rg_vec rg_de_relax(const rg_de_constants *c, const rg_de_cracks *k, rg_hencky *d,
                              rg_vec history[RG_DE_HISTORY], rg_vec *eb, rg_de_stress *s, rg_vec *energy) {
     rg_vec dep = rg_de_flow(c, k, d->ekk, *eb, history[RG_DE_STRAIN], s), released = {0};
     rg_mask flows = (s->mises > c->quiet) & (dep > 0.0);
     if (rg_any(flows)) {
-        rg_de_flow_history(d->cof, d->inv_J, d->b, d->e, dep / *eb, history, flows);
+        rg_hencky_flow(d, dep / *eb, history + RG_DE_FLOW, flows);
         history[RG_DE_STRAIN] = rg_select(flows, history[RG_DE_STRAIN] + dep, history[RG_DE_STRAIN]);
         *eb = rg_select(flows, *eb - dep, *eb);
         rg_de_stress after = rg_de_stress_at(c, k, d->ekk, *eb);
@@ -423,8 +251,8 @@ RG_INLINE rg_vec rg_de_weaken(const rg_de_constants *c, rg_vec ekk, rg_vec eb, r
 /* One step of the constants' dt that ends at F: updates the history and gives P (Pa) there. */
 RG_INLINE rg_de_result rg_de_step(const rg_de_constants *c, rg_vec F[3][3], rg_vec history[RG_DE_HISTORY],
                                   rg_vec P[3][3]) {
-    rg_de_strain d;
-    rg_de_strain_at(F, history, &d);
+    rg_hencky d;
+    rg_hencky_at(F, history + RG_DE_FLOW, &d);
     rg_vec eb = d.eb;
     rg_de_cracks k = rg_de_cracks_at(c, history[RG_DE_GROWTH]);
     rg_de_stress s = rg_de_stress_at(c, &k, d.ekk, eb);
@@ -433,8 +261,8 @@ RG_INLINE rg_de_result rg_de_step(const rg_de_constants *c, rg_vec F[3][3], rg_v
         out.plastic = rg_de_relax(c, &k, &d, history, &eb, &s, &out.energy);
     }
     out.damage = rg_de_weaken(c, d.ekk, eb, &history[RG_DE_GROWTH], &s, &out.energy);
-    rg_de_piola(&s, &d, P);
-    out.stiffening = rg_de_stiffening(c, &s, &d);
+    rg_hencky_piola(s.mean, s.mises, &d, P);
+    out.stiffening = rg_hencky_stiffening(c->p_modulus, c->von_mises, s.mean, s.mises, &d);
     return out;
 }
 

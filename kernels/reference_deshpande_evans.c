@@ -6,6 +6,7 @@
 
 #include "layout.h"
 #include "reference.h"
+#include "reference_hencky.h"
 #include "reference_material.h"
 
 static const double pi = 3.14159265358979323846;
@@ -150,145 +151,22 @@ double rg_reference_de_growth(const rg_deshpande_evans *p, double growth, double
     return end;
 }
 
-/* ---- Tensors ---- */
-
-/* Rotation in the plane (a, b) that takes s[a][b] to zero. */
-static void rotate(double s[3][3], double v[3][3], int a, int b) {
-    double angle = 0.5 * atan2(2 * s[a][b], s[b][b] - s[a][a]), c = cos(angle), t = sin(angle);
-    for (int k = 0; k < 3; k++) {
-        double x = s[k][a], y = s[k][b];
-        s[k][a] = c * x - t * y;
-        s[k][b] = t * x + c * y;
-    }
-    for (int k = 0; k < 3; k++) {
-        double x = s[a][k], y = s[b][k];
-        s[a][k] = c * x - t * y;
-        s[b][k] = t * x + c * y;
-        x = v[k][a];
-        y = v[k][b];
-        v[k][a] = c * x - t * y;
-        v[k][b] = t * x + c * y;
-    }
-}
-
-void rg_reference_eigen(double s[3][3], double value[3], double v[3][3]) {
-    double work[3][3];
-    memcpy(work, s, sizeof work);
-    for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++)
-            v[i][j] = i == j;
-    for (int sweep = 0; sweep < 10; sweep++) {
-        rotate(work, v, 0, 1);
-        rotate(work, v, 0, 2);
-        rotate(work, v, 1, 2);
-    }
-    for (int i = 0; i < 3; i++)
-        value[i] = work[i][i];
-}
-
-void rg_reference_function(double s[3][3], double (*f)(double), double out[3][3]) {
-    double value[3], v[3][3];
-    rg_reference_eigen(s, value, v);
-    memset(out, 0, 9 * sizeof(double));
-    for (int k = 0; k < 3; k++)
-        for (int i = 0; i < 3; i++)
-            for (int j = 0; j < 3; j++)
-                out[i][j] += f(value[k]) * v[i][k] * v[j][k];
-}
-
-static void multiply(double a[3][3], double b[3][3], double out[3][3]) {
-    for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++)
-            out[i][j] = a[i][0] * b[0][j] + a[i][1] * b[1][j] + a[i][2] * b[2][j];
-}
-
-static void transpose(double a[3][3], double out[3][3]) {
-    for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++)
-            out[i][j] = a[j][i];
-}
-
-/* G S G^T. */
-static void push(double G[3][3], double S[3][3], double out[3][3]) {
-    double half[3][3], turned[3][3];
-    multiply(G, S, half);
-    transpose(G, turned);
-    multiply(half, turned, out);
-}
-
 /* ---- The point ---- */
-
-static const int row[6] = {0, 1, 2, 1, 0, 0}, column[6] = {0, 1, 2, 2, 2, 1};
-
-static double half_log(double x) {
-    return log(x) / 2;
-}
-
-/* b = F Cp^-1 F^T, the deviator e of 1/2 log b; returns eb. */
-static double strain(double F[3][3], const double flow[6], double b[3][3], double e[3][3]) {
-    double metric[3][3], square = 0;
-    for (int k = 0; k < 6; k++)
-        metric[row[k]][column[k]] = metric[column[k]][row[k]] = flow[k] + (row[k] == column[k]);
-    push(F, metric, b);
-    rg_reference_function(b, half_log, e);
-    double third = (e[0][0] + e[1][1] + e[2][2]) / 3;
-    for (int i = 0; i < 3; i++) {
-        e[i][i] -= third;
-        square += rg_reference_dot(e[i], e[i]);
-    }
-    return sqrt(2.0 / 3 * square);
-}
-
-/* Cp^-1 = F^-1 b exp(-2 part e) F^-T, where the exponential is that of a symmetric matrix coaxial with b. */
-static void flow_history(double inverse[3][3], double b[3][3], double e[3][3], double part, double flow[6]) {
-    double argument[3][3], factor[3][3], relaxed[3][3], metric[3][3];
-    for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++)
-            argument[i][j] = -2 * part * e[i][j];
-    rg_reference_function(argument, exp, factor);
-    multiply(b, factor, relaxed);
-    push(inverse, relaxed, metric);
-    for (int k = 0; k < 6; k++)
-        flow[k] = (metric[row[k]][column[k]] + metric[column[k]][row[k]]) / 2 - (row[k] == column[k]);
-}
-
-/* P = tau F^-T, tau = sm I + (2/3) (se/eb) e'. */
-static void piola(double mean, double mises, double eb, double e[3][3], double inverse[3][3],
-                  double P[3][3]) {
-    for (int i = 0; i < 3; i++) {
-        double tau[3];
-        for (int j = 0; j < 3; j++)
-            tau[j] = (i == j) * mean + (eb > 0 ? 2.0 / 3 * mises / eb * e[i][j] : 0);
-        for (int j = 0; j < 3; j++)
-            P[i][j] = rg_reference_dot(tau, inverse[j]);
-    }
-}
-
-/* The bound of deshpande_evans.h. */
-static double stiffening(const rg_deshpande_evans *p, double mean, double mises, double eb,
-                         double inverse[3][3]) {
-    double norm = 0, modulus = 2 * p->shear * (1 - p->poisson) / (1 - 2 * p->poisson);
-    for (int i = 0; i < 3; i++) {
-        double sum = 0;
-        for (int j = 0; j < 3; j++)
-            sum += fabs(rg_reference_dot(inverse[i], inverse[j]));
-        norm = fmax(norm, sum);
-    }
-    return norm * (1 + (fmax(-mean, 0) + 1.25 * mises + 4.0 / 3 * p->shear * eb * eb) / modulus);
-}
 
 rg_reference_de_result rg_reference_de_step(const rg_deshpande_evans *p, double dt, double F[3][3],
                                             double history[RG_DE_HISTORY], double P[3][3]) {
     rg_reference_de_result out;
     double inverse[3][3], b[3][3], e[3][3], mean, mises, damage = rg_de_damage(p, history[RG_DE_GROWTH]);
-    double ekk = log(rg_reference_invert(F, inverse)), eb = strain(F, history + RG_DE_FLOW, b, e);
+    double ekk = log(rg_reference_invert(F, inverse)),
+           eb = rg_reference_hencky(F, history + RG_DE_FLOW, b, e);
+    double lambda = 2 * p->shear * p->poisson / (1 - 2 * p->poisson);
     out.ekk = ekk;
     out.eb = eb;
     out.regime_before = rg_reference_de_invariants(p, damage, ekk, eb, &mean, &mises);
     double before = rg_reference_de_energy(p, damage, mean, mises);
     double flow = dt > 0 && eb > 0 ? rg_reference_de_flow(p, damage, ekk, eb, history[RG_DE_STRAIN], dt) : 0;
     if (flow > 0)
-        flow_history(inverse, b, e, flow / eb, history + RG_DE_FLOW);
+        rg_reference_hencky_flow(inverse, b, e, flow / eb, history + RG_DE_FLOW);
     history[RG_DE_STRAIN] += flow;
     rg_reference_de_invariants(p, damage, ekk, eb - flow, &mean, &mises);
     double between = rg_reference_de_energy(p, damage, mean, mises);
@@ -299,8 +177,8 @@ rg_reference_de_result rg_reference_de_step(const rg_deshpande_evans *p, double 
     out.energy = rg_reference_de_energy(p, damage, mean, mises);
     out.plastic = before - between;
     out.damage = between - out.energy;
-    piola(mean, mises, eb, e, inverse, P);
-    out.stiffening = stiffening(p, mean, mises, eb, inverse);
+    rg_reference_hencky_piola(mean, mises, eb, e, inverse, P);
+    out.stiffening = rg_reference_hencky_stiffening(lambda, p->shear, mean, mises, eb, inverse);
     return out;
 }
 

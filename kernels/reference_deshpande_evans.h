@@ -37,12 +37,6 @@ double rg_reference_de_flow(const rg_deshpande_evans *p, double damage, double e
 /* X after dt (s) at fixed elastic strain, by the rule of deshpande_evans.h. */
 double rg_reference_de_growth(const rg_deshpande_evans *p, double growth, double ekk, double eb, double dt);
 
-/* Eigenvalues and eigenvectors (columns of v) of a symmetric matrix, by Jacobi's rotations. */
-void rg_reference_eigen(double s[3][3], double value[3], double v[3][3]);
-
-/* out = sum f(value_k) v_k v_k^T. */
-void rg_reference_function(double s[3][3], double (*f)(double), double out[3][3]);
-
 /* What a step did at a point, beside stress and history. */
 typedef struct {
     double stiffening, energy, plastic, damage; /* as in rg_de_result */

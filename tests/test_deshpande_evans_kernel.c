@@ -13,6 +13,7 @@
 
 #include "deshpande_evans_input.h"
 #include "reference_deshpande_evans.h"
+#include "reference_hencky.h"
 
 enum { MAX_SETS = 3 };
 
