@@ -16,12 +16,23 @@ typedef struct {
     bench_state state; /* of a material with a history */
 } kernel_case;
 
-#define CERAMIC RG_MATERIAL_DESHPANDE_EVANS
+#define CERAMIC   RG_MATERIAL_DESHPANDE_EVANS
+#define LINEAR    RG_MATERIAL_LINEAR_ELASTIC
+#define KIRCHHOFF RG_MATERIAL_ST_VENANT_KIRCHHOFF
+#define J2        RG_MATERIAL_J2
 
 static const kernel_case cases[] = {
     {"bulk lifted", RG_COST_BULK, 0, {.lift = true}, BENCH_ROUGH},
     {"bulk lifted, 10 % broken", RG_COST_BULK, 10, {.lift = true}, BENCH_ROUGH},
     {"bulk not lifted", RG_COST_BULK, 0, {.lift = false}, BENCH_ROUGH},
+    {"linear elastic", RG_COST_BULK, 0, {.lift = true, .model = LINEAR}, BENCH_ROUGH},
+    {"St. Venant-Kirchhoff", RG_COST_BULK, 0, {.lift = true, .model = KIRCHHOFF}, BENCH_ROUGH},
+    {"J2 elastic", RG_COST_BULK, 0, {.lift = true, .model = J2, .advance = true}, BENCH_QUIET},
+    {"J2 flowing",
+     RG_COST_BULK,
+     0,
+     {.lift = true, .model = J2, .advance = true, .flowing = 1, .newton = 3},
+     BENCH_FLOWING},
     {"ceramic quiet", RG_COST_BULK, 0, {.lift = true, .model = CERAMIC, .advance = true}, BENCH_QUIET},
     {"ceramic cracking",
      RG_COST_BULK,
@@ -64,7 +75,7 @@ typedef struct {
 
 static rg_bulk_args bulk_args(const job *j) {
     bench_problem *p = j->problem;
-    return (rg_bulk_args){.material = j->what->flags.model == CERAMIC ? p->ceramic : p->material,
+    return (rg_bulk_args){.material = p->material[j->what->flags.model],
                           .lift = j->what->flags.lift,
                           .u = p->u,
                           .geom = p->domain->geom,
@@ -98,7 +109,7 @@ static rg_interface_args interface_args(const job *j) {
 /* Repeated as often as one likes: nothing depends on the motion, and it grows slowly. */
 static rg_kick_args kick_args(const job *j) {
     bench_problem *p = j->problem;
-    return (rg_kick_args){.density = p->material.density,
+    return (rg_kick_args){.density = p->density,
                           .lumped = j->what->flags.lumped,
                           .dt = 1e-9,
                           .geom = p->domain->geom,
@@ -121,7 +132,7 @@ static void run_states(const job *j, size_t begin, size_t end) {
         rg_interface_state_args a = {&interface, p->ienergy + begin * RG_E_INTERFACE * RG_LANES};
         j->set->interface_state(&a, begin, end);
     } else {
-        rg_kinetic_args a = {p->material.density, j->what->flags.lumped, p->domain->geom, p->velocity,
+        rg_kinetic_args a = {p->density, j->what->flags.lumped, p->domain->geom, p->velocity,
                              p->kinetic + begin * RG_LANES};
         j->set->kinetic(&a, begin, end);
     }
@@ -134,6 +145,7 @@ static void run_blocks(const job *j, size_t begin, size_t end) {
     rg_drift_args drift = {1e-9, j->problem->velocity, j->problem->u};
     switch (j->what->kernel) {
     case RG_COST_BULK:
+        bench_problem_virgin(j->problem, j->what->flags.model, begin, end);
         j->set->bulk(&bulk, begin, end);
         break;
     case RG_COST_INTERFACE:
@@ -323,7 +335,7 @@ static void run_case(bench *b, const kernel_case *c, bench_problem *p, bench_siz
 void bench_kernels(bench *b, bench_size size, int threads) {
     bench_problem *p = NULL;
     for (int k = 0; k < CASES; k++) {
-        if (bench_wants(b, cases[k].name)) {
+        if (rg_material_exists(cases[k].flags.model) && bench_wants(b, cases[k].name)) {
             p = p == NULL ? bench_problem_make(size, b->options.quick) : p;
             run_case(b, &cases[k], p, size, threads);
         }

@@ -16,6 +16,9 @@
 #define SPEED    1.0  /* velocity (m/s) */
 #define PULL     0.1  /* nodal and corner forces (N): tractions well below the strength */
 #define STRENGTH 400e6
+#define LAMBDA   77.8e9 /* alumina */
+#define MU       107.4e9
+#define DENSITY  3690.0
 #define OPENING  1.7e-7 /* m */
 
 enum { KEY_U = 1, KEY_VELOCITY, KEY_PULL, KEY_TRACTION, KEY_IPULL, KEY_BREAK, KEY_CRACK };
@@ -55,6 +58,16 @@ static rg_domain *make_domain(bench_size size, bool quick, const rg_interface_ma
     return d;
 }
 
+/* Values of a block. */
+static size_t longest_history(void) {
+    int most = 0;
+    for (rg_material_model k = 0; k < RG_MATERIAL_MODELS; k++) {
+        int here = rg_material_history(k);
+        most = here > most ? here : most;
+    }
+    return RG_LANES * rg_history_rows(most);
+}
+
 static void allocate(bench_problem *p) {
     size_t blocks = p->domain->blocks, faces = p->domain->iblocks + 1;
     p->pull = RG_NEW(rg_real, blocks * RG_NODE_BLOCK);
@@ -70,7 +83,7 @@ static void allocate(bench_problem *p) {
     p->cracked = RG_NEW(uint8_t, blocks);
     p->ipull = RG_NEW(rg_real, faces * RG_IFORCE_BLOCK);
     p->iforce = RG_NEW(rg_real, faces * RG_IFORCE_BLOCK);
-    p->history = RG_NEW(rg_real, blocks * RG_LANES * rg_history_rows(RG_DE_HISTORY));
+    p->history = RG_NEW(rg_real, blocks * longest_history());
     p->crack = RG_NEW(rg_real, faces * RG_CRACK_BLOCK);
     p->ienergy = RG_NEW(double, faces *RG_E_INTERFACE *RG_LANES);
     p->broken = RG_NEW(uint8_t, faces * RG_LANES);
@@ -126,15 +139,27 @@ static void fill_inputs(bench_problem *p) {
     }
 }
 
+static rg_material make_material(rg_material_model model) {
+    rg_material m = {.model = model, .lambda = LAMBDA, .mu = MU, .density = DENSITY};
+    if (model == RG_MATERIAL_DESHPANDE_EVANS) {
+        m.of.deshpande_evans.parameters = rg_deshpande_evans_alumina();
+    } else {
+        m.of.parameter[RG_PARAMETER_YIELD_STRESS] = 1e9;
+        m.of.parameter[RG_PARAMETER_HARDENING] = 2e9;
+        m.of.parameter[RG_PARAMETER_SATURATION_STRESS] = 2e9;
+        m.of.parameter[RG_PARAMETER_SATURATION_RATE] = 100;
+    }
+    rg_material_prepare(&m, STEP);
+    return m;
+}
+
 bench_problem *bench_problem_make(bench_size size, bool quick) {
-    const double lambda = 77.8e9, mu = 107.4e9; /* alumina */
-    const rg_interface_material m = {lambda, mu, 4, RG_PENALTY_ELASTIC};
+    const rg_interface_material m = {LAMBDA, MU, 4, RG_PENALTY_ELASTIC};
     bench_problem *p = RG_NEW(bench_problem, 1);
-    p->material = (rg_material){.lambda = lambda, .mu = mu, .density = 3690};
-    p->ceramic = (rg_material){.lambda = lambda, .mu = mu, .density = 3690};
-    p->ceramic.model = RG_MATERIAL_DESHPANDE_EVANS;
-    p->ceramic.of.deshpande_evans.parameters = rg_deshpande_evans_alumina();
-    rg_material_prepare(&p->ceramic, STEP);
+    p->density = DENSITY;
+    for (rg_material_model k = 0; k < RG_MATERIAL_MODELS; k++) {
+        p->material[k] = make_material(k);
+    }
     p->law = (rg_cohesive){.strength = STRENGTH, .opening = OPENING, .beta = 1};
     p->domain = make_domain(size, quick, &m);
     allocate(p);
@@ -189,7 +214,7 @@ static void spoil(void *x, size_t size, size_t begin, size_t end, size_t per_blo
 }
 
 void bench_problem_reset(bench_problem *p, int percent, bench_state state) {
-    size_t history = RG_LANES * rg_history_rows(RG_DE_HISTORY);
+    size_t history = longest_history();
 #pragma omp parallel
     {
         size_t begin, end;
@@ -238,6 +263,13 @@ rg_cost_variant bench_mesh_state(const rg_domain *d, const uint8_t *active, cons
     v.fill = by_interface ? (double)d->interfaces / (double)(d->iblocks * RG_LANES)
                           : (double)d->elements / (double)(d->blocks * RG_LANES);
     return v;
+}
+
+void bench_problem_virgin(bench_problem *p, rg_material_model model, size_t begin, size_t end) {
+    if (model == RG_MATERIAL_J2) {
+        size_t block = RG_LANES * rg_history_rows(RG_J2_HISTORY);
+        memset(p->history + begin * block, 0, (end - begin) * block * sizeof *p->history);
+    }
 }
 
 void bench_problem_free(bench_problem *p) {

@@ -1,6 +1,7 @@
 #include "cost_model.h"
 
 #include "cost_ceramic.h"
+#include "cost_j2.h"
 #include "kernels.h"
 
 /* ---- Operations, per lane ---- */
@@ -49,7 +50,17 @@ enum {
     CORNER_TRACTION = RG_FACES * RG_FCORNERS * 3 * (FMA + 1),
     /* energy density: H:H, j - log J, three terms; times V/4 into the sum */
     ENERGY = 3 * (DOT + 1) + (FMA + 1) + (1 + 1 + 1 + 2 * FMA) + FMA,
-    CAUCHY = 6 * (DOT + 1), /* (P F^T)/J */
+    CAUCHY = 6 * (DOT + 1),     /* (P F^T)/J */
+    JACOBIAN = 3 + CROSS + DOT, /* F, J */
+    VALID = FMA,                /* guard of a stiffening that does not know J */
+    /* linear: trace, pressure, three entries on the diagonal and three off it */
+    LINEAR_STRESS = 2 + 1 + 3 * FMA + 3 * 2,
+    LINEAR_ENERGY = 2 + 3 * FMA + 3 * (1 + FMA) + 2 + 2 * FMA,
+    /* St. Venant-Kirchhoff: six strains, their trace; pressure, S, S + H S; bound; energy */
+    GREEN_STRAIN = 6 * (1 + DOT + 2) + 2,
+    GREEN_STRESS = 1 + 6 + 3 + 9 * (1 + DOT),
+    GREEN_STIFFENING = 3 * 2 + 1 + FMA + 1 + FMA,
+    GREEN_ENERGY = 3 * (DOT + 1) + 2 + FMA,
 };
 
 /* All up to the gradients at the four points. */
@@ -61,13 +72,38 @@ static double gradient_flops(const rg_cost_variant *v) {
     return sum;
 }
 
-/* The material at a point of the bulk kernel. A ceramic is held against its own guard and, where it advances,
- * adds up what it sets free. */
+/* The material at a point of the bulk kernel, with the guard on its stiffening. One with a history adds up
+ * what it sets free where it advances. */
 static double point_flops(const rg_cost_variant *v) {
-    if (v->model == RG_MATERIAL_DESHPANDE_EVANS) {
-        return rg_ceramic_flops(v) + FMA + (v->advance ? RG_RELEASED * FMA : 0);
+    double released = v->advance ? RG_RELEASED * FMA : 0;
+    switch (v->model) {
+    case RG_MATERIAL_LINEAR_ELASTIC:
+        return JACOBIAN + LINEAR_STRESS + VALID + FMA;
+    case RG_MATERIAL_ST_VENANT_KIRCHHOFF:
+        return JACOBIAN + GREEN_STRAIN + GREEN_STRESS + GREEN_STIFFENING + VALID + FMA;
+    case RG_MATERIAL_DESHPANDE_EVANS:
+        return rg_ceramic_flops(v) + FMA + released;
+    case RG_MATERIAL_J2:
+        return rg_j2_flops(v) + FMA + released;
+    default:
+        return VOLUME_CHANGE + STRESS + STIFFENING;
     }
-    return VOLUME_CHANGE + STRESS + STIFFENING;
+}
+
+/* The material at a point of the state kernel, with what it adds to the energy. */
+static double state_flops(const rg_cost_variant *v) {
+    switch (v->model) {
+    case RG_MATERIAL_LINEAR_ELASTIC:
+        return LINEAR_ENERGY + FMA + (v->cauchy ? JACOBIAN + LINEAR_STRESS + CAUCHY : 0);
+    case RG_MATERIAL_ST_VENANT_KIRCHHOFF:
+        return GREEN_STRAIN + GREEN_ENERGY + FMA + (v->cauchy ? JACOBIAN + GREEN_STRESS + CAUCHY : 0);
+    case RG_MATERIAL_DESHPANDE_EVANS:
+        return rg_ceramic_state_flops(v) + FMA + (v->cauchy ? 3 + CAUCHY : 0);
+    case RG_MATERIAL_J2:
+        return rg_j2_state_flops(v) + FMA + (v->cauchy ? 3 + CAUCHY : 0);
+    default:
+        return VOLUME_CHANGE + ENERGY + (v->cauchy ? STRESS + CAUCHY : 0);
+    }
 }
 
 static double bulk_flops(const rg_cost_variant *v) {
@@ -75,10 +111,7 @@ static double bulk_flops(const rg_cost_variant *v) {
 }
 
 static double bulk_state_flops(const rg_cost_variant *v) {
-    double point = v->model == RG_MATERIAL_DESHPANDE_EVANS
-                       ? rg_ceramic_state_flops(v) + FMA + (v->cauchy ? 3 + CAUCHY : 0)
-                       : VOLUME_CHANGE + ENERGY + (v->cauchy ? STRESS + CAUCHY : 0);
-    return gradient_flops(v) + RG_GAUSS * point;
+    return gradient_flops(v) + RG_GAUSS * state_flops(v);
 }
 
 enum {

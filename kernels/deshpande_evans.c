@@ -3,8 +3,6 @@
 
 #include <math.h>
 
-#include "materials.h"
-
 static const double pi = 3.14159265358979323846;
 
 rg_deshpande_evans rg_deshpande_evans_alumina(void) {
@@ -82,9 +80,4 @@ rg_de_constants rg_de_prepare(const rg_deshpande_evans *p, double dt) {
     c.silent = exp((log(RG_DE_NO_GROWTH * c.offset / dt) - c.log_rate) / c.exponent) / c.intensity;
     c.quiet = quiet_stress(&c);
     return c;
-}
-
-void rg_prepare_deshpande_evans(rg_material *m, double dt) {
-    rg_de_material *de = &m->of.deshpande_evans;
-    de->constants = rg_de_prepare(&de->parameters, dt);
 }

@@ -40,4 +40,16 @@ RG_INLINE void rg_plus_identity(rg_vec H[3][3], rg_vec F[3][3]) {
     }
 }
 
+/* J = det F. */
+RG_INLINE rg_vec rg_determinant(rg_vec F[3][3]) {
+    rg_vec row[3];
+    rg_cross(F[1], F[2], row);
+    return rg_dot(F[0], row);
+}
+
+/* `bound` where J is a number > 0, else not a number: a stiffening for which J must be asked. */
+RG_INLINE rg_vec rg_where_valid(rg_vec J, rg_vec bound) {
+    return rg_select(J > 0.0, bound, rg_splat(__builtin_nan(""))) + 0.0 * J;
+}
+
 #endif

@@ -1,5 +1,11 @@
 #include "materials.h"
 
+const char *rg_material_word(rg_material_model model) {
+#define WORD(name, NAME, word, history, inside) [RG_MATERIAL_##NAME] = (word),
+    static const char *const words[] = {RG_MATERIALS(WORD)};
+    return words[model];
+}
+
 int rg_material_history(rg_material_model model) {
 #define HISTORY(name, NAME, word, history, inside) [RG_MATERIAL_##NAME] = (history),
     static const int values[] = {RG_MATERIALS(HISTORY)};
@@ -18,14 +24,9 @@ int rg_material_exists(rg_material_model model) {
     return here[model];
 }
 
+/* Only the ceramic knows rates. */
 void rg_material_prepare(rg_material *m, double dt) {
-#define PREPARE(name, NAME, word, history, inside) [RG_MATERIAL_##NAME] = rg_prepare_##name,
-    static void (*const prepare[])(rg_material *, double) = {RG_MATERIALS(PREPARE)};
-    prepare[m->model](m, dt);
-}
-
-/* A hyperelastic solid knows no step. */
-void rg_prepare_neo_hookean(rg_material *m, double dt) {
-    (void)m;
-    (void)dt;
+    if (m->model == RG_MATERIAL_DESHPANDE_EVANS) {
+        m->of.deshpande_evans.constants = rg_de_prepare(&m->of.deshpande_evans.parameters, dt);
+    }
 }

@@ -1,26 +1,39 @@
 /* The registry of materials: everything that is told apart by the model of the bulk derives from this list.
  *
  * A material is a source bulk_NAME.c, which gives the pointwise functions of material_point.h their vector
- * form and includes bulk.h, the kernel around them; a scalar reference of the same (reference_material.h);
- * its parameters and what it prepares for a step; and its line here. */
+ * form and includes bulk.h, the kernel around them; a source reference_NAME.c, the same as a scalar
+ * (reference_material.h); its line here, and one for each parameter of its own. Case keys, dispatch, fields,
+ * checkpoints and tests follow from these. */
 #ifndef RG_MATERIALS_H
 #define RG_MATERIALS_H
 
 #include "deshpande_evans_model.h"
 
-/* What a material has inside, as bits. */
+/* What a material has inside, and how its elastic constants are given, as bits. */
 enum {
     RG_HAS_DAMAGE = 1,  /* a share of the solid that is cracked, 0 to 1 */
     RG_HAS_REGIME = 2,  /* regimes of its cracks, 1, 2, 3 */
     RG_HAS_PLASTIC = 4, /* equivalent plastic strain */
+    RG_TAKES_YOUNG = 8, /* by Young's modulus and Poisson's ratio */
 };
 
-/* name in C, name of the enum, name in a case file, values of history per point, what it has inside */
-#define RG_MATERIALS_ANY(X) X(neo_hookean, NEO_HOOKEAN, "neo-hookean", 0, 0)
+/* History of a point of j2.h. Zero is the virgin material. */
+enum {
+    RG_J2_STRAIN = 0, /* ep, accumulated equivalent plastic strain */
+    RG_J2_FLOW = 1,   /* Fp^-1 Fp^-T - I, six components xx yy zz yz xz xy */
+    RG_J2_HISTORY = 7,
+};
+
+/* name in C, name of the enum, name in a case file, values of history per point, bits of the above */
+#define RG_MATERIALS_ANY(X)                                                                                  \
+    X(neo_hookean, NEO_HOOKEAN, "neo-hookean", 0, RG_TAKES_YOUNG)                                            \
+    X(linear_elastic, LINEAR_ELASTIC, "linear-elastic", 0, RG_TAKES_YOUNG)                                   \
+    X(st_venant_kirchhoff, ST_VENANT_KIRCHHOFF, "st-venant-kirchhoff", 0, RG_TAKES_YOUNG)
 /* ... and those that exist in double precision only */
 #define RG_MATERIALS_DOUBLE(X)                                                                               \
     X(deshpande_evans, DESHPANDE_EVANS, "deshpande-evans", RG_DE_HISTORY,                                    \
-      RG_HAS_DAMAGE | RG_HAS_REGIME | RG_HAS_PLASTIC)
+      RG_HAS_DAMAGE | RG_HAS_REGIME | RG_HAS_PLASTIC)                                                        \
+    X(j2, J2, "j2", RG_J2_HISTORY, RG_TAKES_YOUNG | RG_HAS_PLASTIC)
 
 #define RG_MATERIALS(X) RG_MATERIALS_ANY(X) RG_MATERIALS_DOUBLE(X)
 #ifdef RG_SINGLE
@@ -35,6 +48,19 @@ typedef enum { RG_MATERIALS(RG_MATERIAL_ENUM) RG_MATERIAL_MODELS } rg_material_m
 #define RG_MATERIAL_BIT(name, NAME, word, history, inside) RG_MATERIAL_BIT_##NAME = 1 << RG_MATERIAL_##NAME,
 enum { RG_MATERIALS(RG_MATERIAL_BIT) };
 
+/* Parameters besides density, elastic constants and those of the ceramic alone: name of the enum, key of a
+ * case file, unit, whether it is needed (then > 0, else >= 0, and 0 where it is not given), models that use
+ * it. */
+#define RG_MATERIAL_PARAMETERS(X)                                                                            \
+    X(YIELD_STRESS, "material.yield_stress", "Pa", true,                                                     \
+      RG_MATERIAL_BIT_J2 | RG_MATERIAL_BIT_DESHPANDE_EVANS)                                                  \
+    X(HARDENING, "material.hardening", "Pa", false, RG_MATERIAL_BIT_J2)                                      \
+    X(SATURATION_STRESS, "material.saturation_stress", "Pa", false, RG_MATERIAL_BIT_J2)                      \
+    X(SATURATION_RATE, "material.saturation_rate", NULL, false, RG_MATERIAL_BIT_J2)
+
+#define RG_PARAMETER_ENUM(NAME, key, unit, needed, models) RG_PARAMETER_##NAME,
+enum { RG_MATERIAL_PARAMETERS(RG_PARAMETER_ENUM) RG_PARAMETERS };
+
 /* A material as a kernel takes it. */
 typedef struct {
     double lambda, mu; /* Lame constants of the undeformed, undamaged solid (Pa) */
@@ -42,8 +68,12 @@ typedef struct {
     rg_material_model model;
     union {
         rg_de_material deshpande_evans;
+        double parameter[RG_PARAMETERS]; /* of all others */
     } of;
 } rg_material;
+
+/* The model's name in a case file. */
+const char *rg_material_word(rg_material_model model);
 
 /* Values of history per point, and what is inside, of a model. */
 int rg_material_history(rg_material_model model);
@@ -54,9 +84,5 @@ int rg_material_exists(rg_material_model model);
 
 /* Readies a material, parameters set, for steps of `dt` (s), which is > 0. */
 void rg_material_prepare(rg_material *m, double dt);
-
-#define RG_MATERIAL_PREPARE(name, NAME, word, history, inside)                                               \
-    void rg_prepare_##name(rg_material *m, double dt);
-RG_MATERIALS(RG_MATERIAL_PREPARE)
 
 #endif

@@ -89,7 +89,8 @@ typedef struct {
     struct {
         rg_material_model model;
         double young, poisson, density;
-        rg_deshpande_evans deshpande_evans; /* but for poisson, density and single_pi */
+        double parameter[RG_PARAMETERS];    /* materials.h */
+        rg_deshpande_evans deshpande_evans; /* but for poisson, density, yield_stress and single_pi */
         rg_interaction interaction;         /* c3 of the ceramic: as printed, or as one derives it */
     } material;
     struct {

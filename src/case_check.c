@@ -227,6 +227,11 @@ static void learn_material(rg_check *ck, const rg_key *key, const rg_node *node,
         if (good) {
             rg_model_rule(ck, node);
         }
+    } else if (at == offsetof(rg_case, material.parameter[RG_PARAMETER_SATURATION_STRESS])) {
+        ck->saturation = good ? node : NULL;
+        ck->saturates = good;
+    } else if (at == offsetof(rg_case, material.parameter[RG_PARAMETER_SATURATION_RATE]) && good) {
+        rg_saturation_rule(ck, node);
     } else if (at == offsetof(rg_case, material.deshpande_evans.flaw_density)) {
         ck->flaws = ck->flaws && good;
         ck->density = node;

@@ -11,11 +11,13 @@ typedef struct {
     rg_problems *problems;
     rg_case *c;
     rg_usage usage[RG_GROUPS];
-    bool box;               /* mesh.origin and mesh.size are good */
-    bool form;              /* interface.form is good */
-    bool model;             /* material.model is good */
-    bool flaws;             /* what the initial damage follows from is good */
-    const rg_node *density; /* material.flaw_density; NULL: not there */
+    bool box;                  /* mesh.origin and mesh.size are good */
+    bool form;                 /* interface.form is good */
+    bool model;                /* material.model is good */
+    bool flaws;                /* what the initial damage follows from is good */
+    const rg_node *density;    /* material.flaw_density; NULL: not there */
+    bool saturates;            /* material.saturation_stress is good */
+    const rg_node *saturation; /* material.saturation_stress; NULL: not there */
 } rg_check;
 
 /* Fills ck->c, a zeroed case, from the tree and reports every problem. */
@@ -33,10 +35,12 @@ void rg_value_wrong(rg_check *ck, const rg_key *key, const rg_node *node, const 
  * read. */
 void rg_mesh_file_rule(rg_check *ck, const rg_node *node);
 
-/* Rules of the material (case_material.c): a model that this build does not have; an initial damage that
- * leaves nothing to grow, reported at ck->density; output fields that the model has not, or, without `node`,
- * those that it puts out by default. */
+/* Rules of the material (case_material.c): a model that this build does not have; hardening that saturates,
+ * which needs a stress, not below the yield stress, and a rate (at `node`); an initial damage that leaves
+ * nothing to grow, reported at ck->density; output fields that the model has not, or, without `node`, those
+ * that it puts out by default. */
 void rg_model_rule(rg_check *ck, const rg_node *node);
+void rg_saturation_rule(rg_check *ck, const rg_node *node);
 void rg_flaw_rule(rg_check *ck);
 void rg_fields_rule(rg_check *ck, const rg_key *key, const rg_node *node);
 /* Reports output times after the end of the run. */

@@ -24,10 +24,13 @@
 #define DEFAULT(value) .need = RG_NEED_DEFAULT, .fallback = (value)
 #define BOX            .group = RG_GROUP_BOX
 #define GROUP(name)    .group = RG_GROUP_##name
-#define ELASTIC        .models = RG_MATERIAL_BIT_NEO_HOOKEAN
+#define ELASTIC        .models = 0 RG_MATERIALS(TAKES_YOUNG)
 #define CERAMIC        .models = RG_MATERIAL_BIT_DESHPANDE_EVANS
 #define FLAWS(member)  CERAMIC, CASE(material.deshpande_evans.member)
 #define MAY_CHANGE     .may_change = true /* on a restart */
+
+#define TAKES_YOUNG(name, NAME, word, history, inside)                                                       \
+    | ((inside)&RG_TAKES_YOUNG ? RG_MATERIAL_BIT_##NAME : 0)
 
 /* In the order of the enums they set. */
 #define MODEL_WORD(name, NAME, word, history, inside) word,
@@ -85,7 +88,11 @@ static const rg_key case_keys[] = {
      CASE(material.interaction)},
     {.name = "material.damage_max", REAL, FROM_TO(0, 1), .low_open = true, .high_open = true, DEFAULT(0.999),
      FLAWS(damage_max)},
-    {.name = "material.yield_stress", .unit = "Pa", REAL, ABOVE(0), REQUIRED, FLAWS(yield_stress)},
+#define PARAMETER(NAME, key, unit_, needed, models_)                                                          \
+    {.name = (key), .unit = (unit_), REAL, .low = 0, .low_open = (needed), .high = INFINITY,                  \
+     .need = (needed) ? RG_NEED_REQUIRED : RG_NEED_OPTIONAL, .models = (models_),                             \
+     CASE(material.parameter[RG_PARAMETER_##NAME])},
+    RG_MATERIAL_PARAMETERS(PARAMETER)
     {.name = "material.yield_strain", REAL, ABOVE(0), DEFAULT(0.002), FLAWS(yield_strain)},
     {.name = "material.hardening_exponent", REAL, FROM_TO(0, 1), DEFAULT(0.1), FLAWS(hardening_exponent)},
     {.name = "material.plastic_rate", .unit = "1/s", REAL, ABOVE(0), DEFAULT(0.002), FLAWS(plastic_rate)},

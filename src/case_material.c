@@ -10,6 +10,27 @@ void rg_model_rule(rg_check *ck, const rg_node *node) {
     }
 }
 
+/* 0 counts as not given. */
+void rg_saturation_rule(rg_check *ck, const rg_node *node) {
+    static const char *const key[2] = {"material.saturation_stress", "material.saturation_rate"};
+    const double *given = ck->c->material.parameter, yield = given[RG_PARAMETER_YIELD_STRESS];
+    double stress = given[RG_PARAMETER_SATURATION_STRESS], rate = given[RG_PARAMETER_SATURATION_RATE];
+    if (!ck->saturates) {
+        return;
+    }
+    if (stress > 0 && stress < yield) {
+        rg_subject subject = {.key = key[0], .value = ck->saturation->text};
+        rg_problem_add(ck->problems, ck->saturation->at, &subject, "below material.yield_stress, %g Pa",
+                       yield);
+    }
+    if ((stress > 0) != (rate > 0)) {
+        int alone = rate > 0;
+        rg_subject subject = {.key = key[alone]};
+        rg_problem_add(ck->problems, (alone ? node : ck->saturation)->key_at, &subject, "not used without %s",
+                       key[1 - alone]);
+    }
+}
+
 void rg_flaw_rule(rg_check *ck) {
     const rg_deshpande_evans *p = &ck->c->material.deshpande_evans;
     double damage = ck->density == NULL ? 0 : rg_de_initial_damage(p);

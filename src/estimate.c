@@ -86,7 +86,13 @@ void rg_estimate_print(const rg_solver *s, const rg_estimate *e, FILE *out) {
         fprintf(out, "partition      ");
         rg_quality_print(&s->part->quality, e->interfaces, out);
     }
+    fprintf(out, "material       %s%s\n", rg_material_word(s->material.model),
+            s->material.model == RG_MATERIAL_LINEAR_ELASTIC ? ": for small strains and rotations alone" : "");
     fprintf(out, "wave speeds    dilatational %.1f m/s, shear %.1f m/s\n", e->c_dilatational, e->c_shear);
+    double limit, speed;
+    if (rg_material_plastic_wave(&s->material, &limit, &speed)) {
+        fprintf(out, "plastic waves  %.1f m/s, beyond %.4g Pa in uniaxial strain\n", speed, limit);
+    }
     fprintf(out,
             "time step      %.4g s = %.3g of the critical %.4g s, set by element %" PRId64
             " with its faces %s\n",

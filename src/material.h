@@ -12,6 +12,11 @@ rg_material rg_material_of_case(const rg_case *c);
 double rg_material_dilatational(const rg_material *m);
 double rg_material_shear(const rg_material *m);
 
+/* Uniaxial strain of a solid that yields: the stress along it at the elastic limit, sY (lambda + 2 mu)/(2 mu)
+ * (Pa), and the speed of the plastic waves that follow, sqrt((K + 4/3 G H/(3G + H))/rho) (m/s), H the slope
+ * of the yield curve at its start. False, and nothing set, of a model without such a limit. */
+bool rg_material_plastic_wave(const rg_material *m, double *limit, double *speed);
+
 /* Fields (case.h) that a run of the model puts out where the case asks for none in particular, and all that
  * it can put out. */
 unsigned rg_material_default_fields(rg_material_model model);

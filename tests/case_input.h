@@ -108,5 +108,6 @@ static inline void expect_messages(int overrides, const char *const override[], 
 static const char elastic[] = "material:\n  model: neo-hookean\n  young: 260e9\n";
 static const char ceramic[] = "material:\n  model: deshpande-evans\n  shear: 146e9\n  flaw_radius: 19e-6\n"
                               "  flaw_density: 1e12\n  toughness: 3e6\n  yield_stress: 4e9\n";
+static const char metal[] = "material:\n  model: j2\n  young: 70e9\n  yield_stress: 2e8\n";
 
 #endif

@@ -4,6 +4,8 @@
 #include "../src/case_key.h"
 #include "../src/material.h"
 
+#include <math.h>
+
 #ifndef RG_SOURCE_ROOT
 #define RG_SOURCE_ROOT "." /* run from the root of the tree */
 #endif
@@ -329,6 +331,39 @@ static void test_ceramic(void **state) {
     check_round_trip(path, 1, derived);
 }
 
+/* A metal has what is given, and 0 of what is not; its waves by hand. */
+static void test_metal(void **state) {
+    (void)state;
+    write_changed(elastic, metal);
+    static const char *const voce[] = {"material.hardening=1e9", "material.saturation_stress=3e8",
+                                       "material.saturation_rate=40"};
+    for (int given = 0; given <= 3; given += 3) {
+        rg_case *c = read_good(path, given, voce);
+        rg_material m = rg_material_of_case(c);
+        double limit, speed, G = 70e9 / 2 / 1.21, K = 70e9 / 3 / (1 - 2 * 0.21),
+                             H = given == 0 ? 0 : 1e9 + 40e8;
+        const double expected[RG_PARAMETERS] = {[RG_PARAMETER_YIELD_STRESS] = 2e8,
+                                                [RG_PARAMETER_HARDENING] = given == 0 ? 0 : 1e9,
+                                                [RG_PARAMETER_SATURATION_STRESS] = given == 0 ? 0 : 3e8,
+                                                [RG_PARAMETER_SATURATION_RATE] = given == 0 ? 0 : 40};
+        assert_memory_equal(m.of.parameter, expected, sizeof expected);
+        assert_true((c->output.fields & (RG_FIELD_PLASTIC | RG_FIELD_TRIAXIALITY)) ==
+                    (RG_FIELD_PLASTIC | RG_FIELD_TRIAXIALITY));
+        assert_true((c->output.fields & (RG_FIELD_DAMAGE | RG_FIELD_REGIME)) == 0);
+        assert_true(rg_material_plastic_wave(&m, &limit, &speed));
+        assert_true(fabs(limit - 2e8 * (K + 4 * G / 3) / (2 * G)) < 1e-12 * limit);
+        assert_true(fabs(speed - sqrt((K + 4 * G / 3 * H / (3 * G + H)) / 3690)) < 1e-12 * speed);
+        rg_case_free(c);
+        check_round_trip(path, given, voce);
+    }
+    write_changed(NULL, base);
+    rg_case *c = read_good(path, 0, NULL);
+    rg_material m = rg_material_of_case(c);
+    double none = 0;
+    assert_false(rg_material_plastic_wave(&m, &none, &none));
+    rg_case_free(c);
+}
+
 #endif
 
 int main(void) {
@@ -344,6 +379,7 @@ int main(void) {
         cmocka_unit_test(test_echo_text),
         cmocka_unit_test(test_spall_shows_every_key),
 #ifndef RG_SINGLE
+        cmocka_unit_test(test_metal),
         cmocka_unit_test(test_ceramic),
 #endif
     };

@@ -13,7 +13,7 @@
 #define FIELDS                                                                                               \
     "allowed: list from displacement, velocity, stress, mean_stress, principal_stress, crack, "              \
     "damage, regime, plastic_strain, triaxiality, rank, fragment"
-#define MODELS  "neo-hookean, deshpande-evans"
+#define MODELS  "neo-hookean, linear-elastic, st-venant-kirchhoff, deshpande-evans, j2"
 #define CERAMIC ": not used, because material.model is neo-hookean; it belongs to deshpande-evans\n"
 #define NAMES   "allowed: letters, digits, _ and -; unique among bodies and probes\n"
 #define UNUSED  ": not used, because interface.law is none\n"
@@ -292,6 +292,10 @@ static void test_ceramic(void **state) {
         0, NULL,
         ":5:10: material.model: deshpande-evans: needs double precision, and this program is built "
         "with -Dprecision=single\n");
+    write_changed(elastic, metal);
+    expect_messages(0, NULL,
+                    ":5:10: material.model: j2: needs double precision, and this program is built with "
+                    "-Dprecision=single\n");
 }
 
 #else
@@ -325,13 +329,46 @@ static void test_ceramic(void **state) {
         ":19:20: material.transition_rate: 0: out of range; allowed: number > 0 (1/s)\n"
         ":20:18: material.rate_exponent: 0.5: out of range; allowed: number >= 1\n"
         ":21:3: material.young: 260e9: not used, because material.model is deshpande-evans; it "
-        "belongs to neo-hookean\n");
+        "belongs to neo-hookean, linear-elastic, st-venant-kirchhoff, j2\n");
     write_changed(elastic, ceramic);
     static const char *const many[] = {"material.flaw_density=1e15"};
     expect_messages(
         1, many,
         "--set material.flaw_density=1e15: material.flaw_density: 1e15: the damage to begin with, "
         "4/3 pi (alpha flaw_radius)^3 flaw_density, is 10.16: not below damage_max, 0.999\n");
+}
+
+static void test_metal(void **state) {
+    (void)state;
+    write_changed("material:\n  model: neo-hookean\n",
+                  "material:\n  model: j2\n  hardening: -1\n  saturation_stress: x\n  saturation_rate: -2\n");
+    expect_messages(0, NULL,
+                    ":5:3: material.yield_stress: missing; " YOUNG
+                    ":6:14: material.hardening: -1: out of range; allowed: number >= 0 (Pa)\n"
+                    ":7:22: material.saturation_stress: x: not a number; allowed: number >= 0 (Pa)\n"
+                    ":8:20: material.saturation_rate: -2: out of range; allowed: number >= 0\n");
+    write_changed(elastic, metal);
+    static const char *const alone[] = {"material.saturation_rate=7"}, *const other[] = {
+                                                                           "material.saturation_stress=4e8"};
+    expect_messages(1, alone,
+                    "--set material.saturation_rate=7: material.saturation_rate: not used without "
+                    "material.saturation_stress\n");
+    expect_messages(1, other,
+                    "--set material.saturation_stress=4e8: material.saturation_stress: not used without "
+                    "material.saturation_rate\n");
+    static const char *const zero[] = {"material.saturation_rate=0", "material.saturation_stress=4e8"};
+    expect_messages(2, zero,
+                    "--set material.saturation_stress=4e8: material.saturation_stress: not used without "
+                    "material.saturation_rate\n");
+    static const char *const low[] = {"material.saturation_stress=1e8", "material.saturation_rate=7"};
+    expect_messages(2, low,
+                    "--set material.saturation_stress=1e8: material.saturation_stress: 1e8: below "
+                    "material.yield_stress, 2e+08 Pa\n");
+    static const char *const flaws[] = {"material.friction=1"};
+    expect_messages(
+        1, flaws,
+        "--set material.friction=1: material.friction: 1: not used, because material.model is j2; it "
+        "belongs to deshpande-evans\n");
 }
 
 #endif
@@ -376,6 +413,9 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_mistakes),     cmocka_unit_test(test_nul_byte),
         cmocka_unit_test(test_deep_nesting), cmocka_unit_test(test_override_mistakes),
+#ifndef RG_SINGLE
+        cmocka_unit_test(test_metal),
+#endif
         cmocka_unit_test(test_ceramic),      cmocka_unit_test(test_all_at_once),
         cmocka_unit_test(test_unreadable),
     };

@@ -129,6 +129,7 @@ def test_check_says_what_a_run_would_do(tmp_path):
     assert process.returncode == 0 and process.stderr == ""
     said = {line[:14].strip(): line[14:].strip() for line in process.stdout.splitlines()}
     assert said["elements"] == "12960 (388800 degrees of freedom), 24408 interfaces"
+    assert said["material"] == "neo-hookean" and "plastic waves" not in said
     assert said["wave speeds"] == "dilatational 8906.0 m/s, shear 5395.9 m/s"
     assert re.match(r"[\d.e-]+ s = [\d.]+ of the critical [\d.e-]+ s, set by element \d+", said["time step"])
     assert re.match(r"\d+ to 4.4e-07 s", said["steps"])

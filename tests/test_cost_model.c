@@ -96,6 +96,10 @@ static void touch_real(call *c, double *data, size_t blocks, size_t per_block) {
     touch(c, data, blocks * per_block * sizeof *data, REAL);
 }
 
+static size_t history_block(const call *c) {
+    return rg_history_rows(rg_material_history(c->variant.model)) * RG_LANES;
+}
+
 static void list_arrays(call *c) {
     input *in = c->in;
     touch_real(c, in->u, INPUT_EBLOCKS, RG_NODE_BLOCK);
@@ -116,21 +120,27 @@ static void list_arrays(call *c) {
     for (size_t k = 0; k < 3; k++)
         touch_real(c, c->out[k], INPUT_IBLOCKS, RG_TRACTION_BLOCK);
     if (c->history != NULL)
-        touch_real(c, c->history, INPUT_EBLOCKS, rg_history_rows(RG_DE_HISTORY) * RG_LANES);
+        touch_real(c, c->history, INPUT_EBLOCKS, history_block(c));
 }
 
-/* A virgin ceramic with the same strain everywhere, in which nothing happens, or cracks grow, or the solid
- * flows. */
-static void make_ceramic(call *c) {
+/* A virgin ceramic or metal with the same strain everywhere, in which nothing happens, or cracks grow, or the
+ * solid flows. */
+static void make_history(call *c) {
     const rg_cost_variant *v = &c->variant;
     const double tension[3] = {4e-4, 4e-4, 4e-4}, compression[3] = {-0.05, -0.05, -0.08},
                  none[3] = {0, 0, 1e-6};
     const double *gradient = v->growing > 0 ? tension : v->flowing > 0 ? compression : none;
     input *in = c->in;
-    in->material.model = RG_MATERIAL_DESHPANDE_EVANS;
-    in->material.of.deshpande_evans.parameters = rg_deshpande_evans_alumina();
+    if (v->model == RG_MATERIAL_DESHPANDE_EVANS) {
+        in->material.of.deshpande_evans.parameters = rg_deshpande_evans_alumina();
+    } else {
+        in->material.of.parameter[RG_PARAMETER_YIELD_STRESS] = 1e9;
+        in->material.of.parameter[RG_PARAMETER_HARDENING] = 2e9;
+        in->material.of.parameter[RG_PARAMETER_SATURATION_STRESS] = v->newton > 0 ? 2e9 : 0;
+        in->material.of.parameter[RG_PARAMETER_SATURATION_RATE] = v->newton > 0 ? 100 : 0;
+    }
     rg_material_prepare(&in->material, 1e-9);
-    c->history = input_alloc(INPUT_EBLOCKS * rg_history_rows(RG_DE_HISTORY) * RG_LANES * sizeof(double));
+    c->history = input_alloc(INPUT_EBLOCKS * history_block(c) * sizeof(double));
     for (size_t e = 0; e < INPUT_ELEMENTS; e++)
         for (int k = 0; k < 3 * RG_NODES; k++)
             in->u[rg_node_index(in->element[e], k / 3, k % 3)] = gradient[k % 3] * in->x[e][k / 3][k % 3];
@@ -198,13 +208,16 @@ static call *make_call(const char *name, rg_cost_kernel kernel, rg_cost_variant 
     c->variant.interfaces = (double)INPUT_IBLOCKS / INPUT_EBLOCKS;
     for (int k = 0; k < 3; k++)
         c->out[k] = input_alloc(INPUT_IBLOCKS * RG_TRACTION_BLOCK * sizeof(double));
-    if (variant.model == RG_MATERIAL_DESHPANDE_EVANS)
-        make_ceramic(c);
+    c->in->material.model = variant.model;
+    if (rg_material_history(variant.model) > 0)
+        make_history(c);
     bind_elements(c);
     bind_interfaces(c);
     c->interface.law.strength *= 10;
     list_arrays(c);
     run_all(c);
+    if (variant.model == RG_MATERIAL_J2) /* it would not flow again at the strain to which it has flowed */
+        memset(c->history, 0, INPUT_EBLOCKS * history_block(c) * sizeof(double));
     return c;
 }
 
@@ -216,7 +229,10 @@ static void free_call(call *c) {
     free(c);
 }
 
-#define CERAMIC RG_MATERIAL_DESHPANDE_EVANS
+#define CERAMIC   RG_MATERIAL_DESHPANDE_EVANS
+#define LINEAR    RG_MATERIAL_LINEAR_ELASTIC
+#define KIRCHHOFF RG_MATERIAL_ST_VENANT_KIRCHHOFF
+#define J2        RG_MATERIAL_J2
 
 /* Every kernel with every flag. */
 static const struct {
@@ -227,12 +243,25 @@ static const struct {
     {"bulk", RG_COST_BULK, {.lift = false}},
     {"bulk lifted", RG_COST_BULK, {.lift = true}},
     {"bulk lifted, broken", RG_COST_BULK, {.lift = true, .unlinked = 4}},
+    {"linear", RG_COST_BULK, {.model = LINEAR}},
+    {"linear state, energy", RG_COST_BULK_STATE, {.model = LINEAR}},
+    {"linear state, stress", RG_COST_BULK_STATE, {.model = LINEAR, .cauchy = true}},
+    {"St. Venant-Kirchhoff", RG_COST_BULK, {.model = KIRCHHOFF}},
+    {"St. Venant-Kirchhoff lifted", RG_COST_BULK, {.lift = true, .model = KIRCHHOFF}},
+    {"St. Venant-Kirchhoff state, energy", RG_COST_BULK_STATE, {.model = KIRCHHOFF}},
+    {"St. Venant-Kirchhoff state, stress", RG_COST_BULK_STATE, {.model = KIRCHHOFF, .cauchy = true}},
     {"ceramic at rest", RG_COST_BULK, {.lift = true, .model = CERAMIC}},
     {"ceramic quiet", RG_COST_BULK, {.model = CERAMIC, .advance = true}},
     {"ceramic cracking", RG_COST_BULK, {.model = CERAMIC, .advance = true, .growing = 1, .panels = 1}},
     {"ceramic flowing", RG_COST_BULK, {.model = CERAMIC, .advance = true, .flowing = 1, .newton = 3}},
     {"ceramic state, energy", RG_COST_BULK_STATE, {.lift = true, .model = CERAMIC}},
     {"ceramic state, stress", RG_COST_BULK_STATE, {.model = CERAMIC, .cauchy = true}},
+    {"J2 at rest", RG_COST_BULK, {.lift = true, .model = J2}},
+    {"J2 elastic", RG_COST_BULK, {.model = J2, .advance = true}},
+    {"J2 flowing", RG_COST_BULK, {.model = J2, .advance = true, .flowing = 1}},
+    {"J2 saturating", RG_COST_BULK, {.model = J2, .advance = true, .flowing = 1, .newton = 3}},
+    {"J2 state, energy", RG_COST_BULK_STATE, {.lift = true, .model = J2}},
+    {"J2 state, stress", RG_COST_BULK_STATE, {.model = J2, .cauchy = true}},
     {"bulk state, energy", RG_COST_BULK_STATE, {.lift = true}},
     {"bulk state, stress", RG_COST_BULK_STATE, {.cauchy = true}},
     {"interface", RG_COST_INTERFACE, {.damaged = 0}},

@@ -251,8 +251,11 @@ static void count(const input *in, const output *ref, tally *t) {
         }
 }
 
+static rg_material_model model = RG_MATERIAL_NEO_HOOKEAN; /* of the inputs made next */
+
 static input *make_broken(input_kind kind, rg_cohesive law, uint64_t order, double probability) {
     input *in = input_make(kind, law, 7, order);
+    in->material.model = model;
     input_break(in, probability);
     return in;
 }
@@ -521,6 +524,30 @@ static void test_unbreakable(void **state) {
     input_for_each_case(check_unbreakable);
 }
 
+/* The other elastic solids: against the reference, in any place, whatever is asked for, and where there is no
+ * valid deformation. */
+static void test_other_solids(void **state) {
+    const rg_kernels *sets[INPUT_SETS];
+    int n = input_sets(sets, INPUT_SETS), solids = 0;
+    (void)state;
+    for (model = RG_MATERIAL_NEO_HOOKEAN + 1; model < RG_MATERIAL_MODELS; model++)
+        for (int kind = 0; kind < 2 && rg_material_history(model) == 0; kind++) {
+            tally t = {0};
+            input *in = make_broken((input_kind)kind, input_laws[0], 11, 0.3);
+            compare_sets(in, &t);
+            input_free(in);
+            for (int k = 0; k < n; k++) {
+                check_lane(sets[k], (input_kind)kind, input_laws[0]);
+                check_state(sets[k], (input_kind)kind, input_laws[0]);
+                check_nan(sets[k], (input_kind)kind, input_laws[0]);
+                check_inverted(sets[k], (input_kind)kind, input_laws[0]);
+            }
+            solids++;
+        }
+    model = RG_MATERIAL_NEO_HOOKEAN;
+    assert_true(solids >= 4);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_against_reference),
@@ -532,6 +559,7 @@ int main(void) {
         cmocka_unit_test(test_nan),
         cmocka_unit_test(test_inverted),
         cmocka_unit_test(test_unbreakable),
+        cmocka_unit_test(test_other_solids),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,166 @@
+"""The linear elastic, St. Venant-Kirchhoff and J2 solids in a run: waves, ledger, and the same bits on any layout."""
+
+import numpy as np
+import pytest
+from conftest import BENCH, CASES, SINGLE, launch, overrides
+from test_parallel import assert_same_bits
+
+PLASTIC = CASES / "plastic.yaml"
+YOUNG, POISSON, DENSITY, YIELD, HARDENING = 70e9, 0.3, 2700, 200e6, 5e9  # of that case
+G, K = YOUNG / 2 / (1 + POISSON), YOUNG / 3 / (1 - 2 * POISSON)
+ELASTIC_SPEED = np.sqrt((K + 4 / 3 * G) / DENSITY)
+PLASTIC_SPEED = np.sqrt((K + 4 / 3 * G * HARDENING / (3 * G + HARDENING)) / DENSITY)
+LIMIT = YIELD * (K + 4 / 3 * G) / (2 * G)
+
+double_only = pytest.mark.skipif(SINGLE, reason="J2 plasticity needs double precision")
+TORN = BENCH / "torn-bar.yaml"
+SOLIDS = {
+    "linear": {"material.model": "linear-elastic"},
+    "kirchhoff": {"material.model": "st-venant-kirchhoff"},
+    "metal": {"material.model": "j2", "material.yield_stress": 300e6, "material.hardening": 20e9,
+              "material.saturation_stress": 350e6, "material.saturation_rate": 500},
+}
+EACH = [pytest.param(name, marks=[double_only] if name == "metal" else []) for name in SOLIDS]
+SHORT = {"mesh.cells": [2, 2, 20], "mesh.jitter": 0.1, "time.end": 0.35e-6, "initial.velocity.z": "-40*cos(pi*z/4e-3)",
+         "output.interval": 0.05e-6, "output.fields": [],
+         "output.probes": [{"name": "a", "at": [0.11e-3, 0.13e-3, 1.9e-3]}]}
+
+
+@pytest.mark.parametrize("ranks, threads", [(1, 2), (2, 1), (3, 1)])
+@pytest.mark.parametrize("solid", EACH)
+def test_a_torn_bar_is_the_same_on_any_layout(run, solid, ranks, threads):
+    sets = {**SHORT, **SOLIDS[solid]}
+    one, other = run(TORN, sets=sets), run(TORN, ranks=ranks, threads=threads, sets=sets)
+    assert one.summary["broken_area_m2"] > 0
+    assert solid != "metal" or one.summary["plastic_J"] > 0
+    assert_same_bits(one, other)
+
+
+@pytest.mark.parametrize("form", [{"interface.form": "incomplete", "interface.beta_s": 40},
+                                  {"interface.form": "intrinsic", "interface.law": "exponential"}],
+                         ids=["incomplete", "intrinsic"])
+@pytest.mark.parametrize("solid", EACH)
+def test_every_form_takes_every_solid(run, solid, form):
+    sets = {**SHORT, "mesh.cells": [1, 1, 10], "time.end": 0.2e-6, **SOLIDS[solid],
+            **form}
+    summary = run(TORN, sets=sets).summary
+    assert summary["status"] == "completed" and abs(summary["energy_error_rel"]) < 5e-3
+    assert solid != "metal" or summary["plastic_J"] > 0
+
+
+# ---- Elastic solids ----
+
+QUIET = {"interface": {"law": "none"}, "mesh.cells": [2, 2, 20], "time.end": 0.3e-6, "output.interval": 0.3e-6,
+         "output.fields": ["stress"], "output.energy_limit": 1e9}
+
+
+@pytest.mark.parametrize("model", ["linear-elastic", "st-venant-kirchhoff"])
+def test_small_strains_are_those_of_the_neo_hookean_solid(run, model):
+    def difference(speed):
+        sets = {**QUIET, "initial.velocity.z": f"-{speed}*cos(pi*z/4e-3)"}
+        one = run(TORN, sets=sets).frames()[-1]["stress"]
+        other = run(TORN, sets={**sets, "material.model": model}).frames()[-1]["stress"]
+        return np.abs(one - other).max() / np.abs(one).max()
+
+    large, small = difference(40), difference(4)
+    assert 1e-5 < small < 2e-3
+    assert large / small == pytest.approx(10, rel=0.1)  # of first order in the strain
+
+
+def test_a_spinning_body_grows_if_it_is_linear(run):
+    """A cube that spins freely keeps its size, but for what the centrifugal force stretches it. The linear solid feels
+    nothing of u = t w x r, however large: its points fly along tangents, and it grows by sqrt(1 + (w t)^2)."""
+    rate, end = 0.8e6, 1e-6  # rad/s, s
+    sets = {"mesh": {"cells": [1, 1, 1], "size": [0.2e-3, 0.2e-3, 0.2e-3], "origin": [-0.1e-3, -0.1e-3, -0.1e-3]},
+            "interface": {"law": "none"}, "initial.velocity": {"x": f"-{rate}*y", "y": f"{rate}*x"}, "time.end": end,
+            "output.interval": end, "output.fields": ["displacement"], "output.energy_limit": 1e9}
+
+    def growth(model):
+        one = run(TORN, sets={**sets, "material.model": model})
+        before = one.points()
+        after = before + one.frames()[-1]["displacement"]
+        corner = np.abs(before).min(axis=1) > 0.09e-3
+        return np.hypot(*after[corner, :2].T) / np.hypot(*before[corner, :2].T)
+
+    assert np.allclose(growth("neo-hookean"), 1, atol=1e-3)
+    assert np.allclose(growth("st-venant-kirchhoff"), 1, atol=1e-3)
+    assert np.allclose(growth("linear-elastic"), np.sqrt(1 + (rate * end) ** 2), rtol=1e-3)
+
+
+def test_check_tells_the_material(tmp_path):
+    said = launch("check", TORN, *overrides(SOLIDS["linear"]), cwd=tmp_path).stdout
+    assert "material       linear-elastic: for small strains and rotations alone\n" in said
+    said = launch("check", TORN, *overrides(SOLIDS["kirchhoff"]), cwd=tmp_path).stdout
+    assert "material       st-venant-kirchhoff\n" in said and "plastic" not in said
+
+
+@double_only
+def test_check_tells_the_plastic_waves(tmp_path):
+    said = launch("check", PLASTIC, cwd=tmp_path).stdout
+    assert f"plastic waves  {PLASTIC_SPEED:.1f} m/s, beyond {LIMIT:.4g} Pa in uniaxial strain\n" in said
+
+
+# ---- Plastic waves ----
+
+
+def simple_wave():
+    """Particle speed, stress and wave speed over the material, each from rest on, along a simple wave of uniaxial strain:
+    with the logarithmic strain e = log(lambda), tau the Kirchhoff stress, P = tau/lambda, c = sqrt(dP/dlambda/rho) and
+    dv = -c dlambda."""
+    strain = -np.linspace(0, 0.02, 20001)
+    elastic = K + 4 / 3 * G
+    tau = np.maximum(elastic * strain, -LIMIT + DENSITY * PLASTIC_SPEED**2 * (strain + LIMIT / elastic))
+    stretch = np.exp(strain)
+    speed = np.sqrt(np.diff(tau / stretch) / np.diff(stretch) / DENSITY)
+    return np.cumsum(-speed * np.diff(stretch)), (-tau / stretch)[1:], speed
+
+
+@double_only
+def test_plastic_wave_follows_an_elastic_precursor(run):
+    """Uniaxial strain, an end pushed at 60 m/s: a precursor of the elastic limit, then a wave at the plastic speed."""
+    history = run(PLASTIC).history
+    time, stress, speed = history["time"], -history["p4_szz"], history["p4_vz"]
+    v, sigma, c = simple_wave()
+    first, last = LIMIT / (DENSITY * ELASTIC_SPEED), 60
+    rising = speed[:np.argmax(speed > 0.98 * last)]
+    for level in (first / 2, 30, 40, 50):  # m/s: passes the probe 4 mm away so long after the end moved at that speed
+        travelled = np.interp(level, rising, time[:len(rising)]) - 0.1e-6 * np.arctanh(level / last)
+        assert travelled == pytest.approx(4e-3 / np.interp(level, v, c), rel=2e-3)
+    between, after = (time > 0.76e-6) & (time < 0.83e-6), time > 1.4e-6
+    assert np.mean(speed[between]) == pytest.approx(first, rel=5e-3)
+    assert np.mean(stress[between]) == pytest.approx(np.interp(first, v, sigma), rel=5e-3)
+    assert np.mean(speed[after]) == pytest.approx(last, rel=5e-4)
+    assert np.mean(stress[after]) == pytest.approx(np.interp(last, v, sigma), rel=1e-3)
+
+
+@double_only
+def test_ledger_of_a_plastic_wave(run):
+    one = run(PLASTIC)
+    energy = one.energy
+    assert energy["plastic"][-1] > 0.05 * energy["kinetic"].max() and (energy["damage"] == 0).all()
+    assert (np.diff(energy["plastic"]) >= 0).all()
+    assert np.abs(energy["error_rel"]).max() < 1e-5
+    parts = ("kinetic", "bulk", "penalty", "cohesive", "contact", "dissipated", "plastic", "damage")
+    assert np.allclose(sum(energy[name] for name in parts) - energy["external_work"], energy["total"], rtol=1e-12)
+
+
+@double_only
+def test_fields_show_the_plastic_strain(run):
+    last = run(PLASTIC).frames()[-1]
+    assert "damage" not in last and "regime" not in last
+    strain, stress = last["plastic_strain"].ravel(), last["stress"]  # xx xy xz yy yz zz
+    mean = (stress[:, 0] + stress[:, 3] + stress[:, 5]) / 3
+    mises = np.sqrt(1.5 * ((stress[:, [0, 3, 5]] - mean[:, None]) ** 2).sum(axis=1)
+                    + 3 * (stress[:, [1, 2, 4]] ** 2).sum(axis=1))
+    assert np.allclose(last["triaxiality"].ravel() * mises, mean, rtol=0, atol=1e-9 * np.abs(stress).max())
+    flowed = strain > 1e-3
+    assert flowed.sum() > 100 and (strain >= 0).all() and (strain[-20:] == 0).any()
+    assert np.allclose(mises[flowed], YIELD + HARDENING * strain[flowed], rtol=0.02)  # Cauchy, not Kirchhoff stress
+
+
+@double_only
+def test_output_does_not_flow(run):
+    sets = {"time.end": 2e-7, "output.fields": []}
+    often, seldom = run(PLASTIC, sets={**sets, "output.interval": 1}), run(PLASTIC, sets={**sets, "output.interval": 2e-7})
+    assert often.summary["plastic_J"] > 0
+    assert often.summary["state_hash"] == seldom.summary["state_hash"]
