@@ -14,8 +14,27 @@
 
 typedef struct rg_halo rg_halo;
 
-/* Exchanges the rows of `values` reals each in rows[own rows and shared][values]. `tag` tells exchanges
- * apart. Keeps references to both arguments. Collective; free with rg_halo_free. */
+/* A row that goes to another rank. */
+typedef struct {
+    int32_t rank;
+    size_t row;
+} rg_halo_row;
+
+/* What is exchanged: rows sent, by rank, and the ranks from which rows come, ascending. Whoever is sent
+ * something sends something, and both have the rows between them in the same order. */
+typedef struct {
+    const rg_halo_row *send;
+    size_t sends;
+    const int32_t *from;
+    size_t receives;
+    size_t own; /* rows of this rank; those that arrive lie behind them */
+} rg_halo_plan;
+
+/* Exchanges rows of `values` reals each in rows[own and receives][values]. `tag` tells exchanges apart. Keeps
+ * a reference to `rows`, none to the plan. Collective; free with rg_halo_free. */
+rg_halo *rg_halo_plan_make(const rg_halo_plan *plan, int values, rg_real *rows, int tag, MPI_Comm comm);
+
+/* The same of the seams that a domain shares: rows[own rows and shared][values]. */
 rg_halo *rg_halo_make(const rg_domain *d, int values, rg_real *rows, int tag, MPI_Comm comm);
 
 void rg_halo_pack(rg_halo *h);
