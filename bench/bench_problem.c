@@ -53,7 +53,7 @@ static rg_domain *make_domain(bench_size size, bool quick, const rg_interface_ma
     rg_mesh *mesh = rg_mesh_box(cells, origin, extent, 0.1, 1);
     rg_part *part = rg_part_distribute(mesh, (int)mesh->elements, MPI_COMM_SELF); /* one tile */
     rg_mesh_free(mesh);
-    rg_domain *d = rg_domain_build(part, 0, m);
+    rg_domain *d = rg_domain_build(part, NULL, 0, m);
     rg_part_free(part);
     return d;
 }

@@ -169,10 +169,11 @@ static inline size_t rg_history_index(size_t e, int n, size_t row) {
  * neighbour (element's face -> trace on its other side): 8 * element + local face of an element of the tile;
  * 8 * seam + RG_GHOST for a ghost trace; the own face where there is none.
  * interface (element's face -> interface): 4 * interface + side (0 minus, 1 plus), + RG_SEAM if it is one of
- * the tile's seams; RG_NO_INTERFACE on the surface.
+ * the tile's seams; negative where there is none: RG_NO_INTERFACE on the surface, RG_JOINED where both sides
+ * share their nodes.
  * side (inside: minus and plus; seam: own): 4 * element + local face.
  * other (seam: the other side): 2 * row + (1 if the own element is on the plus side). */
-enum { RG_GHOST = RG_FACES, RG_SEAM = 2, RG_NO_INTERFACE = -1 };
+enum { RG_GHOST = RG_FACES, RG_SEAM = 2, RG_NO_INTERFACE = -1, RG_JOINED = -2 };
 
 static inline int32_t rg_link(size_t number, int code, int base) {
     return (int32_t)number * base + code;

@@ -43,7 +43,7 @@ static double neighbour_value(const rg_bulk_args *args, int32_t link, int a, int
 static void load_jumps(const rg_bulk_args *args, size_t e, element *el) {
     for (int f = 0; f < RG_FACES; f++) {
         int32_t other = args->neighbour[rg_link_index(e, f)], here = args->interface[rg_link_index(e, f)];
-        unsigned out = here == RG_NO_INTERFACE ? 0 : args->unlinked[here / 4];
+        unsigned out = here < 0 ? 0 : args->unlinked[here / 4];
         for (int q = 0; q < RG_POINTS; q++) {
             double l[3], n[RG_FNODES];
             rg_reference_face_point(q, l);

@@ -83,7 +83,7 @@ static void total_force(const rg_kick_args *args, size_t e, double f[RG_NODES][3
             f[a][c] = args->seams ? 0 : args->force[rg_node_index(e, a, c)];
     for (int face = 0; face < RG_FACES; face++) {
         int32_t link = args->interface[rg_link_index(e, face)];
-        if (link == RG_NO_INTERFACE || (link % 4 >= RG_SEAM) != args->seams)
+        if (link < 0 || (link % 4 >= RG_SEAM) != args->seams)
             continue;
         double sign = link % 2 == 1 ? -1 : 1;
         for (int a = 0; a < RG_FNODES; a++)

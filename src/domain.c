@@ -74,18 +74,29 @@ static void make_tiles(rg_domain *d, const rg_part *part) {
     }
 }
 
-static void fill_tile(rg_domain *d, const rg_part *part, const rg_element *element, size_t t) {
+static void mark_joined(rg_domain *d, size_t slot, uint8_t joined) {
+    for (int f = 0; f < RG_FACES; f++) {
+        if ((joined >> f & 1) != 0) {
+            d->interface[rg_link_index(slot, f)] = RG_JOINED;
+        }
+    }
+}
+
+static void fill_tile(rg_domain *d, const rg_part *part, const rg_element *element, const uint8_t *joined,
+                      size_t t) {
     size_t first = d->tile[t].begin * RG_LANES, count = (size_t)rg_tile_size(part, part->tile_id[t]);
     for (size_t i = 0; i < d->tile_blocks * RG_LANES; i++) {
         if (i < count) {
             set_element(d, first + i, &element[i]);
+            mark_joined(d, first + i, joined == NULL ? 0 : joined[element + i - part->element]);
         } else {
             set_padding(d, first + i);
         }
     }
 }
 
-rg_domain *rg_domain_build(const rg_part *part, int rank, const rg_interface_material *m) {
+rg_domain *rg_domain_build(const rg_part *part, const uint8_t *joined, int rank,
+                           const rg_interface_material *m) {
     rg_domain *d = RG_NEW(rg_domain, 1);
     d->elements = (size_t)part->elements;
     make_tiles(d, part);
@@ -97,9 +108,9 @@ rg_domain *rg_domain_build(const rg_part *part, int rank, const rg_interface_mat
     }
 #pragma omp parallel for schedule(static)
     for (size_t t = 0; t < d->tiles; t++) {
-        fill_tile(d, part, element[t], t);
+        fill_tile(d, part, element[t], joined, t);
     }
-    rg_interfaces_build(d, element, rank, m);
+    rg_interfaces_build(d, element, joined, rank, m);
     rg_free(element);
     return d;
 }

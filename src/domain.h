@@ -58,8 +58,11 @@ typedef struct {
     rg_penalty penalty;
 } rg_interface_material;
 
-/* Builds the domain of rank `rank` from its part. The caller owns the result. */
-rg_domain *rg_domain_build(const rg_part *part, int rank, const rg_interface_material *m);
+/* Builds the domain of rank `rank` from its part. Bit f of joined[i] is set where the elements on both sides
+ * of face f of element i share their nodes (joint.h), so that it carries no interface; NULL: nowhere. The
+ * caller owns the result. */
+rg_domain *rg_domain_build(const rg_part *part, const uint8_t *joined, int rank,
+                           const rg_interface_material *m);
 
 /* Tile that holds an element slot. */
 static inline const rg_tile *rg_tile_of(const rg_domain *d, size_t slot) {

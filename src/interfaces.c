@@ -10,6 +10,7 @@
 typedef struct {
     rg_domain *domain;
     const rg_element *const *element; /* by tile */
+    const uint8_t *joined;            /* bits of faces without an interface; NULL: none */
     int rank;
     const rg_interface_material *material;
     size_t *inside, *seams; /* [tiles]: interfaces */
@@ -23,6 +24,11 @@ static size_t tile_elements(const builder *b, size_t t) {
 static bool in_tile(const builder *b, size_t t, rg_gid e) {
     rg_gid first = b->domain->tile[t].first;
     return e >= first && e < first + (rg_gid)tile_elements(b, t);
+}
+
+/* Whether face f of element e is inside the mesh, and whether it carries an interface. */
+static bool has_interface(const builder *b, const rg_element *e, int f) {
+    return e->neighbour[f] >= 0 && (b->joined == NULL || (b->joined[e - b->element[0]] >> f & 1) == 0);
 }
 
 /* Whether the area vector of face f points away from the element: then that is the minus side. */
@@ -69,9 +75,9 @@ static void count(builder *b, size_t t) {
     for (size_t i = 0; i < tile_elements(b, t); i++) {
         const rg_element *e = &b->element[t][i];
         for (int f = 0; f < RG_FACES; f++) {
-            bool inside = e->neighbour[f] >= 0 && in_tile(b, t, e->neighbour[f]);
+            bool here = has_interface(b, e, f), inside = here && in_tile(b, t, e->neighbour[f]);
             b->inside[t] += inside && e->neighbour[f] < e->id;
-            b->seams[t] += e->neighbour[f] >= 0 && !inside;
+            b->seams[t] += here && !inside;
         }
     }
 }
@@ -170,7 +176,7 @@ static void fill_tile(const builder *b, size_t t, seam *list) {
         const rg_element *e = &b->element[t][i];
         for (int f = 0; f < RG_FACES; f++) {
             rg_gid other = e->neighbour[f];
-            if (other < 0) {
+            if (!has_interface(b, e, f)) {
                 continue;
             }
             if (!in_tile(b, t, other)) {
@@ -305,9 +311,9 @@ static void join_shared(const builder *b) {
     }
 }
 
-void rg_interfaces_build(rg_domain *d, const rg_element *const element[], int rank,
+void rg_interfaces_build(rg_domain *d, const rg_element *const element[], const uint8_t *joined, int rank,
                          const rg_interface_material *m) {
-    builder b = {d, element, rank, m, RG_NEW(size_t, d->tiles), RG_NEW(size_t, d->tiles)};
+    builder b = {d, element, joined, rank, m, RG_NEW(size_t, d->tiles), RG_NEW(size_t, d->tiles)};
 #pragma omp parallel for schedule(static)
     for (size_t t = 0; t < d->tiles; t++) {
         count(&b, t);

@@ -6,8 +6,8 @@
 #include "domain.h"
 
 /* Fills all that concerns interfaces in a domain whose elements are in place; element[t] are the elements of
- * tile t. */
-void rg_interfaces_build(rg_domain *d, const rg_element *const element[], int rank,
+ * tile t, joined[i] bits of the faces of element[0][i] without one (rg_domain_build). */
+void rg_interfaces_build(rg_domain *d, const rg_element *const element[], const uint8_t *joined, int rank,
                          const rg_interface_material *m);
 
 #endif

@@ -112,7 +112,7 @@ rg_solver *rg_solver_make_from_part(const rg_case *input, rg_part *part, MPI_Com
     select_kernels(s);
     rg_interface_material m = {s->material.lambda, s->material.mu, input->interface.beta_s,
                                input->interface.penalty};
-    s->domain = rg_domain_build(s->part, s->rank, &m);
+    s->domain = rg_domain_build(s->part, NULL, s->rank, &m);
     rg_free(s->part->element);
     s->part->element = NULL;
     s->constraints = rg_constraints_make(input, s->domain, s->part);

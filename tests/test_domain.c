@@ -36,7 +36,7 @@ typedef struct {
 static setup setup_make(int tile, const rg_interface_material *material) {
     setup s = {.mesh = rg_mesh_box(cells, origin, size, 0.13, 3), .material = material};
     s.part = rg_part_distribute(s.mesh, tile, MPI_COMM_SELF);
-    s.domain = rg_domain_build(s.part, 0, material);
+    s.domain = rg_domain_build(s.part, NULL, 0, material);
     return s;
 }
 
