@@ -13,7 +13,7 @@
 typedef struct rg_expr rg_expr;
 
 typedef enum { RG_INTERACTION_THESIS, RG_INTERACTION_DERIVED } rg_interaction;
-typedef enum { RG_FORM_VARIATIONAL, RG_FORM_INCOMPLETE, RG_FORM_INTRINSIC } rg_form;
+typedef enum { RG_FORM_VARIATIONAL, RG_FORM_INCOMPLETE, RG_FORM_INTRINSIC, RG_FORM_CONTINUOUS } rg_form;
 typedef enum { RG_PENALTY_ELASTIC, RG_PENALTY_ISOTROPIC } rg_penalty;
 typedef enum { RG_ACTIVATION_CONTINUOUS, RG_ACTIVATION_TOTAL } rg_activation;
 typedef enum { RG_CONTACT_PENALTY, RG_CONTACT_FLUX } rg_contact;
@@ -95,6 +95,7 @@ typedef struct {
     } material;
     struct {
         rg_form form;
+        rg_expr *faces; /* form continuous: those that carry an interface, as in rg_face_set; NULL: none */
         double beta_s;
         rg_penalty penalty;
         rg_law law;

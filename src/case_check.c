@@ -167,10 +167,7 @@ static const char *why_unused(const scan *s, const rg_key *key, char *text, size
         return "not used without interface.weibull.modulus";
     }
     if (key->models == 0) {
-        const rg_case *c = s->ck->c;
-        bool none = c->interface.law == RG_LAW_NONE;
-        bool form = key->group == RG_GROUP_DG || (key->group == RG_GROUP_SWITCH && !none);
-        snprintf(text, size, "not used, because interface.%s", form ? "form is intrinsic" : rg_law_is(c));
+        snprintf(text, size, "not used, because interface.%s", rg_why_unused(key->group, s->ck->c));
         return text;
     }
     char words[160];
@@ -243,19 +240,29 @@ static void learn_material(rg_check *ck, const rg_key *key, const rg_node *node,
     }
 }
 
+/* Whether a group is used, where what decides on it is `good`. */
+static rg_usage usage_if(bool good, rg_key_group group, const rg_case *c) {
+    return !good ? RG_UNSURE : rg_group_used(group, c) ? RG_USED : RG_UNUSED;
+}
+
 /* What the value of a key of the case says about others. */
 static void learn(rg_check *ck, const rg_key *key, const rg_node *node, bool good) {
     learn_material(ck, key, node, good);
     if (key->offset == offsetof(rg_case, interface.form)) {
-        bool intrinsic = ck->c->interface.form == RG_FORM_INTRINSIC;
         ck->form = good;
-        ck->usage[RG_GROUP_DG] = !good ? RG_UNSURE : intrinsic ? RG_UNUSED : RG_USED;
+        ck->usage[RG_GROUP_FACES] = usage_if(good, RG_GROUP_FACES, ck->c);
+    } else if (key->offset == offsetof(rg_case, interface.faces)) {
+        ck->form = ck->form && good;
+        ck->usage[RG_GROUP_INTERFACE] = usage_if(ck->form, RG_GROUP_INTERFACE, ck->c);
+        ck->usage[RG_GROUP_DG] = usage_if(ck->form, RG_GROUP_DG, ck->c);
     } else if (key->offset == offsetof(rg_case, interface.law)) {
         rg_law_rule(ck, node, good);
     } else if (key->offset == offsetof(rg_case, interface.contact) && node != NULL && good) {
         rg_contact_rule(ck, node);
     } else if (key->offset == offsetof(rg_case, interface.friction) && node != NULL && good) {
         rg_friction_rule(ck, node);
+    } else if (key->offset == offsetof(rg_case, mass) && good && ck->form) {
+        rg_mass_rule(ck, node);
     } else if (key->offset == offsetof(rg_case, interface.weibull.modulus)) {
         ck->usage[RG_GROUP_WEIBULL] = node == NULL ? RG_UNUSED : good ? RG_USED : RG_UNSURE;
     } else if (key->offset == offsetof(rg_case, mesh.file) && node != NULL) {

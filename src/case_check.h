@@ -12,7 +12,7 @@ typedef struct {
     rg_case *c;
     rg_usage usage[RG_GROUPS];
     bool box;                  /* mesh.origin and mesh.size are good */
-    bool form;                 /* interface.form is good */
+    bool form;                 /* interface.form and .faces are good */
     bool model;                /* material.model is good */
     bool flaws;                /* what the initial damage follows from is good */
     const rg_node *density;    /* material.flaw_density; NULL: not there */
@@ -49,14 +49,18 @@ void rg_times_rule(rg_check *ck, const rg_node *node);
 /* Which keys of the interface are used, from form and law, which must fit each other. */
 void rg_law_rule(rg_check *ck, const rg_node *node, bool good);
 
+/* Form continuous has no other mass than the lumped one, which is its default. */
+void rg_mass_rule(rg_check *ck, const rg_node *node);
+
 /* Contact `flux` brings DG terms back: form intrinsic has none. */
 void rg_contact_rule(rg_check *ck, const rg_node *node);
 
 /* Friction acts on faces that contact `penalty` keeps closed. */
 void rg_friction_rule(rg_check *ck, const rg_node *node);
 
-/* "law is linear" */
-const char *rg_law_is(const rg_case *c);
+/* Why a key of `group`, which the interface has no use for, is not used: "form is intrinsic", "law is
+ * linear". */
+const char *rg_why_unused(rg_key_group group, const rg_case *c);
 
 /* Rules that tie several keys together, applied to entry i of a list once its keys are read. `good`: all of
  * them were. An entry that is not is left so that later entries are not compared with it. */

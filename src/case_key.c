@@ -36,7 +36,7 @@
 #define MODEL_WORD(name, NAME, word, history, inside) word,
 static const char *const models[] = {RG_MATERIALS(MODEL_WORD) NULL};
 static const char *const interactions[] = {"thesis", "derived", NULL};
-static const char *const forms[] = {"variational", "incomplete", "intrinsic", NULL};
+static const char *const forms[] = {"variational", "incomplete", "intrinsic", "continuous", NULL};
 static const char *const penalties[] = {"elastic", "isotropic", NULL};
 static const char *const laws[] = {
 #define RG_LAW(NAME, name, word, ...) word,
@@ -100,7 +100,9 @@ static const rg_key case_keys[] = {
     {.name = "material.rate_exponent", REAL, FROM(1), DEFAULT(10), FLAWS(rate_exponent)},
 
     {.name = "interface.form", CHOICE(forms), DEFAULT(RG_FORM_VARIATIONAL), CASE(interface.form)},
-    {.name = "interface.beta_s", REAL, ABOVE(0), DEFAULT(4), CASE(interface.beta_s)},
+    {.name = "interface.faces", .type = RG_KEY_EXPR, OPTIONAL, .no_time = true, .normal = true, GROUP(FACES),
+     CASE(interface.faces)},
+    {.name = "interface.beta_s", REAL, ABOVE(0), DEFAULT(4), GROUP(INTERFACE), CASE(interface.beta_s)},
     {.name = "interface.penalty", CHOICE(penalties), DEFAULT(RG_PENALTY_ELASTIC), GROUP(DG),
      CASE(interface.penalty)},
     {.name = "interface.law", CHOICE(laws), REQUIRED, CASE(interface.law)},
@@ -312,17 +314,23 @@ void rg_models_words(const rg_key *key, char *text, size_t size) {
 
 bool rg_group_used(rg_key_group group, const rg_case *c) {
     rg_law law = c->interface.law;
-    bool breaks = law != RG_LAW_NONE, intrinsic = c->interface.form == RG_FORM_INTRINSIC;
+    rg_form form = c->interface.form;
+    bool breaks = law != RG_LAW_NONE, faces = form != RG_FORM_CONTINUOUS || c->interface.faces != NULL;
+    bool dg = faces && form != RG_FORM_INTRINSIC;
     rg_law_facts facts = breaks ? rg_law_facts_of(law, c->interface.shape[law], 1) : (rg_law_facts){0};
     switch (group) {
     case RG_GROUP_ENERGY:
         return facts.work > 0;
     case RG_GROUP_SHEAR:
         return breaks && (facts.forms & RG_NORMAL_MEASURE) == 0;
+    case RG_GROUP_FACES:
+        return form == RG_FORM_CONTINUOUS;
+    case RG_GROUP_INTERFACE:
+        return faces;
     case RG_GROUP_DG:
-        return !intrinsic;
+        return dg;
     case RG_GROUP_SWITCH:
-        return breaks && !intrinsic;
+        return breaks && dg;
     default:
         return breaks;
     }
@@ -338,6 +346,8 @@ bool rg_key_used(const rg_key *key, const void *base) {
     case RG_GROUP_COHESIVE:
     case RG_GROUP_ENERGY:
     case RG_GROUP_SHEAR:
+    case RG_GROUP_FACES:
+    case RG_GROUP_INTERFACE:
     case RG_GROUP_DG:
     case RG_GROUP_SWITCH:
         return rg_group_used(key->group, base);

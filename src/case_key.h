@@ -42,8 +42,10 @@ typedef enum {
     RG_GROUP_ENERGY,       /* if the law has a work of separation */
     RG_GROUP_SHEAR,        /* if the law has an effective opening */
     RG_GROUP_LAW,          /* if interface.law is the key's `law` */
-    RG_GROUP_DG,           /* unless interface.form is intrinsic */
-    RG_GROUP_SWITCH,       /* if points switch from DG to a law: neither of these */
+    RG_GROUP_FACES,        /* if interface.form is continuous */
+    RG_GROUP_INTERFACE,    /* unless it is, and interface.faces is not given */
+    RG_GROUP_DG,           /* the same, and unless interface.form is intrinsic */
+    RG_GROUP_SWITCH,       /* if points switch from DG to a law: there is one, and DG terms */
     RG_GROUP_WEIBULL,      /* if interface.weibull.modulus is given */
     RG_GROUP_VELOCITY,     /* boundary entries: one of the two */
     RG_GROUP_DISPLACEMENT, /* the other */
@@ -93,7 +95,8 @@ void rg_models_words(const rg_key *key, char *text, size_t size);
 /* Whether the key is used in the filled structure `base`. */
 bool rg_key_used(const rg_key *key, const void *base);
 
-/* The same for a group that follows from law and form (RG_GROUP_COHESIVE to RG_GROUP_SWITCH). */
+/* The same for a group that follows from law and form (RG_GROUP_COHESIVE to RG_GROUP_SWITCH, but for
+ * RG_GROUP_LAW). */
 bool rg_group_used(rg_key_group group, const rg_case *c);
 
 /* The key with exactly this name, or NULL. */

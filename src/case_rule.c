@@ -45,21 +45,60 @@ static const char *law_word(rg_law law) {
 }
 
 static int forms_of(rg_law law) {
-    return law == RG_LAW_NONE ? RG_FORMS_DG : rg_law_facts_of(law, (double[RG_LAW_SHAPE]){0}, 1).forms;
+    return rg_law_facts_of(law, (double[RG_LAW_SHAPE]){0}, 1).forms;
 }
 
-const char *rg_law_is(const rg_case *c) {
+/* What a form asks of a law. */
+typedef struct {
+    int bit;           /* of the law's forms; 0: no law at all */
+    const char *words; /* the form */
+    const char *other; /* why another law does not fit */
+} demand;
+
+static const demand dg_law = {RG_FORMS_DG, "variational or incomplete",
+                              "starts with a slope, which only form intrinsic can use"};
+static const demand face_law = {RG_FORMS_DG, "continuous",
+                                "starts with a slope, which only form intrinsic can use"};
+static const demand sloped_law = {RG_FORMS_INTRINSIC, "intrinsic",
+                                  "does not start with a slope, which form intrinsic needs"};
+static const demand no_law = {0, "continuous and no interface.faces",
+                              "nothing can break, because form continuous has interfaces only on the faces "
+                              "that interface.faces selects"};
+
+static const demand *demand_of(const rg_case *c) {
+    switch (c->interface.form) {
+    case RG_FORM_INTRINSIC:
+        return &sloped_law;
+    case RG_FORM_CONTINUOUS:
+        return c->interface.faces != NULL ? &face_law : &no_law;
+    default:
+        return &dg_law;
+    }
+}
+
+static bool fits(const demand *d, rg_law law) {
+    return law == RG_LAW_NONE ? d != &sloped_law : (forms_of(law) & d->bit) != 0;
+}
+
+const char *rg_why_unused(rg_key_group group, const rg_case *c) {
     static char text[64];
+    bool none = c->interface.law == RG_LAW_NONE, intrinsic = c->interface.form == RG_FORM_INTRINSIC;
+    if (group == RG_GROUP_FACES) {
+        return "form is not continuous";
+    }
+    if (group == RG_GROUP_INTERFACE || group == RG_GROUP_DG || (group == RG_GROUP_SWITCH && !none)) {
+        return intrinsic ? "form is intrinsic" : "form is continuous, without interface.faces";
+    }
     snprintf(text, sizeof text, "law is %s", law_word(c->interface.law));
     return text;
 }
 
 /* "with form intrinsic: free, exponential" */
-static void laws_of_form(bool intrinsic, char *text, size_t size) {
-    int used = snprintf(text, size, "with form %s:", intrinsic ? "intrinsic" : "variational or incomplete");
+static void laws_of_form(const demand *d, char *text, size_t size) {
+    int used = snprintf(text, size, "with form %s:", d->words);
     const char *join = " ";
     for (int law = 0; law <= (int)RG_LAWS && (size_t)used < size; law++) {
-        if ((forms_of((rg_law)law) & (intrinsic ? RG_FORMS_INTRINSIC : RG_FORMS_DG)) != 0) {
+        if (fits(d, (rg_law)law)) {
             used += snprintf(text + used, size - (size_t)used, "%s%s", join, law_word((rg_law)law));
             join = ", ";
         }
@@ -67,15 +106,13 @@ static void laws_of_form(bool intrinsic, char *text, size_t size) {
 }
 
 static void check_law_and_form(rg_check *ck, const rg_node *node) {
-    bool intrinsic = ck->c->interface.form == RG_FORM_INTRINSIC;
+    const demand *d = demand_of(ck->c);
     rg_law law = ck->c->interface.law;
-    if ((forms_of(law) & (intrinsic ? RG_FORMS_INTRINSIC : RG_FORMS_DG)) == 0) {
+    if (!fits(d, law)) {
         char allowed[256];
-        laws_of_form(intrinsic, allowed, sizeof allowed);
+        laws_of_form(d, allowed, sizeof allowed);
         rg_subject subject = {.key = "interface.law", .value = law_word(law), .allowed = allowed};
-        rg_problem_add(ck->problems, node->at, &subject, "%s",
-                       intrinsic ? "does not start with a slope, which form intrinsic needs"
-                                 : "starts with a slope, which only form intrinsic can use");
+        rg_problem_add(ck->problems, node->at, &subject, "%s", d->other);
     }
 }
 
@@ -118,6 +155,20 @@ void rg_friction_rule(rg_check *ck, const rg_node *node) {
         rg_problem_add(ck->problems, node->at, &subject,
                        "contact flux holds closed faces by all DG terms, so they do not slide");
     }
+}
+
+void rg_mass_rule(rg_check *ck, const rg_node *node) {
+    if (ck->c->interface.form != RG_FORM_CONTINUOUS) {
+        return;
+    }
+    if (node != NULL && ck->c->mass != RG_MASS_LUMPED) {
+        rg_subject subject = {
+            .key = "mass", .value = "consistent", .allowed = "with form continuous: lumped"};
+        rg_problem_add(
+            ck->problems, node->at, &subject,
+            "couples all nodes that elements share, so that each step would have to solve with it");
+    }
+    ck->c->mass = RG_MASS_LUMPED;
 }
 
 /* ---- boundary: one prescribed motion per entry, one entry per set and component ---- */

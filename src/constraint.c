@@ -121,19 +121,35 @@ static int set_number(const rg_part *part, const char *name) {
     return set;
 }
 
+/* Bits of the nodes of each element on the set of each boundary: mask[boundaries][slots]. */
+static uint16_t *list_nodes(const rg_constraints *k, const int *set, rg_assembly *nodes) {
+    size_t slots = k->domain->blocks * RG_LANES;
+    uint16_t *mask = RG_NEW(uint16_t, (size_t)k->input->boundaries * slots + 1);
+    for (int b = 0; b < k->input->boundaries; b++) {
+        uint16_t *of = mask + (size_t)b * slots;
+        for (size_t side = 0; side < RG_FACES * slots; side++) {
+            for (int a = 0; k->domain->set[side] == set[b] && a < RG_FNODES; a++) {
+                of[side / RG_FACES] |= (uint16_t)(1u << rg_face_node[side % RG_FACES][a]);
+            }
+        }
+        if (nodes != NULL) {
+            rg_assembly_spread(nodes, of);
+        }
+    }
+    return mask;
+}
+
 /* Boundary that prescribes component c of each node of an element, -1 for none; returns the mask of those
  * nodes. */
-static unsigned constrained_nodes(const rg_constraints *k, const int *set, size_t slot, int c,
+static unsigned constrained_nodes(const rg_constraints *k, const uint16_t *on_set, size_t slot, int c,
                                   int16_t which[RG_NODES]) {
     unsigned mask = 0;
     for (int b = 0; b < k->input->boundaries; b++) {
-        for (int f = 0; f < RG_FACES; f++) {
-            if (k->input->boundary[b].component != c || k->domain->set[4 * slot + (size_t)f] != set[b]) {
-                continue;
-            }
-            for (int a = 0; a < RG_FNODES; a++) {
-                which[rg_face_node[f][a]] = (int16_t)b;
-                mask |= 1u << rg_face_node[f][a];
+        unsigned here = on_set[(size_t)b * k->domain->blocks * RG_LANES + slot];
+        for (int n = 0; k->input->boundary[b].component == c && n < RG_NODES; n++) {
+            if ((here >> n & 1) != 0) {
+                which[n] = (int16_t)b;
+                mask |= 1u << n;
             }
         }
     }
@@ -157,7 +173,8 @@ static void add_entry(rg_constraints *k, size_t slot, int c, unsigned mask, cons
     }
 }
 
-rg_constraints *rg_constraints_make(const rg_case *c, const rg_domain *d, const rg_part *part) {
+rg_constraints *rg_constraints_make(const rg_case *c, const rg_domain *d, const rg_part *part,
+                                    rg_assembly *nodes) {
     rg_constraints *k = RG_NEW(rg_constraints, 1);
     *k = (rg_constraints){.input = c, .domain = d, .lumped = c->mass == RG_MASS_LUMPED};
     int *set = RG_NEW(int, (size_t)c->boundaries + 1);
@@ -165,13 +182,14 @@ rg_constraints *rg_constraints_make(const rg_case *c, const rg_domain *d, const 
         set[b] = set_number(part, c->boundary[b].set);
         k->varies = k->varies || boundary_varies(&c->boundary[b]);
     }
+    uint16_t *on_set = list_nodes(k, set, nodes);
     k->tile_begin = RG_NEW(size_t, d->tiles + 1);
     for (size_t t = 0; t < d->tiles; t++) {
         k->tile_begin[t] = k->entries;
         for (size_t slot = d->tile[t].begin * RG_LANES; slot < d->tile[t].end * RG_LANES; slot++) {
             for (int comp = 0; comp < 3; comp++) {
                 int16_t which[RG_NODES];
-                unsigned mask = constrained_nodes(k, set, slot, comp, which);
+                unsigned mask = constrained_nodes(k, on_set, slot, comp, which);
                 if (mask != 0) {
                     add_entry(k, slot, comp, mask, which);
                 }
@@ -179,6 +197,7 @@ rg_constraints *rg_constraints_make(const rg_case *c, const rg_domain *d, const 
         }
     }
     k->tile_begin[d->tiles] = k->entries;
+    rg_free(on_set);
     rg_free(set);
     return k;
 }

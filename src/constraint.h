@@ -9,6 +9,7 @@
 
 #include <stdbool.h>
 
+#include "assembly.h"
 #include "case.h"
 #include "domain.h"
 #include "exact_sum.h"
@@ -16,8 +17,11 @@
 typedef struct rg_constraints rg_constraints;
 typedef struct rg_state rg_state; /* state.h */
 
-/* The constraints of a case on this rank. Keeps references to `c` and `d`. Free with rg_constraints_free. */
-rg_constraints *rg_constraints_make(const rg_case *c, const rg_domain *d, const rg_part *part);
+/* The constraints of a case on this rank. Where elements share nodes by an assembly (else NULL), all copies
+ * of a node on a face of the set are prescribed, also those of elements that only touch the set. Keeps
+ * references to `c` and `d`. Collective; free with rg_constraints_free. */
+rg_constraints *rg_constraints_make(const rg_case *c, const rg_domain *d, const rg_part *part,
+                                    rg_assembly *nodes);
 
 /* Takes the fields at t = 0 as what the constrained nodes come from. */
 void rg_constraints_start(rg_constraints *k, const rg_real *u, const rg_real *velocity);

@@ -50,13 +50,23 @@ static double bytes_per_element(const rg_solver *s, bool at_most) {
     return sum[0] / sum[1];
 }
 
+/* Interfaces, and nodes that move on their own, of the whole mesh. */
+static void count_all(const rg_solver *s, int64_t count[2]) {
+    count[0] = (int64_t)s->domain->interfaces;
+    count[1] =
+        (int64_t)(s->assembly != NULL ? rg_assembly_nodes(s->assembly) : RG_NODES * s->domain->elements);
+    MPI_Allreduce(MPI_IN_PLACE, count, 2, MPI_INT64_T, MPI_SUM, s->comm);
+}
+
 rg_estimate rg_estimate_run(const rg_solver *s) {
     const rg_case *c = s->input;
     const rg_material *m = &s->material;
     double xi = s->damping * c->viscosity.linear; /* of the stiffest mode, by bulk viscosity */
+    int64_t count[2];
+    count_all(s, count);
     rg_estimate e = {.elements = s->part->total,
-                     .interfaces = s->part->interfaces,
-                     .dofs = 3 * RG_NODES * s->part->total,
+                     .interfaces = count[0],
+                     .dofs = 3 * count[1],
                      .c_dilatational = rg_material_dilatational(m),
                      .c_shear = rg_material_shear(m),
                      .dt_critical = 2 / sqrt(s->omega2) * (sqrt(1 + xi * xi) - xi)};
@@ -84,7 +94,7 @@ void rg_estimate_print(const rg_solver *s, const rg_estimate *e, FILE *out) {
             e->elements, e->dofs, e->interfaces);
     if (s->ranks > 1) {
         fprintf(out, "partition      ");
-        rg_quality_print(&s->part->quality, e->interfaces, out);
+        rg_quality_print(&s->part->quality, s->part->interfaces, out);
     }
     fprintf(out, "material       %s%s\n", rg_material_word(s->material.model),
             s->material.model == RG_MATERIAL_LINEAR_ELASTIC ? ": for small strains and rotations alone" : "");

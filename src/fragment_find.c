@@ -78,6 +78,14 @@ static void join_tile(finder *f, const rg_tile *t) {
     }
 }
 
+/* Elements that share nodes hang together. */
+static void join_joints(finder *f) {
+    for (size_t k = 0; f->s->joints != NULL && k < f->s->joints->count; k++) {
+        const rg_joint *joint = &f->s->joints->joint[k];
+        join(f->parent, joint->slot[0], joint->slot[1]);
+    }
+}
+
 /* Numbers the components by their roots, which come before all other members. */
 static void number_components(finder *f) {
     for (size_t i = 0; i < f->d->blocks * RG_LANES; i++) {
@@ -119,34 +127,58 @@ static void label_components(finder *f) {
 
 /* ---- Across ranks ---- */
 
-/* A face between ranks that holds: the component on this side; -1 where it does not hold. Both sides list
- * such faces in the same order. */
-static rg_lid *list_bridges(finder *f) {
-    rg_lid *bridge = RG_NEW(rg_lid, f->d->shared + 1);
+/* Faces between ranks, in the order in which the other side lists them too, of one kind: seams or joints. */
+typedef struct {
+    rg_exchange *x;
+    rg_lid *bridge; /* the component on this side of each that holds; -1 where it does not */
+    rg_fragment_label *message, *arrived;
+} bridges;
+
+static void cross(finder *f, bridges *b, size_t at, rg_lid component) {
+    b->bridge[at] = component;
+    f->shared[component < 0 ? f->count : (size_t)component] = 1;
+}
+
+static void list_seams(finder *f, bridges *b) {
     for (size_t t = 0; t < f->d->boundary_tiles; t++) {
         const rg_tile *tile = &f->d->tile[t];
         for (size_t i = tile->sbegin * RG_LANES; i < tile->iend * RG_LANES; i++) {
             if (other_row(f->d, i) >= f->d->own_rows) {
                 rg_lid own = holds(f->s, i) ? f->of[side_slot(f->d, tile, i, 0)] : -1;
-                bridge[other_row(f->d, i) - f->d->own_rows] = own;
-                f->shared[own < 0 ? f->count : (size_t)own] = 1;
+                cross(f, b, other_row(f->d, i) - f->d->own_rows, own);
             }
         }
     }
-    return bridge;
+}
+
+static void list_joints(finder *f, bridges *b) {
+    for (size_t k = 0; k < b->x->count; k++) {
+        cross(f, b, k, f->of[f->s->joints->far[k].slot]);
+    }
+}
+
+static bridges make_bridges(const finder *f, const int *to, size_t count) {
+    rg_fragment_label *message = RG_NEW(rg_fragment_label, 2 * count + 1);
+    return (bridges){rg_exchange_make(to, count, f->s->comm), RG_NEW(rg_lid, count + 1), message,
+                     message + count};
+}
+
+static void free_bridges(bridges *b) {
+    rg_exchange_free(b->x);
+    rg_free(b->bridge);
+    rg_free(b->message);
 }
 
 /* One exchange of labels; whether one became smaller here. */
-static bool spread(finder *f, const rg_exchange *x, const rg_lid *bridge, rg_fragment_label *message,
-                   rg_fragment_label *arrived) {
+static bool spread(finder *f, bridges *b) {
     bool changed = false;
-    for (size_t k = 0; k < x->count; k++) {
-        message[k] = bridge[k] < 0 ? (rg_fragment_label){.id = -1} : f->label[bridge[k]];
+    for (size_t k = 0; k < b->x->count; k++) {
+        b->message[k] = b->bridge[k] < 0 ? (rg_fragment_label){.id = -1} : f->label[b->bridge[k]];
     }
-    rg_exchange_send(x, sizeof *message, message, arrived);
-    for (size_t k = 0; k < x->count; k++) {
-        if (bridge[k] >= 0 && arrived[k].id < f->label[bridge[k]].id) {
-            f->label[bridge[k]] = arrived[k];
+    rg_exchange_send(b->x, sizeof *b->message, b->message, b->arrived);
+    for (size_t k = 0; k < b->x->count; k++) {
+        if (b->bridge[k] >= 0 && b->arrived[k].id < f->label[b->bridge[k]].id) {
+            f->label[b->bridge[k]] = b->arrived[k];
             changed = true;
         }
     }
@@ -154,22 +186,29 @@ static bool spread(finder *f, const rg_exchange *x, const rg_lid *bridge, rg_fra
 }
 
 static void label_across(finder *f) {
+    const rg_joints *joints = f->s->joints;
     int *to = RG_NEW(int, f->d->shared + 1);
     for (size_t k = 0; k < f->d->shared; k++) {
         to[k] = f->d->shared_face[k].rank;
     }
-    rg_exchange *x = rg_exchange_make(to, f->d->shared, f->s->comm);
-    rg_lid *bridge = list_bridges(f);
-    rg_fragment_label *message = RG_NEW(rg_fragment_label, 2 * x->count + 1);
-    int changed = f->s->ranks > 1;
+    bridges kind[2] = {make_bridges(f, to, f->d->shared)};
+    int kinds = joints == NULL ? 1 : 2, changed = f->s->ranks > 1;
+    list_seams(f, &kind[0]);
+    if (kinds == 2) {
+        kind[1] = make_bridges(f, joints->far_rank, joints->fars);
+        list_joints(f, &kind[1]);
+    }
     while (changed) {
-        changed = spread(f, x, bridge, message, message + x->count);
+        changed = 0;
+        for (int k = 0; k < kinds; k++) {
+            changed |= spread(f, &kind[k]);
+        }
         MPI_Allreduce(MPI_IN_PLACE, &changed, 1, MPI_INT, MPI_MAX, f->s->comm);
     }
-    rg_free(message);
-    rg_free(bridge);
+    for (int k = 0; k < kinds; k++) {
+        free_bridges(&kind[k]);
+    }
     rg_free(to);
-    rg_exchange_free(x);
 }
 
 /* ---- Result ---- */
@@ -237,6 +276,7 @@ rg_fragment_parts *rg_fragments_find(const rg_solver *s) {
     for (size_t t = 0; t < d->tiles; t++) {
         join_tile(&f, &d->tile[t]);
     }
+    join_joints(&f);
     number_components(&f);
     label_components(&f);
     label_across(&f);

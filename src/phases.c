@@ -11,10 +11,16 @@ static rg_spread spread(double here, MPI_Comm comm) {
     return (rg_spread){-extreme[0], sum / ranks, extreme[1]};
 }
 
-rg_phases_report rg_phases_gather(const rg_phases *p, const rg_domain *d, const rg_halo *traces,
-                                  const rg_halo *tractions, MPI_Comm comm) {
-    int partners = rg_halo_partners(traces), messages = partners + rg_halo_partners(tractions);
-    double bytes = (double)(rg_halo_bytes(traces) + rg_halo_bytes(tractions));
+rg_phases_report rg_phases_gather(const rg_phases *p, const rg_domain *d, rg_halo *const halo[], int halos,
+                                  MPI_Comm comm) {
+    int partners = 0, messages = 0;
+    double bytes = 0;
+    for (int k = 0; k < halos; k++) {
+        int own = rg_halo_partners(halo[k]);
+        partners = own > partners ? own : partners;
+        messages += own;
+        bytes += (double)rg_halo_bytes(halo[k]);
+    }
     rg_phases_report r;
     for (int k = 0; k < RG_PHASES; k++) {
         r.phase[k] = spread(p->seconds[k], comm);

@@ -48,9 +48,9 @@ typedef struct {
     rg_spread message_bytes;    /* mean of a rank's messages */
 } rg_phases_report;
 
-/* Collective: of a domain and the exchanges of its step, `traces` and `tractions`. */
-rg_phases_report rg_phases_gather(const rg_phases *p, const rg_domain *d, const rg_halo *traces,
-                                  const rg_halo *tractions, MPI_Comm comm);
+/* Collective: of a domain and the exchanges of its step. */
+rg_phases_report rg_phases_gather(const rg_phases *p, const rg_domain *d, rg_halo *const halo[], int halos,
+                                  MPI_Comm comm);
 
 /* Members of a JSON object, one a line, each [least, mean, most]. */
 void rg_phases_write(const rg_phases_report *r, FILE *out);

@@ -28,6 +28,7 @@ static void allocate_fields(rg_solver *s) {
     s->u = RG_NEW(rg_real, blocks * RG_NODE_BLOCK);
     s->velocity = RG_NEW(rg_real, blocks * RG_NODE_BLOCK);
     s->now = RG_NEW(rg_real, blocks * RG_NODE_BLOCK);
+    s->acceleration = s->assembly != NULL ? RG_NEW(rg_real, blocks * RG_NODE_BLOCK) : NULL;
     s->stiffening = RG_NEW(rg_real, blocks * RG_LANES);
     s->tile_stiffening = RG_NEW(rg_real, d->tiles);
     s->tile_pace = rg_law_steps(&s->law) > 0 ? RG_NEW(double, d->tiles) : NULL;
@@ -53,6 +54,9 @@ static void place_tile(rg_solver *s, const rg_tile *t) {
     size_t history = rg_history_rows(s->histories) * RG_LANES;
     memset(s->u + at, 0, bytes);
     memset(s->velocity + at, 0, bytes);
+    if (s->acceleration != NULL) {
+        memset(s->acceleration + at, 0, bytes);
+    }
     if (s->heat != NULL) {
         memset(s->heat + t->begin * RG_LANES, 0, rg_tile_eblocks(t) * RG_LANES * sizeof *s->heat);
     }
@@ -94,6 +98,19 @@ static void select_kernels(rg_solver *s) {
     }
 }
 
+/* The domain, and what joins its elements; the part's list of them is needed no more. */
+static void build_domain(rg_solver *s, const rg_interface_material *m) {
+    uint8_t *joined = rg_joined_faces(s->input, s->part);
+    s->domain = rg_domain_build(s->part, joined, s->rank, m);
+    if (joined != NULL) {
+        s->joints = rg_joints_make(s->domain, s->part, joined, s->rank);
+        s->assembly = rg_assembly_make(s->domain, s->joints, s->comm);
+    }
+    rg_free(joined);
+    rg_free(s->part->element);
+    s->part->element = NULL;
+}
+
 rg_solver *rg_solver_make_from_part(const rg_case *input, rg_part *part, MPI_Comm comm) {
     rg_solver *s = RG_NEW(rg_solver, 1);
     *s = (rg_solver){.input = input,
@@ -105,17 +122,15 @@ rg_solver *rg_solver_make_from_part(const rg_case *input, rg_part *part, MPI_Com
                      .material = rg_material_of_case(input),
                      .histories = rg_material_history(input->material.model),
                      .law = rg_law_make(input),
-                     .lift = input->interface.form == RG_FORM_VARIATIONAL,
+                     .lift = input->interface.form == RG_FORM_VARIATIONAL || input->interface.faces != NULL,
                      .lumped = input->mass == RG_MASS_LUMPED};
     MPI_Comm_rank(comm, &s->rank);
     MPI_Comm_size(comm, &s->ranks);
     select_kernels(s);
     rg_interface_material m = {s->material.lambda, s->material.mu, input->interface.beta_s,
                                input->interface.penalty};
-    s->domain = rg_domain_build(s->part, NULL, s->rank, &m);
-    rg_free(s->part->element);
-    s->part->element = NULL;
-    s->constraints = rg_constraints_make(input, s->domain, s->part);
+    build_domain(s, &m);
+    s->constraints = rg_constraints_make(input, s->domain, s->part, s->assembly);
     s->bodies = rg_bodies_make(input, s->domain, s->part, &s->material, s->threads, comm);
     allocate_fields(s);
     place_fields(s);
@@ -132,7 +147,8 @@ rg_solver *rg_solver_make_from_part(const rg_case *input, rg_part *part, MPI_Com
 
 rg_solver *rg_solver_make(const rg_case *input, MPI_Comm comm) {
     rg_part *part = rg_part_of_case(input, comm);
-    rg_part *patch = rg_patch_gather(part, comm);
+    bool shared = input->interface.form == RG_FORM_CONTINUOUS; /* rg_spectrum has no use for a patch then */
+    rg_part *patch = shared ? NULL : rg_patch_gather(part, comm);
     rg_solver *s = rg_solver_make_from_part(input, part, comm);
     s->patch = patch;
     return s;
@@ -148,7 +164,13 @@ typedef struct {
     bool observe;   /* `now` is wanted everywhere */
     bool constrain; /* prescribed motions and bodies act */
     bool advance;   /* the history of the material goes on by the step that led here: once for each state */
+    bool apart;     /* velocity is that of elements that do not know yet that they share nodes */
 } impulse;
+
+/* Where the velocity at the present time goes; NULL: it is not wanted. */
+static rg_real *now_of(const rg_solver *s, size_t tile, const impulse *p) {
+    return !p->apart && (p->observe || s->watched[tile]) ? s->now : NULL;
+}
 
 /* Tells the elements beside broken points, so that the lift leaves those points out. */
 static void mark_cracked(rg_solver *s, const rg_tile *t, size_t begin, size_t end) {
@@ -164,7 +186,7 @@ static void mark_cracked(rg_solver *s, const rg_tile *t, size_t begin, size_t en
 static void kick(rg_solver *s, size_t tile, const rg_workspace *w, const impulse *p, bool seams) {
     const rg_tile *t = &s->domain->tile[tile];
     size_t at = t->begin * RG_NODE_BLOCK;
-    bool now = p->observe || s->watched[tile];
+    rg_real *now = now_of(s, tile, p);
     rg_kick_args args = {.density = s->material.density,
                          .lumped = s->lumped,
                          .seams = seams,
@@ -174,14 +196,13 @@ static void kick(rg_solver *s, size_t tile, const rg_workspace *w, const impulse
                          .iforce = w->iforce,
                          .interface = s->domain->interface + t->begin * RG_LINK_BLOCK,
                          .velocity = p->velocity + at,
-                         .now = now ? s->now + at : NULL,
+                         .now = now == NULL ? NULL : now + at,
                          .dt_now = 0.5 * s->dt};
     s->kernels->kick(&args, 0, rg_tile_eblocks(t));
 }
 
 static void touch(rg_solver *s, size_t tile, const impulse *p) {
-    bool now = p->observe || s->watched[tile];
-    rg_contact_kick k = {p->dt, 0.5 * s->dt, p->velocity, now ? s->now : NULL};
+    rg_contact_kick k = {p->dt, 0.5 * s->dt, p->velocity, now_of(s, tile, p)};
     rg_bodies_touch(s->bodies, tile, s->u, &k);
 }
 
@@ -220,6 +241,9 @@ static void inside(rg_solver *s, size_t tile, const rg_workspace *w, const impul
     bulk.advance = p->advance;
     rg_interface_args interface = rg_tile_interfaces(s, t, w);
     rg_trace_args traces = rg_tile_traces(s, t, w, false);
+    if (p->apart) {
+        memset(p->velocity + t->begin * RG_NODE_BLOCK, 0, blocks * RG_NODE_BLOCK * sizeof *p->velocity);
+    }
     s->kernels->receive(&traces, 0, rg_tile_seams(t));
     s->kernels->bulk(&bulk, 0, blocks);
     if (s->heat != NULL && p->constrain) {
@@ -245,7 +269,20 @@ static void drift(rg_solver *s, size_t tile, const rg_workspace *w) {
     s->kernels->send(&traces, 0, rg_tile_seams(t));
 }
 
-/* Seams, once the tractions of all tiles are known; then the tile's velocities are complete. */
+/* The velocities of a tile are complete. */
+static void settle(rg_solver *s, size_t tile, const rg_workspace *w, const impulse *p) {
+    if (p->constrain) {
+        rg_constraints_kick(s->constraints, tile, p->velocity, now_of(s, tile, p));
+    }
+    if (s->watched[tile] && p->constrain) {
+        s->watch(s->watch_context, s, tile, w);
+    }
+    if (p->move) {
+        drift(s, tile, w);
+    }
+}
+
+/* Seams, once the tractions of all tiles are known. */
 static void across(rg_solver *s, size_t tile, const rg_workspace *w, const impulse *p) {
     const rg_tile *t = &s->domain->tile[tile];
     rg_interface_args interface = rg_tile_interfaces(s, t, w);
@@ -256,15 +293,39 @@ static void across(rg_solver *s, size_t tile, const rg_workspace *w, const impul
         s->tile_pace[tile] = rg_pace_of_tile(s, t);
     }
     kick(s, tile, w, p, true);
-    if (p->constrain) {
-        rg_constraints_kick(s->constraints, tile, p->velocity,
-                            p->observe || s->watched[tile] ? s->now : NULL);
+    if (p->apart) {
+        rg_assembly_sum(s->assembly, tile, p->velocity);
+    } else {
+        settle(s, tile, w, p);
     }
-    if (s->watched[tile] && p->constrain) {
-        s->watch(s->watch_context, s, tile, w);
+}
+
+/* The nodes that tiles share, once the sums of all of them are known; then the velocities. */
+static void assemble(rg_solver *s, size_t tile, const rg_workspace *w, const impulse *p) {
+    const rg_tile *t = &s->domain->tile[tile];
+    size_t at = t->begin * RG_NODE_BLOCK, blocks = rg_tile_eblocks(t);
+    rg_real *a = s->acceleration, *now = now_of(s, tile, p);
+    rg_assembly_gather(s->assembly, tile, a);
+    if (now != NULL) {
+        memcpy(now + at, p->velocity + at, blocks * RG_NODE_BLOCK * sizeof *now);
+        s->kernels->drift(&(rg_drift_args){0.5 * s->dt, a + at, now + at}, 0, blocks);
     }
-    if (p->move) {
-        drift(s, tile, w);
+    s->kernels->drift(&(rg_drift_args){p->dt, a + at, p->velocity + at}, 0, blocks);
+    if (s->watched[tile]) {
+        rg_tile_receive(s, t, w);
+    }
+    settle(s, tile, w, p);
+}
+
+static void assemble_inside(rg_solver *s, size_t tile, const rg_workspace *w, const impulse *p) {
+    if (!rg_assembly_waits(s->assembly, tile)) {
+        assemble(s, tile, w, p);
+    }
+}
+
+static void assemble_outside(rg_solver *s, size_t tile, const rg_workspace *w, const impulse *p) {
+    if (rg_assembly_waits(s->assembly, tile)) {
+        assemble(s, tile, w, p);
     }
 }
 
@@ -324,9 +385,29 @@ static void start_bodies(rg_solver *s, const impulse *p) {
     mark(s, RG_PHASE_REDUCE);
 }
 
+/* Shared nodes, from what the elements made for themselves; rows of other ranks arrive under the tiles that
+ * share no node with them. */
+static void assemble_all(rg_solver *s, const impulse *p) {
+    rg_halo *rows = rg_assembly_halo(s->assembly);
+    start(s, rows);
+    sweep(s, assemble_inside, p, 0, s->domain->tiles, rows);
+    mark(s, RG_PHASE_JUMP);
+    finish(s, rows);
+    sweep(s, assemble_outside, p, 0, s->domain->tiles, NULL);
+    mark(s, RG_PHASE_JUMP);
+}
+
 /* All forces. The traces of the displacement, sent at the end of the last drift, arrive under the first sweep
  * of the tiles that touch no other rank; the tractions under the second. */
-static void evaluate(rg_solver *s, const impulse *p) {
+static void evaluate(rg_solver *s, const impulse *whole) {
+    impulse apart = *whole;
+    const impulse *p = whole;
+    if (s->assembly != NULL) {
+        apart.velocity = s->acceleration;
+        apart.dt = 1;
+        apart.apart = true;
+        p = &apart;
+    }
     size_t outer = s->domain->boundary_tiles, all = s->domain->tiles;
     rg_halo *traces = s->halo_u[s->current], *next = s->halo_u[1 - s->current];
     rg_phases_begin(&s->phases);
@@ -345,6 +426,9 @@ static void evaluate(rg_solver *s, const impulse *p) {
         finish(s, s->halo_t);
         sweep(s, across, p, 0, outer, NULL);
         mark(s, RG_PHASE_JUMP);
+        if (s->assembly != NULL) {
+            assemble_all(s, whole);
+        }
         if (p->move) {
             start(s, next);
         }
@@ -507,6 +591,10 @@ void rg_solver_exchange(rg_solver *s) {
         finish(s, s->halo_u[s->current]);
         start(s, s->halo_t);
         finish(s, s->halo_t);
+        if (s->assembly != NULL) {
+            start(s, rg_assembly_halo(s->assembly));
+            finish(s, rg_assembly_halo(s->assembly));
+        }
     }
 }
 
@@ -519,7 +607,7 @@ void rg_solver_free(rg_solver *s) {
     }
     void *blocks[] = {s->u,         s->velocity, s->now,      s->crack,   s->stiffening, s->tile_stiffening,
                       s->cracked,   s->broken,   s->unlinked, s->active,  s->rows[0],    s->rows[1],
-                      s->tractions, s->watched,  s->work,     s->history, s->heat};
+                      s->tractions, s->watched,  s->work,     s->history, s->heat,       s->acceleration};
     rg_free(s->scale);
     rg_free(s->tile_pace);
     rg_constraints_free(s->constraints);
@@ -527,6 +615,8 @@ void rg_solver_free(rg_solver *s) {
     rg_halo_free(s->halo_u[0]);
     rg_halo_free(s->halo_u[1]);
     rg_halo_free(s->halo_t);
+    rg_assembly_free(s->assembly);
+    rg_joints_free(s->joints);
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) {
         rg_free(blocks[i]);
     }

@@ -3,6 +3,8 @@
  * A step from state n to n + 1 is a kick and a drift. The kick evaluates the forces of u(n) in two sweeps
  * over the tiles: elements and the interfaces inside them, whose results never leave the cache; then, when
  * the tractions of all tiles are known, the seams. The drift moves u and publishes the traces of the seams.
+ * In form continuous the sweeps kick accelerations in place of velocities, whose mean over the copies of a
+ * node (assembly.h) moves all of them in a third one.
  *
  * A material with a history goes on in the kick, by the step that led to u(n): once for each state. Between
  * kick and drift stress and energy are those that the forces were made of. */
@@ -11,6 +13,7 @@
 
 #include <mpi.h>
 
+#include "assembly.h"
 #include "body.h"
 #include "case.h"
 #include "constraint.h"
@@ -36,10 +39,14 @@ struct rg_solver {
     int rank, ranks, threads;
     const rg_kernels *kernels;
     rg_part *part;  /* sets and totals; its element list is gone once the domain stands */
-    rg_part *patch; /* rank 0, until rg_spectrum: the elements that limit the time step (patch.h) */
+    rg_part *patch; /* rank 0, until rg_spectrum: the elements that limit the time step (patch.h); not in form
+                       continuous */
     rg_domain *domain;
+    rg_joints *joints;     /* of form continuous; NULL in others */
+    rg_assembly *assembly; /* likewise */
 
     rg_real *u, *velocity, *now; /* layout.h; now: velocity at the time of u, where it was asked for */
+    rg_real *acceleration;       /* of each element for itself, then of the nodes; only with an assembly */
     rg_real *crack;              /* state of all broken points, and the memory of their law: layout.h */
     size_t crack_stride;         /* values of a block of interfaces */
     rg_real *history; /* layout.h: of the material, `histories` values a point; NULL where that is 0 */

@@ -99,6 +99,9 @@ static void randomize(rg_solver *s, rg_real *q) {
             q[rg_node_index(slot, k / 3, k % 3)] = id < 0 ? 0 : (rg_real)(2 * rg_hash_uniform(h) - 1);
         }
     }
+    if (s->assembly != NULL) {
+        rg_assembly_mean(s->assembly, q);
+    }
     hold_cut(s, q);
 }
 
@@ -350,7 +353,7 @@ void rg_spectrum_whole(rg_solver *s) {
     s->law.slope *= s->stiffest;
     for (state which = first; which <= last; which++) {
         set_state(s, which, slope[1] * s->stiffest, shared);
-        bool symmetric = s->lift || which != INTACT;
+        bool symmetric = s->input->interface.form != RG_FORM_INCOMPLETE || which != INTACT;
         double theta = symmetric ? lanczos_eigenvalue(&op, &run[which]) : power_eigenvalue(&op);
         if (theta > worst) {
             worst = theta;
@@ -391,10 +394,8 @@ static void patch_spectrum(rg_solver *s) {
     rg_solver_free(local);
 }
 
-void rg_spectrum(rg_solver *s) {
-    if (s->rank == 0) {
-        patch_spectrum(s);
-    }
+/* What rank 0 found there, to all. */
+static void share(rg_solver *s) {
     int which = INTACT;
     while (s->rank == 0 && s->limiting_state != state_name[which]) {
         which++;
@@ -404,5 +405,16 @@ void rg_spectrum(rg_solver *s) {
     MPI_Bcast(&s->limiting, 1, MPI_INT64_T, 0, s->comm);
     MPI_Bcast(&which, 1, MPI_INT, 0, s->comm);
     s->limiting_state = state_name[which];
+}
+
+void rg_spectrum(rg_solver *s) {
+    if (s->assembly != NULL) {
+        rg_spectrum_whole(s);
+    } else {
+        if (s->rank == 0) {
+            patch_spectrum(s);
+        }
+        share(s);
+    }
     s->omega2 += s->bodies->omega2;
 }

@@ -79,12 +79,17 @@ void rg_summary_write(rg_summary *m, rg_solver *s, const rg_ledger *l, const rg_
     const rg_estimate *e = &m->estimate;
     uint64_t hash = rg_state_hash(s);
     m->first_fracture = rg_first_fracture(s);
-    m->halo_wait_seconds =
-        rg_halo_waited(s->halo_u[0]) + rg_halo_waited(s->halo_u[1]) + rg_halo_waited(s->halo_t);
+    rg_halo *nodes = s->assembly == NULL ? NULL : rg_assembly_halo(s->assembly);
+    rg_halo *halo[] = {s->halo_u[0], s->halo_t, nodes}; /* of a step */
+    int halos = nodes == NULL ? 2 : 3;
+    m->halo_wait_seconds = rg_halo_waited(s->halo_u[1]);
+    for (int k = 0; k < halos; k++) {
+        m->halo_wait_seconds += rg_halo_waited(halo[k]);
+    }
     MPI_Allreduce(MPI_IN_PLACE, &m->halo_wait_seconds, 1, MPI_DOUBLE, MPI_MAX, s->comm);
     double work = (double)e->elements * (double)(s->step - m->first_step);
     m->us_per_tet_step = work > 0 ? 1e6 * m->loop_seconds * s->ranks * s->threads / work : 0;
-    rg_phases_report phases = rg_phases_gather(&s->phases, s->domain, s->halo_u[0], s->halo_t, s->comm);
+    rg_phases_report phases = rg_phases_gather(&s->phases, s->domain, halo, halos, s->comm);
     if (s->rank != 0) {
         return;
     }

@@ -18,6 +18,7 @@
 #define NAMES   "allowed: letters, digits, _ and -; unique among bodies and probes\n"
 #define UNUSED  ": not used, because interface.law is none\n"
 #define BY_FORM ": not used, because interface.form is intrinsic\n"
+#define JOINED  ": not used, because interface.form is continuous, without interface.faces\n"
 #define INTRINSIC                                                                                            \
     "with form intrinsic: free, exponential, bilinear, tvergaard, polynomial, needleman, xu-needleman\n"
 #define SPECIAL ": anchors, aliases and tags are not supported\n"
@@ -108,6 +109,25 @@ static const struct mistake {
      ":13:3: interface.activation: total" BY_FORM
      ":14:14: interface.bilinear.ascent: 0.1: not used, because interface.law is polynomial\n"
      ":15:23: interface.polynomial.alpha: -1: out of range; allowed: number >= 0 and <= 100\n"},
+    {"  law: linear\n", "  law: linear\n  form: continuous\n  beta_s: 4\n",
+     ":10:8: interface.law: linear: nothing can break, because form continuous has interfaces only on the "
+     "faces that interface.faces selects; allowed: with form continuous and no interface.faces: none\n"
+     ":12:3: interface.beta_s: 4" JOINED},
+    {"  law: linear\n  strength: 400e6\n  energy: 34\n",
+     "  law: none\n  form: continuous\n  penalty: elastic\n  strength: 1e9\n",
+     ":12:3: interface.penalty: elastic" JOINED ":13:3: interface.strength: 1e9" UNUSED},
+    {"  law: linear\n", "  law: exponential\n  form: continuous\n  faces: abs(z) < 1e-6\n",
+     ":10:8: interface.law: exponential: starts with a slope, which only form intrinsic can use; "
+     "allowed: with form continuous: linear, free, rate, fatigue, none\n"},
+    {"  law: linear\n", "  law: linear\n  faces: abs(z) < 1e-6\n",
+     ":11:3: interface.faces: abs(z) < 1e-6: not used, because interface.form is not continuous\n"},
+    {"  law: linear\n", "  law: linear\n  form: continuous\n  faces: t\n",
+     ":12:10: interface.faces: t: depends on t, but this is the state at the start; allowed: number or "
+     "expression in "
+     "x, y, z, nx, ny, nz\n"},
+    {"  energy: 34\n", "  energy: 34\n  form: continuous\n  faces: 1\nmass: consistent\n",
+     ":15:7: mass: consistent: couples all nodes that elements share, so that each step would have to solve "
+     "with it; allowed: with form continuous: lumped\n"},
     {"  law: linear\n", "  law: free\n",
      ":12:3: interface.energy: 34: not used, because interface.law is free\n"},
     {"output:\n", "output:\n  dir: 12\n",

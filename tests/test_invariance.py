@@ -22,7 +22,7 @@ def cauchy(gradient):
 GRADIENT = 1e-3 * np.array([[1.0, 0.7, -0.4], [-0.3, -0.8, 0.5], [0.6, -0.9, 1.1]])
 
 
-@pytest.fixture(params=[(form, ranks) for form in ("variational", "incomplete") for ranks in (1, 3)], ids=str)
+@pytest.fixture(params=[(form, ranks) for form in ("variational", "incomplete", "continuous") for ranks in (1, 3)], ids=str)
 def affine(request, run):
     form, ranks = request.param
     return run(CASES / "affine.yaml", ranks=ranks, sets={"interface.form": form})

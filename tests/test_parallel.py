@@ -15,6 +15,7 @@ VARIANTS = {
     "thesis": {"interface.activation": "total", "interface.contact": "flux"},
     "isotropic": {"interface.penalty": "isotropic"},
     "friction": {"interface.friction": 0.5},
+    "continuous": {"interface.form": "continuous", "interface.faces": "nz*nz > 0.5"},
     "prescribed": {"boundary": [{"set": "z+", "component": "z", "velocity": "1e8*t*(1 + 1e3*x)"},
                                 {"set": "x-", "component": "x", "displacement": "1e6*t*y"}]},
 }

@@ -103,6 +103,7 @@ VARIANTS = {
     "fatigue": {"interface.law": "fatigue"},
     "steps": {"interface.form": "intrinsic", "interface.law": "bilinear",
               "interface.bilinear": {"ascent": 0.05, "steps": 5}},
+    "continuous": {"interface.form": "continuous", "interface.faces": "nz*nz > 0.5"},
     "plain": {"output.fields": [], "output.probes": [], "boundary": []},
     **({} if SINGLE else {"rate": {"interface.law": "rate"}}),
 }

@@ -65,14 +65,14 @@ CUBES = [4, 8, 16, 32]
 class Wave:
     """The standing wave with one mass matrix, on any number of cubes, in equal steps."""
 
-    def __init__(self, run, mass):
-        self.run, self.mass = run, mass
+    def __init__(self, run, mass, form="variational"):
+        self.run, self.method = run, {"mass": mass, "interface.form": form}
         self.steps = int(np.ceil(END / (0.15 * self.critical(CUBES[-1]))))
 
     def wave(self, cubes, **sets):
         # So little energy is of the size of its rounding errors: no limit.
         mesh = {"mesh.cells": [1, 1, cubes], "mesh.size": [LENGTH / cubes, LENGTH / cubes, LENGTH]}
-        return self.run(CASES / "wave.yaml", sets={**mesh, "mass": self.mass, "output.energy_limit": 1e9, **sets})
+        return self.run(CASES / "wave.yaml", sets={**mesh, **self.method, "output.energy_limit": 1e9, **sets})
 
     def critical(self, cubes):
         return self.wave(cubes, **{"time.steps": 1}).summary["dt_critical"]
@@ -100,6 +100,10 @@ def test_displacements_converge_with_order_3(run):
 
 def test_lumped_mass_converges_with_order_2(run):
     assert (Wave(run, "lumped").orders() >= 1.8).all()
+
+
+def test_shared_nodes_converge_with_order_2(run):
+    assert (Wave(run, "lumped", "continuous").orders() >= 1.8).all()
 
 
 def test_time_steps_are_small_enough_to_see_the_order(run):
