@@ -203,24 +203,29 @@ RG_INLINE void face_derivatives(int q, rg_real xi[RG_FNODES], rg_real eta[RG_FNO
     memcpy(eta, deta, sizeof deta);
 }
 
-/* Unit normals n of the deformed mid-surface at the points, and its area there (m^2). */
-RG_INLINE void mid_surface(const interface *s, vec3 n[RG_POINTS], rg_vec area[RG_POINTS]) {
+/* Tangents g1 = dx/dxi, g2 = dx/deta of the deformed mid-surface at the points (m). */
+RG_INLINE void mid_tangents(const interface *s, vec3 g[RG_POINTS][2]) {
     vec3 one[RG_FNODES], two[RG_FNODES];
     traces(s, one, two);
     for (int q = 0; q < RG_POINTS; q++) {
         rg_real xi[RG_FNODES], eta[RG_FNODES];
         face_derivatives(q, xi, eta);
-        vec3 g1, g2;
         for (int c = 0; c < 3; c++) {
-            g1[c] = s->edge[0][c];
-            g2[c] = s->edge[1][c];
+            g[q][0][c] = s->edge[0][c];
+            g[q][1][c] = s->edge[1][c];
             for (int a = 0; a < RG_FNODES; a++) {
                 rg_vec u = 0.5 * (one[a][c] + two[a][c]);
-                g1[c] += xi[a] * u;
-                g2[c] += eta[a] * u;
+                g[q][0][c] += xi[a] * u;
+                g[q][1][c] += eta[a] * u;
             }
         }
-        rg_cross(g1, g2, n[q]);
+    }
+}
+
+/* Its unit normals n there, and its area (m^2). */
+RG_INLINE void mid_surface(vec3 g[RG_POINTS][2], vec3 n[RG_POINTS], rg_vec area[RG_POINTS]) {
+    for (int q = 0; q < RG_POINTS; q++) {
+        rg_cross(g[q][0], g[q][1], n[q]);
         rg_vec twice = rg_sqrt(rg_dot(n[q], n[q]));
         area[q] = 0.5 * twice;
         for (int c = 0; c < 3; c++) {
@@ -363,10 +368,64 @@ RG_INLINE void note_separation(const interface *s, int q, rg_mask acting, rg_vec
     }
 }
 
+/* How much of a face still lies over the other one, which has slid by w_t: (1 - |w_t|^2/area)^2, down to 0;
+ * here its root. */
+RG_INLINE rg_vec overlap_root(const interface *s, const opening *o) {
+    rg_vec area = rg_max(s->area, rg_splat(RG_NO_AREA));
+    return rg_max(1.0 - rg_dot(o->tangential, o->tangential) / area, rg_splat(0.0));
+}
+
+/* Traction along n, and over w_t (N/m). */
+typedef struct {
+    rg_vec along, sliding;
+} traction;
+
+/* Contact as a potential, over `touching` = min(0, w_n):
+ *     E = c/2 w_n^2 (1 - |w_t|^2/area)^2. */
+RG_INLINE void add_potential_contact(const interface *s, const opening *o, rg_vec touching, traction *t) {
+    rg_vec root = overlap_root(s, o), pressed = s->contact * touching * root;
+    t->along += pressed * root;
+    t->sliding -= 2.0 * pressed * touching / rg_max(s->area, rg_splat(RG_NO_AREA));
+}
+
+/* A potential of w_n = w . n and w_t = w - w_n n also depends on n, by (along - sliding w_n) w_t . dn, and
+ *     w_t . dn = (dg1 . (g2 x w_t) + dg2 . (w_t x g1))/|g1 x g2|.
+ * Adds the nodal forces that follow, of which either side bears one half. */
+RG_INLINE void add_turn(int q, vec3 g[2], const opening *o, const traction *t, rg_mask acting,
+                        vec3 turn[RG_FNODES]) {
+    rg_real xi[RG_FNODES], eta[RG_FNODES];
+    face_derivatives(q, xi, eta);
+    vec3 w, across, one, two;
+    for (int c = 0; c < 3; c++) {
+        w[c] = o->tangential[c];
+    }
+    rg_cross(g[0], g[1], across);
+    rg_cross(g[1], w, one);
+    rg_cross(w, g[0], two);
+    rg_vec twice = rg_sqrt(rg_dot(across, across));
+    rg_vec factor = rg_splat(-0.5 * rg_tri[q / 3].weight) * (t->along - t->sliding * o->normal) /
+                    rg_max(twice, rg_splat(RG_NO_AREA));
+    factor = rg_select(acting, factor, rg_splat(0.0));
+    for (int a = 0; a < RG_FNODES; a++) {
+        for (int c = 0; c < 3; c++) {
+            turn[a][c] += factor * (xi[a] * one[c] + eta[a] * two[c]);
+        }
+    }
+}
+
+RG_INLINE void store_turn(const interface *s, vec3 turn[RG_FNODES]) {
+    rg_real *to = s->args->turn + s->block * RG_IFORCE_BLOCK + s->lane;
+    for (int a = 0; a < RG_FNODES; a++) {
+        for (int c = 0; c < 3; c++) {
+            rg_store(to + (a * 3 + c) * RG_LANES, turn[a][c]);
+        }
+    }
+}
+
 /* Replaces the DG traction at broken points by the cohesive law and contact. Returns the points that keep
  * their DG terms because they are closed under flux contact. */
-RG_INLINE rg_mask broken_traction(interface *s, int q, const vec3 n, rg_mask broken, law_respond *respond,
-                                  int memory) {
+RG_INLINE rg_mask broken_traction(interface *s, int q, vec3 g[2], const vec3 n, rg_mask broken,
+                                  law_respond *respond, int memory, vec3 turn[RG_FNODES]) {
     const rg_cohesive *law = &s->args->law;
     opening o;
     crack_opening(s, q, n, &o);
@@ -389,6 +448,16 @@ RG_INLINE rg_mask broken_traction(interface *s, int q, const vec3 n, rg_mask bro
         store_where(memory_state(s, memory, q, k), acting, state.memory[k]);
     }
     rg_vec touching = rg_select(o.normal < rg_splat(law->contact_below), o.normal, rg_splat(0.0));
+    if (law->potential) {
+        traction t = {r.normal, r.shear * r.weight};
+        add_potential_contact(s, &o, touching, &t);
+        add_turn(q, g, &o, &t, acting, turn);
+        for (int c = 0; c < 3; c++) {
+            rg_vec all = t.sliding * o.tangential[c] + t.along * n[c];
+            s->total[q][c] = rg_select(acting, all, s->total[q][c]);
+        }
+        return closed;
+    }
     rg_vec along = r.normal + rg_splat(law->flux ? 0.0 : 1.0) * s->contact * touching;
     for (int c = 0; c < 3; c++) {
         rg_vec t = r.shear * (r.weight * o.tangential[c]) + along * n[c];
@@ -400,10 +469,11 @@ RG_INLINE rg_mask broken_traction(interface *s, int q, const vec3 n, rg_mask bro
 RG_INLINE void damaged(interface *s, law_respond *respond, int memory) {
     const rg_interface_args *args = s->args;
     size_t first = s->block * RG_LANES + (size_t)s->lane;
-    vec3 n[RG_POINTS];
+    vec3 g[RG_POINTS][2], n[RG_POINTS], turn[RG_FNODES] = {{{0}}};
     rg_vec area[RG_POINTS];
     load_law(s);
-    mid_surface(s, n, area);
+    mid_tangents(s, g);
+    mid_surface(g, n, area);
     uint8_t broken[RG_VLEN], unlinked[RG_VLEN] = {0}, any = 0;
     memcpy(broken, args->broken + first, sizeof broken);
     for (int q = 0; q < RG_POINTS; q++) {
@@ -412,7 +482,7 @@ RG_INLINE void damaged(interface *s, law_respond *respond, int memory) {
         set_bits(broken, q, cracked);
         rg_mask closed = {0};
         if (rg_any(cracked)) {
-            closed = broken_traction(s, q, n[q], cracked, respond, memory);
+            closed = broken_traction(s, q, g[q], n[q], cracked, respond, memory, turn);
         }
         set_bits(unlinked, q, cracked & ~closed);
     }
@@ -423,6 +493,9 @@ RG_INLINE void damaged(interface *s, law_respond *respond, int memory) {
     }
     if (any) {
         args->active[s->block] = 1;
+    }
+    if (args->law.potential) {
+        store_turn(s, turn);
     }
 }
 
@@ -488,7 +561,7 @@ RG_INLINE void rub_point(interface *s, int q, const vec3 n, rg_mask broken, rg_m
         return;
     }
     vec3 along[2];
-    rg_vec state[RG_FRICTION], traction[2];
+    rg_vec state[RG_FRICTION], drag[2];
     tangents(s, n, along);
     rg_friction_point p = {.slip = {rg_dot(o.tangential, along[0]), rg_dot(o.tangential, along[1])},
                            .stiffness = s->pen_iso,
@@ -497,12 +570,12 @@ RG_INLINE void rub_point(interface *s, int q, const vec3 n, rg_mask broken, rg_m
     for (int k = 0; k < RG_FRICTION; k++) {
         state[k] = rg_load(friction_state(s, q, k));
     }
-    rg_friction_return(&p, state, traction);
+    rg_friction_return(&p, state, drag);
     for (int k = 0; k < RG_FRICTION; k++) {
         store_where(friction_state(s, q, k), broken, state[k]);
     }
     for (int c = 0; c < 3; c++) {
-        rg_vec t = traction[0] * along[0][c] + traction[1] * along[1][c];
+        rg_vec t = drag[0] * along[0][c] + drag[1] * along[1][c];
         s->total[q][c] += rg_select(broken, t, rg_splat(0.0));
     }
 }
@@ -511,11 +584,12 @@ RG_INLINE void rub_point(interface *s, int q, const vec3 n, rg_mask broken, rg_m
 static __attribute__((noinline)) void damaged_with_friction(interface *s) {
     const uint8_t *bits = s->args->broken + s->block * RG_LANES + s->lane;
     uint8_t before[RG_VLEN];
-    vec3 n[RG_POINTS];
+    vec3 g[RG_POINTS][2], n[RG_POINTS];
     rg_vec area[RG_POINTS];
     memcpy(before, bits, sizeof before);
     damaged_by_law[s->args->law.law](s);
-    mid_surface(s, n, area);
+    mid_tangents(s, g);
+    mid_surface(g, n, area);
     for (int q = 0; q < RG_POINTS; q++) {
         rg_mask broken = bit_mask(bits, q);
         if (rg_any(broken)) {
@@ -577,6 +651,10 @@ RG_INLINE void broken_energy(const interface *s, int q, const vec3 n, rg_mask br
     load_memory(s, memory, q, &state);
     energy(&p, &state, &e);
     rg_vec contact = 0.5 * s->contact * o.normal * o.normal;
+    if (law->potential) {
+        rg_vec root = overlap_root(s, &o);
+        contact *= root * root;
+    }
     rg_mask touching = law->flux ? (rg_mask){0} : broken & (o.normal < rg_splat(law->contact_below));
     sum[RG_E_COHESIVE] += weight * rg_select(broken & unlinked, e.stored, zero);
     sum[RG_E_CONTACT] += weight * rg_select(touching, contact, zero);
@@ -587,10 +665,11 @@ RG_INLINE void crack_energy(interface *s, rg_vec sum[RG_E_INTERFACE], law_energy
     const rg_interface_args *args = s->args;
     const uint8_t *broken = args->broken + s->block * RG_LANES + s->lane;
     const uint8_t *unlinked = args->unlinked + s->block * RG_LANES + s->lane;
-    vec3 n[RG_POINTS];
+    vec3 g[RG_POINTS][2], n[RG_POINTS];
     rg_vec area[RG_POINTS];
     load_law(s);
-    mid_surface(s, n, area);
+    mid_tangents(s, g);
+    mid_surface(g, n, area);
     for (int q = 0; q < RG_POINTS; q++) {
         broken_energy(s, q, n[q], bit_mask(broken, q), bit_mask(unlinked, q), sum, energy, memory);
     }

@@ -85,7 +85,9 @@ typedef struct {
                              part */
     bool total;           /* activation: the law takes the total jump, not the jump since the switch */
     bool flux;            /* contact: all DG terms return on closure, not a one-sided penalty */
-    bool intrinsic;       /* every point is broken from the start and takes the total jump */
+    bool potential; /* contact is a potential of the two sides: it fades as they slide off each other, and
+                       tractions turn the mid-surface; not with flux */
+    bool intrinsic; /* every point is broken from the start and takes the total jump */
     rg_law law;
     double shape[RG_LAW_SHAPE]; /* the law's own parameters */
     double separation;          /* effective opening of full separation (m) */
@@ -116,6 +118,8 @@ typedef struct {
     size_t crack_stride; /* values from one block's crack state to the next: RG_CRACK_BLOCK, the memory of the
                             law and, with friction, RG_FRICTION_BLOCK; or 0 to share one */
     rg_real *force;      /* out: g, nodal force on the minus side (N) */
+    rg_real *turn; /* out, with law.potential and only of broken faces: nodal force on either side (N), laid
+                      out as `force` */
 } rg_interface_args;
 
 /* Central difference, in two parts: v += dt M^-1 (bulk force + interfaces inside the tile), and, once the
@@ -128,6 +132,8 @@ typedef struct {
     const rg_real *geom;
     const rg_real *force;     /* bulk; not read in the second part */
     const rg_real *iforce;    /* interface */
+    const rg_real *turn;      /* NULL, or of broken interfaces, on either side alike */
+    const uint8_t *broken;    /* [interface], read with `turn` */
     const int32_t *interface; /* links */
     rg_real *velocity;        /* in/out (m/s) */
     rg_real *now; /* NULL, or out: first part v + dt_now M^-1 (...), second part += dt_now M^-1 (...) */

@@ -14,6 +14,8 @@ typedef struct {
     double dg[3];       /* traction plus penalty, area-weighted */
     double normal[3];   /* unit normal of the deformed mid-surface; zero in padding */
     double current;     /* deformed area */
+    double tangent[2][3], by_xi[RG_FNODES],
+        by_eta[RG_FNODES]; /* of the mid-surface; of the shape functions */
 } point;
 
 /* Opening of a broken point. */
@@ -73,18 +75,17 @@ static double edge(const rg_interface_args *args, size_t i, int k, int c) {
 
 /* Normal and area of the deformed mid-surface. */
 static void sample_surface(const rg_interface_args *args, size_t i, const double l[3], point *p) {
-    double dxi[RG_FNODES], deta[RG_FNODES], tangent[2][3];
-    shape_derivatives(l, dxi, deta);
+    shape_derivatives(l, p->by_xi, p->by_eta);
     for (int c = 0; c < 3; c++) {
         for (int k = 0; k < 2; k++)
-            tangent[k][c] = edge(args, i, k, c);
+            p->tangent[k][c] = edge(args, i, k, c);
         for (int a = 0; a < RG_FNODES; a++) {
             double mean = (side_value(args, i, 0, a, c) + side_value(args, i, 1, a, c)) / 2;
-            tangent[0][c] += dxi[a] * mean;
-            tangent[1][c] += deta[a] * mean;
+            p->tangent[0][c] += p->by_xi[a] * mean;
+            p->tangent[1][c] += p->by_eta[a] * mean;
         }
     }
-    rg_reference_cross(tangent[0], tangent[1], p->normal);
+    rg_reference_cross(p->tangent[0], p->tangent[1], p->normal);
     double length = sqrt(rg_reference_dot(p->normal, p->normal));
     for (int c = 0; c < 3; c++)
         p->normal[c] = length > 0 ? p->normal[c] / length : 0;
@@ -202,9 +203,31 @@ static rg_law_answer ask(const rg_interface_args *args, const point *p, const op
     return answer;
 }
 
+/* How much of a face lies over the other one. */
+static double overlap(const point *p, const opening *o) {
+    double left = fmax(0, 1 - rg_reference_dot(o->shear, o->shear) / p->area);
+    return left * left;
+}
+
+/* Adds -dE/dx/2 of the mid-surface's nodes x for a potential whose gradient is t with respect to the opening
+ * w: E depends on the normal n too, by dE/dn = (t . n - T w_n) w_t, where t = ... n + T w_t, and n = g/|g|
+ * with g = g1 x g2 turns by dn = (I - n n)(dg1 x g2 + g1 x dg2)/|g|. */
+static void turn(const point *p, const opening *o, double across, double sliding, double f[RG_FNODES][3]) {
+    double factor = p->weight * (across - sliding * o->normal) / (2 * p->current);
+    for (int a = 0; a < RG_FNODES; a++)
+        for (int c = 0; c < 3; c++) {
+            double unit[3] = {c == 0, c == 1, c == 2}, first[3], second[3];
+            rg_reference_cross(unit, p->tangent[1], first);
+            rg_reference_cross(p->tangent[0], unit, second);
+            f[a][c] -= factor / 2 *
+                       (p->by_xi[a] * rg_reference_dot(o->shear, first) +
+                        p->by_eta[a] * rg_reference_dot(o->shear, second));
+        }
+}
+
 /* Cohesive traction and contact, area-weighted; keeps the largest opening. */
 static void cohesive(const rg_interface_args *args, const point *p, const opening *o, const crack *k,
-                     double t[3]) {
+                     double t[3], double turning[RG_FNODES][3]) {
     const rg_cohesive *law = &args->law;
     double before = *k->state[RG_CRACK_OPENING], largest = fmax(before, o->effective);
     double parts = p->opening * (law->separation / law->opening);
@@ -213,12 +236,17 @@ static void cohesive(const rg_interface_args *args, const point *p, const openin
         *k->state[RG_CRACK_TIME] = (rg_real)args->time;
     rg_law_answer a = ask(args, p, o, k, before, true);
     double sliding = sqrt(rg_reference_dot(o->shear, o->shear));
-    for (int c = 0; c < 3; c++) {
-        double along = sliding > 0 ? o->shear[c] / sliding : 0;
-        t[c] = p->area * (a.sliding * along + a.normal * p->normal[c]);
-        if (!law->flux && o->normal < law->contact_below)
-            t[c] += p->contact * o->normal * p->normal[c];
-    }
+    bool touches = !law->flux && o->normal < law->contact_below;
+    double pressed = touches ? p->contact * o->normal * (law->potential ? overlap(p, o) : 1) : 0;
+    double apart = touches && law->potential
+                       ? -2 * p->contact * o->normal * o->normal * sqrt(overlap(p, o)) / p->area
+                       : 0;
+    double across = p->area * a.normal + pressed;
+    double secant = (sliding > 0 ? p->area * a.sliding / sliding : 0) + apart;
+    for (int c = 0; c < 3; c++)
+        t[c] = secant * o->shear[c] + across * p->normal[c];
+    if (law->potential)
+        turn(p, o, across, secant, turning);
 }
 
 static crack crack_of(const rg_interface_args *args, size_t i, int q) {
@@ -286,7 +314,8 @@ static void set_bit(uint8_t *mask, int q, bool on) {
 }
 
 /* Traction of point q, area-weighted; advances its state. */
-static void point_traction(const rg_interface_args *args, size_t i, int q, const point *p, double t[3]) {
+static void point_traction(const rg_interface_args *args, size_t i, int q, const point *p, double t[3],
+                           double turning[RG_FNODES][3]) {
     double direction[3] = {0, 0, 0};
     bool broken = args->broken[i] >> q & 1;
     for (int c = 0; c < 3; c++)
@@ -302,7 +331,7 @@ static void point_traction(const rg_interface_args *args, size_t i, int q, const
     opening o = measure(&args->law, p, &k);
     bool closed = args->law.flux && o.normal < 0;
     if (!closed)
-        cohesive(args, p, &o, &k, t);
+        cohesive(args, p, &o, &k, t, turning);
     if (args->law.friction > 0)
         rub(args, i, p, &o, &k, !broken, t);
     set_bit(&args->unlinked[i], q, !closed);
@@ -310,20 +339,23 @@ static void point_traction(const rg_interface_args *args, size_t i, int q, const
 
 void rg_reference_interface(const rg_interface_args *args, size_t begin, size_t end) {
     for (size_t i = begin * RG_LANES; i < end * RG_LANES; i++) {
-        double g[RG_FNODES][3] = {{0}};
+        double g[RG_FNODES][3] = {{0}}, turning[RG_FNODES][3] = {{0}};
         for (int q = 0; q < RG_POINTS; q++) {
             point p;
             double t[3];
             sample(args, i, q, &p);
             sample_traction(args, i, q, &p);
-            point_traction(args, i, q, &p, t);
+            point_traction(args, i, q, &p, t, turning);
             for (int a = 0; a < RG_FNODES; a++)
                 for (int c = 0; c < 3; c++)
                     g[a][c] += p.weight * p.shape[a] * t[c];
         }
         for (int a = 0; a < RG_FNODES; a++)
-            for (int c = 0; c < 3; c++)
+            for (int c = 0; c < 3; c++) {
                 args->force[rg_iforce_index(i, a, c)] = (rg_real)g[a][c];
+                if (args->law.potential && args->broken[i] != 0)
+                    args->turn[rg_iforce_index(i, a, c)] = (rg_real)turning[a][c];
+            }
     }
 }
 
@@ -343,7 +375,8 @@ static void point_energy(const rg_interface_args *args, size_t i, int q, double 
     if (unlinked)
         energy[RG_E_COHESIVE] += p.weight * p.area * a.stored;
     if (!law->flux && o.normal < law->contact_below)
-        energy[RG_E_CONTACT] += p.weight * p.contact * o.normal * o.normal / 2;
+        energy[RG_E_CONTACT] +=
+            p.weight * p.contact * o.normal * o.normal / 2 * (law->potential ? overlap(&p, &o) : 1);
     for (int d = 0; d < 2 && law->friction > 0; d++) {
         double stretch = *k.friction[RG_FRICTION_STRETCH + d];
         energy[RG_E_CONTACT] += p.weight * p.iso * stretch * stretch / 2;

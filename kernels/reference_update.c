@@ -89,6 +89,10 @@ static void total_force(const rg_kick_args *args, size_t e, double f[RG_NODES][3
         for (int a = 0; a < RG_FNODES; a++)
             for (int c = 0; c < 3; c++)
                 f[rg_face_node[face][a]][c] += sign * args->iforce[rg_iforce_index((size_t)link / 4, a, c)];
+        bool turns = args->turn != NULL && args->broken[link / 4] != 0;
+        for (int a = 0; turns && a < RG_FNODES; a++)
+            for (int c = 0; c < 3; c++)
+                f[rg_face_node[face][a]][c] += args->turn[rg_iforce_index((size_t)link / 4, a, c)];
     }
 }
 

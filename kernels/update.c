@@ -27,6 +27,25 @@ RG_INLINE void add_face(const rg_kick_args *args, const int32_t link[RG_VLEN], i
     }
 }
 
+/* Adds what turns the mid-surface of face k, which is the same for both sides. */
+RG_INLINE void add_turn(const rg_kick_args *args, const int32_t link[RG_VLEN], int k, bool seams,
+                        rg_vec f[3][RG_NODES]) {
+    static _Alignas(64) const rg_real none[RG_IFORCE_BLOCK];
+    rg_lanes at;
+    bool any = false;
+    for (int l = 0; l < RG_VLEN; l++) {
+        bool there =
+            link[l] >= 0 && ((link[l] & RG_SEAM) != 0) == seams && args->broken[(uint32_t)link[l] / 4];
+        at.lane[l] = there ? rg_first_value(args->turn, (uint32_t)link[l] / 4, RG_IFORCE_BLOCK) : none;
+        any |= there;
+    }
+    for (int a = 0; any && a < RG_FNODES; a++) {
+        for (int c = 0; c < 3; c++) {
+            f[c][rg_face_node[k][a]] += rg_gather(&at, (a * 3 + c) * RG_LANES);
+        }
+    }
+}
+
 /* Nodal forces: bulk, then the faces in their local order. The order is the mesh's, so the sum has the same
  * bits however the mesh is distributed. */
 RG_INLINE void sum_force(const rg_kick_args *args, size_t block, int lane, bool seams,
@@ -38,7 +57,11 @@ RG_INLINE void sum_force(const rg_kick_args *args, size_t block, int lane, bool 
         }
     }
     for (int k = 0; k < RG_FACES; k++) {
-        add_face(args, args->interface + block * RG_LINK_BLOCK + k * RG_LANES + lane, k, seams, f);
+        const int32_t *link = args->interface + block * RG_LINK_BLOCK + k * RG_LANES + lane;
+        add_face(args, link, k, seams, f);
+        if (args->turn != NULL) {
+            add_turn(args, link, k, seams, f);
+        }
     }
 }
 

@@ -16,7 +16,7 @@ typedef enum { RG_INTERACTION_THESIS, RG_INTERACTION_DERIVED } rg_interaction;
 typedef enum { RG_FORM_VARIATIONAL, RG_FORM_INCOMPLETE, RG_FORM_INTRINSIC, RG_FORM_CONTINUOUS } rg_form;
 typedef enum { RG_PENALTY_ELASTIC, RG_PENALTY_ISOTROPIC } rg_penalty;
 typedef enum { RG_ACTIVATION_CONTINUOUS, RG_ACTIVATION_TOTAL } rg_activation;
-typedef enum { RG_CONTACT_PENALTY, RG_CONTACT_FLUX } rg_contact;
+typedef enum { RG_CONTACT_PENALTY, RG_CONTACT_FLUX, RG_CONTACT_POTENTIAL } rg_contact;
 typedef enum { RG_OUTPUT_DOUBLE, RG_OUTPUT_SINGLE } rg_output_precision;
 typedef enum { RG_FRAGMENTS_EACH, RG_FRAGMENTS_LAST, RG_FRAGMENTS_NONE } rg_fragments_when;
 typedef enum { RG_KEEP_ENERGY, RG_KEEP_OPENING } rg_keep;

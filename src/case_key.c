@@ -44,7 +44,7 @@ static const char *const laws[] = {
 #undef RG_LAW
     "none", NULL};
 static const char *const activations[] = {"continuous", "total", NULL};
-static const char *const contacts[] = {"penalty", "flux", NULL};
+static const char *const contacts[] = {"penalty", "flux", "potential", NULL};
 static const char *const precisions[] = {"double", "single", NULL};
 static const char *const keeps[] = {"energy", "opening", NULL};
 static const char *const masses[] = {"consistent", "lumped", NULL};

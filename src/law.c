@@ -26,6 +26,7 @@ rg_cohesive rg_law_make(const rg_case *c) {
                        .beta = c->interface.beta,
                        .total = c->interface.activation == RG_ACTIVATION_TOTAL,
                        .flux = c->interface.contact == RG_CONTACT_FLUX,
+                       .potential = c->interface.contact == RG_CONTACT_POTENTIAL,
                        .intrinsic = c->interface.form == RG_FORM_INTRINSIC,
                        .friction = c->interface.friction};
     memcpy(law.shape, c->interface.shape[law.law], sizeof law.shape);

@@ -194,6 +194,8 @@ static void kick(rg_solver *s, size_t tile, const rg_workspace *w, const impulse
                          .geom = s->domain->geom + t->begin * RG_GEOM_BLOCK,
                          .force = w->force,
                          .iforce = w->iforce,
+                         .turn = s->law.potential ? w->turn : NULL,
+                         .broken = s->broken + t->ibegin * RG_LANES,
                          .interface = s->domain->interface + t->begin * RG_LINK_BLOCK,
                          .velocity = p->velocity + at,
                          .now = now == NULL ? NULL : now + at,

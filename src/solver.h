@@ -25,7 +25,7 @@
 
 /* What one thread needs to work on a tile. */
 typedef struct {
-    rg_real *force, *traction, *iforce, *ghost; /* layout.h */
+    rg_real *force, *traction, *iforce, *turn, *ghost; /* layout.h */
 } rg_workspace;
 
 typedef struct rg_solver rg_solver;

@@ -298,6 +298,7 @@ static void set_state(rg_solver *s, state which, double sliding, rg_real *shared
     s->law.contact_below = INFINITY;
     s->law.flux = false;
     s->law.stick = true;
+    s->law.potential = false; /* no matter where nothing has slid */
     s->law.law =
         RG_LAW_LINEAR; /* failed, so contact alone acts; and without memory, which `shared` has no room for */
     if (which == COHESIVE) { /* contact, no softer than the law, both ways; the law's own slope in sliding */

@@ -57,7 +57,8 @@ rg_interface_args rg_tile_interfaces(const rg_solver *s, const rg_tile *t, const
                                .active = s->active + t->ibegin,
                                .crack = s->crack + t->ibegin * s->crack_stride,
                                .crack_stride = s->crack_stride,
-                               .force = w->iforce};
+                               .force = w->iforce,
+                               .turn = w->turn};
 }
 
 double rg_separation(const rg_solver *s, size_t i) {
@@ -89,6 +90,7 @@ rg_workspace rg_workspace_make(const rg_domain *d) {
     return (rg_workspace){.force = RG_NEW(rg_real, d->tile_blocks * RG_NODE_BLOCK),
                           .traction = RG_NEW(rg_real, d->tile_blocks * RG_TRACTION_BLOCK),
                           .iforce = RG_NEW(rg_real, d->tile_iblocks * RG_IFORCE_BLOCK),
+                          .turn = RG_NEW(rg_real, d->tile_iblocks * RG_IFORCE_BLOCK),
                           .ghost = RG_NEW(rg_real, d->tile_sblocks * RG_GHOST_BLOCK)};
 }
 
@@ -96,6 +98,7 @@ void rg_workspace_free(rg_workspace *w) {
     rg_free(w->force);
     rg_free(w->traction);
     rg_free(w->iforce);
+    rg_free(w->turn);
     rg_free(w->ghost);
 }
 

@@ -424,6 +424,8 @@ const rg_cohesive input_laws[INPUT_LAWS] = {
     {LINEAR, .beta = 2, .total = true, .flux = true},
     {LINEAR, .beta = 1.5, .flux = true},
     {LINEAR, .beta = 1, .contact_below = INFINITY},
+    {LINEAR, .beta = 1, .potential = true},
+    {LINEAR, .beta = 0, .potential = true},
 };
 
 void input_for_each_case(void (*test)(const rg_kernels *set, input_kind kind, rg_cohesive law)) {

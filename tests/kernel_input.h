@@ -16,7 +16,7 @@ enum {
     INPUT_ESLOTS = INPUT_EBLOCKS * RG_LANES,
     INPUT_ISLOTS = INPUT_IBLOCKS * RG_LANES,
     INPUT_SETS = 8, /* room for all sets of kernels */
-    INPUT_LAWS = 8,
+    INPUT_LAWS = 10,
 };
 
 #define INPUT_SIZE 1e-4 /* edge of a cube of the mesh (m) */

@@ -38,7 +38,7 @@ static void for_each_solid(void (*test)(const rg_kernels *set), bool objective) 
 typedef struct {
     const rg_kernels *set;
     input *in;
-    double *force, *traction, *stiffening, *iforce, *crack, *energy;
+    double *force, *traction, *stiffening, *iforce, *turn, *crack, *energy;
     uint8_t *broken, *unlinked;
 } body;
 
@@ -51,6 +51,7 @@ static body body_make(const rg_kernels *set, input *in) {
         .traction = input_alloc(INPUT_EBLOCKS * RG_TRACTION_BLOCK * sizeof(double)),
         .stiffening = input_alloc(INPUT_ESLOTS * sizeof(double)),
         .iforce = input_alloc(INPUT_IBLOCKS * RG_IFORCE_BLOCK * sizeof(double)),
+        .turn = input_alloc(INPUT_IBLOCKS * RG_IFORCE_BLOCK * sizeof(double)),
         .crack = input_alloc(INPUT_IBLOCKS * RG_CRACK_BLOCK * sizeof(double)),
         .energy = input_alloc(INPUT_ISLOTS * RG_E_INTERFACE * sizeof(double)),
         .broken = input_alloc(INPUT_ISLOTS),
@@ -63,6 +64,7 @@ static void body_free(body *b) {
     free(b->traction);
     free(b->stiffening);
     free(b->iforce);
+    free(b->turn);
     free(b->crack);
     free(b->energy);
     free(b->broken);
@@ -81,6 +83,7 @@ static double evaluate(body *b) {
     rg_interface_args interface =
         input_interface_args(in, b->broken, b->unlinked, in->active, b->crack, b->iforce);
     interface.traction = b->traction;
+    interface.turn = b->turn;
     b->set->bulk(&bulk, 0, INPUT_EBLOCKS);
     b->set->interface(&interface, 0, INPUT_IBLOCKS);
     b->set->bulk_state(&(rg_bulk_state_args){.bulk = &bulk, .energy = b->energy}, 0, INPUT_EBLOCKS);
@@ -103,6 +106,8 @@ static double node_force(const body *b, size_t s, int a, int c) {
                     continue;
                 double g = b->iforce[rg_iforce_index((size_t)link / 4, k, c)];
                 f += link % 4 == 1 ? -g : g;
+                if (b->in->law.potential && b->broken[link / 4])
+                    f += b->turn[rg_iforce_index((size_t)link / 4, k, c)];
             }
     return f;
 }
@@ -190,6 +195,31 @@ static void check_broken_gradient(const rg_kernels *set) {
 static void test_broken_gradient(void **state) {
     (void)state;
     for_each_set(check_broken_gradient);
+}
+
+/* Contact as a potential: closed points have slid by up to most of their faces, or beyond, where nothing is
+ * left of contact. The law is long enough that points which still hold it have slid as far. */
+static void check_slid_gradient(const rg_kernels *set) {
+    static const double w[CRACKS][2] = {{0.02, 0.05}, {0.01, 0.1}, {-0.03, 0.4}, {-0.02, 1.5}};
+    static const double largest[CRACKS] = {0.01, 0.5, 0.6, 1.6};
+    for (int beta = 0; beta < 2; beta++) {
+        const rg_cohesive law = {.strength = 2e10, .opening = INPUT_SIZE, .beta = beta, .potential = true};
+        input *in = input_make(INPUT_SMALL, law, 3, 1);
+        set_smooth(in, 2e-7);
+        for (size_t i = 0; i < INPUT_INTERFACES; i++)
+            for (int q = 0; q < RG_POINTS; q++)
+                if ((i * 5 + (size_t)q) % 3 == 0) {
+                    size_t regime = (i + (size_t)q) % CRACKS;
+                    input_break_point(in, i, q, w[regime], largest[regime]);
+                }
+        input_flags(in);
+        check_gradient(set, in);
+    }
+}
+
+static void test_slid_gradient(void **state) {
+    (void)state;
+    for_each_set(check_slid_gradient);
 }
 
 static void set_gradient(input *in, const double f[9]) {
@@ -515,6 +545,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_intact_gradient),
         cmocka_unit_test(test_broken_gradient),
+        cmocka_unit_test(test_slid_gradient),
         cmocka_unit_test(test_rigid),
         cmocka_unit_test(test_stress),
         cmocka_unit_test(test_cauchy),
