@@ -1,0 +1,55 @@
+"""The plate impact on a small plate: what rubble under a ball must keep, and the wave that reaches the back."""
+
+import math
+
+import numpy as np
+import pytest
+from conftest import CASES, SINGLE
+from test_parallel import assert_same_bits
+
+pytestmark = pytest.mark.skipif(SINGLE, reason="the ceramic needs double precision")
+
+IMPACT = CASES / "impact.yaml"
+SHEAR, POISSON, DENSITY = 146e9, 0.2, 3700.0
+SPEED = math.sqrt(SHEAR * 2 * (1 - POISSON) / (1 - 2 * POISSON) / DENSITY)
+BALL = 8000 * 4 / 3 * math.pi * 7.66e-3**3 * 300.0  # momentum (kg m/s)
+
+
+@pytest.fixture(scope="module")
+def impact(run):
+    return run(IMPACT)
+
+
+@pytest.mark.parametrize("ranks, threads", [(1, 2), (2, 1), (3, 1)])
+def test_rubble_is_the_same_on_any_layout(run, impact, ranks, threads):
+    assert impact.summary["failed_area_m2"] > 2e-3
+    assert_same_bits(run(IMPACT, ranks=ranks, threads=threads), impact)
+
+
+def test_ball_and_plate_keep_their_momentum(impact):
+    energy = impact.energy
+    assert energy["momentum_z"][0] == pytest.approx(-BALL, rel=1e-12)
+    for axis in "xyz":
+        assert np.ptp(energy[f"momentum_{axis}"]) < 1e-13 * BALL, axis
+
+
+def test_ledger_closes(impact):
+    assert impact.summary["energy_error_rel"] < 5e-3
+    assert impact.summary["plastic_J"] > 0.05 and impact.summary["damage_J"] > 1
+
+
+def test_wave_crosses_the_plate_at_the_dilatational_speed(run):
+    """Plane wave of a push, read at half of what the free back then moves at."""
+    push, thickness = 1.0, 12e-3
+    sides = [{"set": side, "component": side[0], "velocity": 0} for side in ("x-", "x+", "y-", "y+")]
+    wave = run(IMPACT, sets={
+        "mesh": {"cells": [1, 1, 24], "size": [0.5e-3, 0.5e-3, thickness], "origin": [0, 0, -thickness]},
+        "bodies": [],
+        "boundary": [*sides, {"set": "z+", "component": "z", "velocity": -push}],
+        "time.end": 1.5e-6,
+        "output": {"interval": 1e-7, "fields": [], "probes": [{"name": "back", "at": [0.25e-3, 0.25e-3, -thickness]}]},
+    })
+    history = wave.history
+    arrival = history["time"][np.argmax(-history["back_vz"] > push)]
+    assert arrival == pytest.approx(thickness / SPEED, rel=0.03)
+    assert (-history["back_vz"][history["time"] < 0.8 * thickness / SPEED]).max() < 0.05 * push
