@@ -12,7 +12,7 @@
  * decays within a few elements, so that a patch around the worst elements has it too. The patch's frequency
  * is a lower bound of the whole mesh's, below it by less than the margin (figures in spectrum.c). In form
  * continuous the worst vector sits where few elements share the mass of a node, at edges and corners of the
- * body, which no patch can know before the nodes are joined: it takes the whole mesh, some 50 to 150 passes.
+ * body, which no patch can know before the nodes are joined: it takes the whole mesh, some 100 passes.
  * The result has the same bits on any ranks and threads. Collective. */
 void rg_spectrum(rg_solver *s);
 
