@@ -11,6 +11,10 @@
 #include "kernel_input.h"
 #include "precision.h"
 
+/* What rounding of displacements as large as the body does to springs: in floats 5e-4 was measured, also with
+ * the reference, which computes in doubles. */
+#define TURNED (sizeof(rg_real) == sizeof(double) ? TOLERANCE : 10 * TOLERANCE)
+
 enum {
     SEEDS = 10,
     PATH_STEPS = 20, /* 10 times 1044 points on 10,000 paths */
@@ -164,9 +168,9 @@ static void test_objectivity(void **state) {
                     worst[k] = fmax(worst[k], fabs(friction(&b, i, q, k) - before));
                 }
         for (int k = 0; k < RG_FRICTION; k++)
-            assert_true(worst[k] < TOLERANCE * most[k]);
+            assert_true(worst[k] < TURNED * most[k]);
         double error = force_error(&b, force, r, &force_most);
-        assert_true(error < TOLERANCE * force_most);
+        assert_true(error < TURNED * force_most);
         free(crack);
         free(force);
         body_free(&b);
