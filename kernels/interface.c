@@ -368,11 +368,13 @@ RG_INLINE void note_separation(const interface *s, int q, rg_mask acting, rg_vec
     }
 }
 
-/* How much of a face still lies over the other one, which has slid by w_t: (1 - |w_t|^2/area)^2, down to 0;
- * here its root. */
+/* How much of a face still faces the other one: (1 - (|w_t|^2 + (4 w_n)^2)/area)^2, down to 0; here its root.
+ * It falls as they slide off each other; and a side that comes back from elsewhere must not count as deep
+ * inside. Where faces are pressed w_n is some thousandths of their size. */
+#define DEPTHS 16.0
 RG_INLINE rg_vec overlap_root(const interface *s, const opening *o) {
-    rg_vec area = rg_max(s->area, rg_splat(RG_NO_AREA));
-    return rg_max(1.0 - rg_dot(o->tangential, o->tangential) / area, rg_splat(0.0));
+    rg_vec apart = rg_dot(o->tangential, o->tangential) + DEPTHS * (o->normal * o->normal);
+    return rg_max(1.0 - apart / rg_max(s->area, rg_splat(RG_NO_AREA)), rg_splat(0.0));
 }
 
 /* Traction along n, and over w_t (N/m). */
@@ -380,12 +382,12 @@ typedef struct {
     rg_vec along, sliding;
 } traction;
 
-/* Contact as a potential, over `touching` = min(0, w_n):
- *     E = c/2 w_n^2 (1 - |w_t|^2/area)^2. */
+/* Contact as a potential, over `touching` = min(0, w_n): E = c/2 w_n^2 root^2. */
 RG_INLINE void add_potential_contact(const interface *s, const opening *o, rg_vec touching, traction *t) {
     rg_vec root = overlap_root(s, o), pressed = s->contact * touching * root;
-    t->along += pressed * root;
-    t->sliding -= 2.0 * pressed * touching / rg_max(s->area, rg_splat(RG_NO_AREA));
+    rg_vec away = 2.0 * pressed * touching / rg_max(s->area, rg_splat(RG_NO_AREA));
+    t->along += pressed * root - DEPTHS * away * touching;
+    t->sliding -= away;
 }
 
 /* A potential of w_n = w . n and w_t = w - w_n n also depends on n, by (along - sliding w_n) w_t . dn, and

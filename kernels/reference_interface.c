@@ -205,7 +205,8 @@ static rg_law_answer ask(const rg_interface_args *args, const point *p, const op
 
 /* How much of a face lies over the other one. */
 static double overlap(const point *p, const opening *o) {
-    double left = fmax(0, 1 - rg_reference_dot(o->shear, o->shear) / p->area);
+    double apart = rg_reference_dot(o->shear, o->shear) + 16 * o->normal * o->normal;
+    double left = fmax(0, 1 - apart / p->area);
     return left * left;
 }
 
@@ -241,7 +242,7 @@ static void cohesive(const rg_interface_args *args, const point *p, const openin
     double apart = touches && law->potential
                        ? -2 * p->contact * o->normal * o->normal * sqrt(overlap(p, o)) / p->area
                        : 0;
-    double across = p->area * a.normal + pressed;
+    double across = p->area * a.normal + pressed + 16 * apart * o->normal;
     double secant = (sliding > 0 ? p->area * a.sliding / sliding : 0) + apart;
     for (int c = 0; c < 3; c++)
         t[c] = secant * o->shear[c] + across * p->normal[c];
