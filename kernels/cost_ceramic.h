@@ -29,18 +29,24 @@ enum {
     DE_NEXT_PANEL = HENCKY_EXP + 1, /* unit, from the second one on */
 
     DE_HARDENED = 1 + HENCKY_POW + 1,
-    DE_NEWTON = HENCKY_EXP + 1 + DE_HARDENED + 4 + HENCKY_EXP + 1 + DE_STRESS_AGAIN + HENCKY_FMA +
-                (3 + HENCKY_FMA + 1 + HENCKY_FMA) + 5,
-    /* upper end and start of the iteration, dep; Cp^-1; ep, eb, the new stress */
-    DE_FLOW = (DE_HARDENED + 2 + HENCKY_LOG) + 3 + HENCKY_LOG + (3 + HENCKY_EXP) + DE_TANGENT + 1 +
-              (HENCKY_FMA + 2) + HENCKY_EXP + (1 + HENCKY_FLOW) +
-              (2 + DE_STRESS_AGAIN + (1 + HENCKY_FMA) + DE_DRIVE + DE_STORED + 1),
+    DE_RATE = 3 + 1 + DE_HARDENED + HENCKY_EXP, /* log R; ep + dep; hardening; R */
+    DE_NEWTON = 1 + 1 + DE_STRESS_AGAIN + HENCKY_FMA + (3 + HENCKY_FMA + 1 + HENCKY_FMA) + 5,
+    DE_MOVE_LAST = 1 + HENCKY_EXPM1_SMALL + 2, /* dep by a small step */
+    /* and log R, hardening, R likewise */
+    DE_MOVE = DE_MOVE_LAST + 3 + (2 + HENCKY_LOG1P_SMALL) + (1 + HENCKY_EXPM1_SMALL + HENCKY_FMA) +
+              (1 + HENCKY_EXPM1_SMALL + HENCKY_FMA),
+    /* upper end and start of the iteration; Cp^-1; ep, eb, the new stress */
+    DE_FLOW = (DE_HARDENED + 2 + HENCKY_LOG) + 3 + HENCKY_EXP + DE_TANGENT + 3 + (2 + HENCKY_LOG) + DE_RATE +
+              (1 + HENCKY_FLOW) + (2 + DE_STRESS_AGAIN + (1 + HENCKY_FMA) + DE_DRIVE + DE_STORED + 1),
 };
 
 /* A step, or at rest. */
 static inline double rg_ceramic_flops(const rg_cost_variant *v) {
     double growth = DE_GROWTH + v->panels * DE_PANEL + (v->panels > 1 ? v->panels - 1 : 0) * DE_NEXT_PANEL;
-    return DE_AT_REST + v->growing * growth + v->flowing * (DE_FLOW + v->newton * DE_NEWTON);
+    double moves = v->newton > 1 ? (v->newton - 1) * DE_MOVE + DE_MOVE_LAST : v->newton * DE_MOVE_LAST;
+    /* the first step is not small */
+    double flow = DE_FLOW + v->newton * DE_NEWTON + moves + (v->newton > 0 ? HENCKY_EXP + DE_RATE : 0);
+    return DE_AT_REST + v->growing * growth + v->flowing * flow;
 }
 
 /* Energy alone, or with the stress; the internal variables are not asked for. */

@@ -18,6 +18,8 @@ enum {
     HENCKY_EXPM1 = HENCKY_EXP_PARTS + 1 + HENCKY_FMA,
     HENCKY_LOG1P = HENCKY_LOG + 4,
     HENCKY_POW = HENCKY_LOG + 1 + HENCKY_EXP,
+    HENCKY_EXPM1_SMALL = (4 * HENCKY_FMA + 2) + 1 + HENCKY_FMA,
+    HENCKY_LOG1P_SMALL = 3 + (2 * HENCKY_FMA + 1) + 2 + HENCKY_FMA,
 
     HENCKY_INVARIANTS = 3 + (HENCKY_SYM_DOT + 1), /* q, r of a symmetric tensor with trace 0 */
     /* x; x^2, q, r; six determinants and their sums; one division; three products; e' */
@@ -32,7 +34,7 @@ enum {
     HENCKY_STIFFENING =
         6 * HENCKY_DOT + 9 + 2 + (HENCKY_FMA + 1 + HENCKY_FMA) + (HENCKY_FMA + 1) + (1 + HENCKY_FMA),
     HENCKY_EXPONENTIAL =
-        HENCKY_COAXIAL + HENCKY_INVARIANTS + 12 * (2 * (1 + HENCKY_FMA) + 1) + (HENCKY_FMA + 1 + 6 * 4),
+        HENCKY_COAXIAL + HENCKY_INVARIANTS + 10 * HENCKY_FMA + (HENCKY_FMA + 1 + 6 * 4), /* |y| small */
     /* y; exponential; times b; inverse of F; congruence; Cp^-1 */
     HENCKY_FLOW = 7 + HENCKY_EXPONENTIAL + HENCKY_COAXIAL + 9 + HENCKY_CONGRUENCE + 6,
 };

@@ -85,22 +85,51 @@ RG_INLINE void rg_hencky_deviator(rg_vec b[6], rg_vec e[6]) {
     }
 }
 
-/* exp(y) - I for symmetric y with trace 0, by Horner's scheme on a + b y + c y^2, y^3 = q y + r. To rounding
- * for |y| up to 0.5. */
+#define RG_HENCKY_SHORT 4e-4 /* of half of y:y */
+
+/* (exp(y) - 1)/y = a + b y + c y^2 for y^3 = q y + r. */
+typedef struct {
+    rg_vec a, b, c;
+} rg_quadratic;
+
+/* By Horner's scheme. */
+RG_INLINE rg_quadratic rg_expm1_over(rg_vec q, rg_vec r) {
+    rg_quadratic p = {rg_splat(1.0), {0}, {0}};
+    for (int n = 13; n >= 2; n--) { /* 1 + y/n (...) */
+        rg_vec before = p.a;
+        p.a = p.c * r * (1.0 / n) + 1.0;
+        rg_vec next = (before + p.c * q) * (1.0 / n);
+        p.c = p.b * (1.0 / n);
+        p.b = next;
+    }
+    return p;
+}
+
+/* The series up to y^6, written out: nothing waits for the term before. To rounding for q <= RG_HENCKY_SHORT,
+ * |y| <= 0.024. */
+RG_INLINE rg_quadratic rg_expm1_over_small(rg_vec q, rg_vec r) {
+    return (rg_quadratic){
+        (1.0 / 24 + q * (1.0 / 720) + r * (1.0 / 5040)) * r + 1.0,
+        (1.0 / 24 + q * (1.0 / 720) + r * (2.0 / 5040)) * q + (r * (1.0 / 120) + 0.5),
+        (1.0 / 120 + q * (1.0 / 5040)) * q + (r * (1.0 / 720) + 1.0 / 6),
+    };
+}
+
+/* exp(y) - I for symmetric y with trace 0, to rounding for |y| up to 0.5. */
 RG_INLINE void rg_deviator_expm1(rg_vec y[6], rg_vec out[6]) {
     rg_vec y2[6];
     rg_coaxial_product(y, y, y2);
     rg_vec q = 0.5 * (y2[0] + y2[1] + y2[2]), r = (1.0 / 3) * rg_sym_dot(y, y2);
-    rg_vec a = rg_splat(1.0), b = {0}, c = {0};
-    for (int n = 13; n >= 2; n--) { /* 1 + y/n (...) */
-        rg_vec before = a;
-        a = c * r * (1.0 / n) + 1.0;
-        rg_vec next = (before + c * q) * (1.0 / n);
-        c = b * (1.0 / n);
-        b = next;
+    rg_quadratic p = rg_expm1_over_small(q, r);
+    rg_mask large = q > RG_HENCKY_SHORT;
+    if (rg_any(large)) {
+        rg_quadratic all = rg_expm1_over(q, r);
+        p.a = rg_select(large, all.a, p.a);
+        p.b = rg_select(large, all.b, p.b);
+        p.c = rg_select(large, all.c, p.c);
     }
     for (int k = 0; k < 6; k++) { /* y (a + b y + c y^2) */
-        out[k] = (a + c * q) * y[k] + b * y2[k] + (k < 3 ? c * r : rg_splat(0.0));
+        out[k] = (p.a + p.c * q) * y[k] + p.b * y2[k] + (k < 3 ? p.c * r : rg_splat(0.0));
     }
 }
 

@@ -84,6 +84,21 @@ RG_INLINE rg_vec rg_expm1(rg_vec x) {
     return (power - 1.0) + power * p;
 }
 
+#define RG_SMALL 0.01 /* where one polynomial does for these two */
+
+/* exp x - 1, |x| <= RG_SMALL: the first term left out is 2e-16 of the sum. */
+RG_INLINE rg_vec rg_expm1_small(rg_vec x) {
+    static const double c[] = {1.0 / 2, 1.0 / 6, 1.0 / 24, 1.0 / 120, 1.0 / 720};
+    return rg_polynomial(c, 5, x) * (x * x) + x;
+}
+
+/* log(1 + x), |x| <= RG_SMALL + RG_SMALL^2, likewise: as rg_log without its exponent. */
+RG_INLINE rg_vec rg_log1p_small(rg_vec x) {
+    static const double c[] = {2.0 / 3, 2.0 / 5, 2.0 / 7};
+    rg_vec s = x / (x + 2.0), z = s * s;
+    return s * (z * rg_polynomial(c, 3, z)) + 2.0 * s;
+}
+
 /* log(1 + x) to a few ulp, also where x is small: the rounding of 1 + x is taken out (W. Kahan). */
 RG_INLINE rg_vec rg_log1p(rg_vec x) {
     rg_vec sum = 1.0 + x, kept = sum - 1.0;
