@@ -36,13 +36,18 @@ def test_a_torn_bar_is_the_same_on_any_layout(run, solid, ranks, threads):
     assert_same_bits(one, other)
 
 
-@pytest.mark.parametrize("form", [{"interface.form": "incomplete", "interface.beta_s": 40},
-                                  {"interface.form": "intrinsic", "interface.law": "exponential"}],
-                         ids=["incomplete", "intrinsic"])
+FORMS = {
+    "incomplete": {"interface.form": "incomplete", "interface.beta_s": 40},
+    "intrinsic": {"interface.form": "intrinsic", "interface.law": "exponential"},
+    "continuous": {"interface.form": "continuous", "interface.faces": "abs(z - 2e-3) < 1e-6", "mass": "lumped"},
+}
+
+
+@pytest.mark.parametrize("form", FORMS)
 @pytest.mark.parametrize("solid", EACH)
 def test_every_form_takes_every_solid(run, solid, form):
     sets = {**SHORT, "mesh.cells": [1, 1, 10], "time.end": 0.2e-6, **SOLIDS[solid],
-            **form}
+            **FORMS[form]}
     summary = run(TORN, sets=sets).summary
     assert summary["status"] == "completed" and abs(summary["energy_error_rel"]) < 5e-3
     assert solid != "metal" or summary["plastic_J"] > 0
@@ -104,7 +109,7 @@ def test_check_tells_the_plastic_waves(tmp_path):
 
 
 def simple_wave():
-    """Particle speed, stress and wave speed over the material, each from rest on, along a simple wave of uniaxial strain:
+    """Particle speed, stress and wave speed over the material, from rest on, along a simple wave of uniaxial strain:
     with the logarithmic strain e = log(lambda), tau the Kirchhoff stress, P = tau/lambda, c = sqrt(dP/dlambda/rho) and
     dv = -c dlambda."""
     strain = -np.linspace(0, 0.02, 20001)
@@ -161,6 +166,7 @@ def test_fields_show_the_plastic_strain(run):
 @double_only
 def test_output_does_not_flow(run):
     sets = {"time.end": 2e-7, "output.fields": []}
-    often, seldom = run(PLASTIC, sets={**sets, "output.interval": 1}), run(PLASTIC, sets={**sets, "output.interval": 2e-7})
+    often = run(PLASTIC, sets={**sets, "output.interval": 1})
+    seldom = run(PLASTIC, sets={**sets, "output.interval": 2e-7})
     assert often.summary["plastic_J"] > 0
     assert often.summary["state_hash"] == seldom.summary["state_hash"]
