@@ -7,7 +7,8 @@
  *   word          in case files
  *   forms         RG_FORMS_DG: starts rigid, at the strength;
  *                 RG_FORMS_INTRINSIC: starts with a slope, at zero; or both;
- *                 RG_PACED besides: memory and a parameter are those of rg_law_pace
+ *                 RG_PACED besides: memory and a parameter are those of rg_law_pace. To these a law may add
+ *                 RG_NORMAL_MEASURE and RG_ENVELOPE (cohesive_facts.h)
  *   work          work of separation over strength times critical opening
  *   separation    effective opening of full separation over the critical opening
  *   normal_slope  bound on the stiffness of opening, in strength over critical opening;

@@ -60,7 +60,7 @@ static void rg_rate_reference(const rg_law_query *p, double state[], rg_law_answ
 #endif
 
 #ifdef RG_LAW
-RG_LAW(RATE, rate, "rate", RG_FORMS_DG, 0.5, 1, 0, 0, 3)
+RG_LAW(RATE, rate, "rate", RG_FORMS_DG | RG_ENVELOPE, 0.5, 1, 0, 0, 3)
 #endif
 #ifdef RG_LAW_PARAMETER
 RG_LAW_PARAMETER(RATE, 0, "interface.rate.speed", "m/s", 1e-9, 1e9, 10)

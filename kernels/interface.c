@@ -10,6 +10,8 @@
  * result never depends on the faces that share its block. All tractions are area-weighted: they carry the
  * reference area of the face as a factor (N). */
 #include "cohesive.h"
+#include "cohesive_conserving.h"
+#include "cohesive_facts.h"
 #include "friction.h"
 #include "isa.h"
 #include "tet10.h"
@@ -283,11 +285,19 @@ RG_INLINE void store_where(rg_real *p, rg_mask m, rg_vec x) {
     rg_store(p, rg_select(m, x, rg_load(p)));
 }
 
+/* Opening eps from which a point that switches starts (m); 0 where the law takes the total jump. */
+RG_INLINE rg_vec onset(const interface *s, bool conserving) {
+    const rg_cohesive *law = &s->args->law;
+    double share = law->total ? 0.0 : conserving ? law->onset : RG_ONSET;
+    return rg_splat(share * law->strength) * s->strong_area / normal_penalty(s);
+}
+
 /* Fracture criterion at unbroken points (5.3; beta = 0: 5.17), on the Cauchy traction: which lanes switch
  * now. The crack state starts so that the cohesive traction continues the one at the switch in direction and
  * size (Papoulia's time continuity): the opening is measured from `origin` = [u] - eps d, d along the
- * traction. */
-RG_INLINE rg_mask switch_points(const interface *s, int q, const vec3 n, rg_vec area, rg_mask intact) {
+ * traction; of a conserving activation [u] - delta_0 d (cohesive_conserving.h). */
+RG_INLINE rg_mask switch_points(const interface *s, int q, const vec3 n, rg_vec area, rg_mask intact,
+                                bool conserving) {
     const rg_cohesive *law = &s->args->law;
     vec3 t, tau, d;
     for (int c = 0; c < 3; c++) {
@@ -305,13 +315,23 @@ RG_INLINE rg_mask switch_points(const interface *s, int q, const vec3 n, rg_vec 
     if (!rg_any(now)) {
         return now;
     }
-    rg_vec eps = rg_splat(law->total ? 0.0 : RG_ONSET * law->strength) * s->strong_area / normal_penalty(s);
+    rg_vec start = onset(s, conserving), first = start;
+    if (conserving) {
+        rg_vec slid = rg_splat(law->beta > 0 ? 1.0 : 0.0) * rg_dot(tau, s->jump[q]);
+        rg_vec along = rg_dot(s->normal, s->jump[q]);
+        rg_vec penalty = s->pen_iso * rg_dot(s->jump[q], s->jump[q]) + s->pen_norm * along * along;
+        double kept = law->beta_s > RG_LIFT ? 0.5 * (1 - RG_LIFT / law->beta_s) : 0;
+        rg_vec given = (slid + tension * rg_dot(n, s->jump[q])) / effective +
+                       rg_splat(kept) * penalty / (s->area * s->strength);
+        first = rg_conserving_first(given, s->opening);
+        start = rg_conserving_start(given, first, start);
+    }
     for (int c = 0; c < 3; c++) {
         d[c] = (shear * tau[c] + tension * n[c]) / effective;
-        rg_vec origin = law->total ? rg_splat(0.0) : s->jump[q][c] - eps * d[c];
+        rg_vec origin = law->total ? rg_splat(0.0) : s->jump[q][c] - start * d[c];
         store_where(crack_state(s, q, RG_CRACK_ORIGIN + c), now, origin);
     }
-    store_where(crack_state(s, q, RG_CRACK_OPENING), now, eps);
+    store_where(crack_state(s, q, RG_CRACK_OPENING), now, first);
     store_where(crack_state(s, q, RG_CRACK_TIME), now, rg_splat(s->args->time));
     return now;
 }
@@ -427,15 +447,19 @@ RG_INLINE void store_turn(const interface *s, vec3 turn[RG_FNODES]) {
 /* Replaces the DG traction at broken points by the cohesive law and contact. Returns the points that keep
  * their DG terms because they are closed under flux contact. */
 RG_INLINE rg_mask broken_traction(interface *s, int q, vec3 g[2], const vec3 n, rg_mask broken,
-                                  law_respond *respond, int memory, vec3 turn[RG_FNODES]) {
+                                  law_respond *respond, int memory, bool conserving, vec3 turn[RG_FNODES]) {
     const rg_cohesive *law = &s->args->law;
     opening o;
     crack_opening(s, q, n, &o);
     rg_mask closed = (law->flux ? broken : (rg_mask){0}) & (o.normal < 0.0);
     rg_mask acting = broken & ~closed;
-    rg_vec before = rg_load(crack_state(s, q, RG_CRACK_OPENING));
-    rg_mask grows = acting & (o.effective > before);
-    rg_law_state state = {.largest = rg_select(grows, o.effective, before)};
+    rg_vec before = rg_load(crack_state(s, q, RG_CRACK_OPENING)), eps = onset(s, conserving);
+    rg_vec reached = conserving ? rg_conserving_damage(o.effective, eps) : o.effective;
+    rg_mask grows = acting & (reached > before);
+    rg_law_state state = {.largest = rg_select(grows, reached, before)};
+    if (conserving) {
+        o.effective = state.largest;
+    }
     if (rg_any(grows)) {
         rg_store(crack_state(s, q, RG_CRACK_OPENING), state.largest);
     }
@@ -446,6 +470,9 @@ RG_INLINE rg_mask broken_traction(interface *s, int q, vec3 g[2], const vec3 n, 
     rg_law_response r;
     load_memory(s, memory, q, &state);
     respond(&p, &state, &r);
+    if (conserving) {
+        rg_conserving_respond(state.largest, eps, &r);
+    }
     for (int k = 0; k < memory; k++) {
         store_where(memory_state(s, memory, q, k), acting, state.memory[k]);
     }
@@ -468,7 +495,7 @@ RG_INLINE rg_mask broken_traction(interface *s, int q, vec3 g[2], const vec3 n, 
     return closed;
 }
 
-RG_INLINE void damaged(interface *s, law_respond *respond, int memory) {
+RG_INLINE void damaged(interface *s, law_respond *respond, int memory, bool conserving) {
     const rg_interface_args *args = s->args;
     size_t first = s->block * RG_LANES + (size_t)s->lane;
     vec3 g[RG_POINTS][2], n[RG_POINTS], turn[RG_FNODES] = {{{0}}};
@@ -480,11 +507,11 @@ RG_INLINE void damaged(interface *s, law_respond *respond, int memory) {
     memcpy(broken, args->broken + first, sizeof broken);
     for (int q = 0; q < RG_POINTS; q++) {
         rg_mask cracked = bit_mask(broken, q);
-        cracked |= switch_points(s, q, n[q], area[q], ~cracked);
+        cracked |= switch_points(s, q, n[q], area[q], ~cracked, conserving);
         set_bits(broken, q, cracked);
         rg_mask closed = {0};
         if (rg_any(cracked)) {
-            closed = broken_traction(s, q, g[q], n[q], cracked, respond, memory, turn);
+            closed = broken_traction(s, q, g[q], n[q], cracked, respond, memory, conserving, turn);
         }
         set_bits(unlinked, q, cracked & ~closed);
     }
@@ -501,16 +528,21 @@ RG_INLINE void damaged(interface *s, law_respond *respond, int memory) {
     }
 }
 
-/* The same around each law. */
+/* The same around each law; conserving around those that can be (empty for the others). */
 #define RG_LAW(NAME, name, word, forms, work, separation, normal_slope, shear_slope, memory)                 \
     static __attribute__((noinline)) void damaged_##name(interface *s) {                                     \
-        damaged(s, rg_##name##_respond, memory);                                                             \
+        damaged(s, rg_##name##_respond, memory, false);                                                      \
+    }                                                                                                        \
+    static __attribute__((noinline)) void damaged_conserving_##name(interface *s) {                          \
+        if (((forms)&RG_ENVELOPE) != 0) {                                                                    \
+            damaged(s, rg_##name##_respond, memory, true);                                                   \
+        }                                                                                                    \
     }
 #include "cohesive_laws.h"
 #undef RG_LAW
 
-static void (*const damaged_by_law[])(interface *s) = {
-#define RG_LAW(NAME, name, ...) damaged_##name,
+static void (*const damaged_by_law[][2])(interface *s) = {
+#define RG_LAW(NAME, name, ...) {damaged_##name, damaged_conserving_##name},
 #include "cohesive_laws.h"
 #undef RG_LAW
 };
@@ -589,7 +621,7 @@ static __attribute__((noinline)) void damaged_with_friction(interface *s) {
     vec3 g[RG_POINTS][2], n[RG_POINTS];
     rg_vec area[RG_POINTS];
     memcpy(before, bits, sizeof before);
-    damaged_by_law[s->args->law.law](s);
+    damaged_by_law[s->args->law.law][s->args->law.onset > 0](s);
     mid_tangents(s, g);
     mid_surface(g, n, area);
     for (int q = 0; q < RG_POINTS; q++) {
@@ -621,7 +653,7 @@ RG_INLINE void interface_vector(const rg_interface_args *args, size_t block, int
         if (args->law.friction > 0) {
             damaged_with_friction(&s);
         } else {
-            damaged_by_law[args->law.law](&s);
+            damaged_by_law[args->law.law][args->law.onset > 0](&s);
         }
     }
     store_nodal_force(&s);
@@ -642,7 +674,7 @@ void RG_ISA_NAME(rg_interface)(const rg_interface_args *args, size_t begin, size
 /* ---- Energies ---- */
 
 RG_INLINE void broken_energy(const interface *s, int q, const vec3 n, rg_mask broken, rg_mask unlinked,
-                             rg_vec sum[RG_E_INTERFACE], law_energy *energy, int memory) {
+                             rg_vec sum[RG_E_INTERFACE], law_energy *energy, int memory, bool conserving) {
     const rg_cohesive *law = &s->args->law;
     opening o;
     crack_opening(s, q, n, &o);
@@ -651,7 +683,13 @@ RG_INLINE void broken_energy(const interface *s, int q, const vec3 n, rg_mask br
     rg_law_point p = law_point(s, &o, state.largest);
     rg_law_energy e;
     load_memory(s, memory, q, &state);
+    if (conserving) {
+        p.effective = state.largest;
+    }
     energy(&p, &state, &e);
+    if (conserving) {
+        rg_conserving_energy(state.largest, onset(s, true), o.effective, &e);
+    }
     rg_vec contact = 0.5 * s->contact * o.normal * o.normal;
     if (law->potential) {
         rg_vec root = overlap_root(s, &o);
@@ -663,7 +701,8 @@ RG_INLINE void broken_energy(const interface *s, int q, const vec3 n, rg_mask br
     sum[RG_E_DISSIPATED] += weight * rg_select(broken, e.dissipated, zero);
 }
 
-RG_INLINE void crack_energy(interface *s, rg_vec sum[RG_E_INTERFACE], law_energy *energy, int memory) {
+RG_INLINE void crack_energy(interface *s, rg_vec sum[RG_E_INTERFACE], law_energy *energy, int memory,
+                            bool conserving) {
     const rg_interface_args *args = s->args;
     const uint8_t *broken = args->broken + s->block * RG_LANES + s->lane;
     const uint8_t *unlinked = args->unlinked + s->block * RG_LANES + s->lane;
@@ -673,19 +712,26 @@ RG_INLINE void crack_energy(interface *s, rg_vec sum[RG_E_INTERFACE], law_energy
     mid_tangents(s, g);
     mid_surface(g, n, area);
     for (int q = 0; q < RG_POINTS; q++) {
-        broken_energy(s, q, n[q], bit_mask(broken, q), bit_mask(unlinked, q), sum, energy, memory);
+        broken_energy(s, q, n[q], bit_mask(broken, q), bit_mask(unlinked, q), sum, energy, memory,
+                      conserving);
     }
 }
 
 #define RG_LAW(NAME, name, word, forms, work, separation, normal_slope, shear_slope, memory)                 \
     static __attribute__((noinline)) void energy_##name(interface *s, rg_vec sum[RG_E_INTERFACE]) {          \
-        crack_energy(s, sum, rg_##name##_energy, memory);                                                    \
+        crack_energy(s, sum, rg_##name##_energy, memory, false);                                             \
+    }                                                                                                        \
+    static                                                                                                   \
+        __attribute__((noinline)) void energy_conserving_##name(interface *s, rg_vec sum[RG_E_INTERFACE]) {  \
+        if (((forms)&RG_ENVELOPE) != 0) {                                                                    \
+            crack_energy(s, sum, rg_##name##_energy, memory, true);                                          \
+        }                                                                                                    \
     }
 #include "cohesive_laws.h"
 #undef RG_LAW
 
-static void (*const energy_by_law[])(interface *s, rg_vec sum[RG_E_INTERFACE]) = {
-#define RG_LAW(NAME, name, ...) energy_##name,
+static void (*const energy_by_law[][2])(interface *s, rg_vec sum[RG_E_INTERFACE]) = {
+#define RG_LAW(NAME, name, ...) {energy_##name, energy_conserving_##name},
 #include "cohesive_laws.h"
 #undef RG_LAW
 };
@@ -703,7 +749,7 @@ RG_INLINE void state_vector(const rg_interface_state_args *args, size_t block, s
             rg_select(bit_mask(unlinked, q), rg_splat(0.0), rg_splat(0.5 * rg_tri[q / 3].weight) * penalty);
     }
     if (s.args->active[block]) {
-        energy_by_law[s.args->law.law](&s, sum);
+        energy_by_law[s.args->law.law][s.args->law.onset > 0](&s, sum);
         if (s.args->law.friction > 0) {
             friction_energy(&s, sum);
         }

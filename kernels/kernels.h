@@ -84,7 +84,9 @@ typedef struct {
     double contact_below; /* contact acts where the normal opening is below this: 0, or +inf for its linear
                              part */
     bool total;           /* activation: the law takes the total jump, not the jump since the switch */
-    bool flux;            /* contact: all DG terms return on closure, not a one-sided penalty */
+    double onset;   /* activation: conserving, from this opening on, in units as RG_ONSET's; 0: others */
+    double beta_s;  /* of the penalty; read by a conserving activation alone */
+    bool flux;      /* contact: all DG terms return on closure, not a one-sided penalty */
     bool potential; /* contact is a potential of the two sides: it fades as they slide off each other, and
                        tractions turn the mid-surface; not with flux */
     bool intrinsic; /* every point is broken from the start and takes the total jump */

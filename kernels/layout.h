@@ -78,7 +78,8 @@ enum {                    /* interface geometry */
 };
 
 enum { /* crack state of one interface point; meaningful only where the point's bit in `broken` is set */
-       RG_CRACK_OPENING = 0, /* largest effective opening so far, delta_max (m) */
+       RG_CRACK_OPENING = 0, /* largest effective opening so far, delta_max (m); of a conserving activation
+                                less its onset */
        RG_CRACK_ORIGIN = 1,  /* jump from which the opening is measured, 3 components (m) */
        RG_CRACK_TIME = 4,    /* time at which the point switched, in the intrinsic form separated (s) */
        RG_CRACK = 5,

@@ -40,4 +40,12 @@ static inline void rg_reference_pace(const rg_law_query *p, double ascent, doubl
  * advanced; asking again for the same state (before = state[0]) changes nothing. */
 rg_law_answer rg_reference_law(rg_law law, const rg_law_query *p, double state[1 + RG_LAW_MEMORY]);
 
+/* The same under a conserving activation (cohesive_conserving.h) from the opening `onset` (m). Openings of
+ * the query are counted with it, except for `before`, which like state[0] is the damage, largest opening less
+ * onset; it is brought up to date here. */
+rg_law_answer rg_reference_conserving(rg_law law, const rg_law_query *p, double onset,
+                                      double state[1 + RG_LAW_MEMORY]);
+
+#define RG_REFERENCE_NOTHING 1e-20 /* m: least damage of a point that has switched */
+
 #endif

@@ -157,13 +157,37 @@ static bool breaks(const rg_cohesive *law, const point *p, double direction[3]) 
     return effective > p->strength;
 }
 
+/* Opening from which a point that switches starts (m). */
+static double onset(const rg_cohesive *law, const point *p) {
+    double share = law->total ? 0 : law->onset > 0 ? law->onset : RG_ONSET;
+    return share * p->strength * p->area / (p->iso + p->norm);
+}
+
+/* What lift and penalty give back to a point that switches, over its strength (m). In the law's own terms the
+ * traction it takes over is beta^2 d_t + d_n n. */
+static double given_back(const rg_cohesive *law, const point *p, const double direction[3]) {
+    double across = rg_reference_dot(direction, p->normal), work = 0, penalty = 0;
+    for (int c = 0; c < 3; c++) {
+        double along = direction[c] - across * p->normal[c];
+        work += (law->beta * law->beta * along + across * p->normal[c]) * p->jump[c];
+        penalty += (p->dg[c] - p->traction[c]) * p->jump[c] / p->area;
+    }
+    return work + fmax(0, 1 - 1.5 / law->beta_s) * penalty / 2 / p->strength;
+}
+
 /* First crack state of a point. */
 static void activate(const rg_interface_args *args, const point *p, const double direction[3],
                      const crack *k) {
-    double onset = RG_ONSET * p->strength * p->area / (p->iso + p->norm);
-    *k->state[RG_CRACK_OPENING] = args->law.total ? 0 : (rg_real)onset;
+    double start = onset(&args->law, p), first = start;
+    if (args->law.onset > 0) {
+        double given = given_back(&args->law, p, direction);
+        double left = sqrt(fmax(0, 1 - 2 * fmax(0, given) / p->opening)); /* of the strength */
+        first = fmax(RG_REFERENCE_NOTHING, p->opening * (1 - left));
+        start = given > 0 ? start + first : start * sqrt(fmax(0, 1 + 2 * given / start));
+    }
+    *k->state[RG_CRACK_OPENING] = (rg_real)first;
     for (int c = 0; c < 3; c++)
-        *k->state[RG_CRACK_ORIGIN + c] = args->law.total ? 0 : (rg_real)(p->jump[c] - onset * direction[c]);
+        *k->state[RG_CRACK_ORIGIN + c] = args->law.total ? 0 : (rg_real)(p->jump[c] - start * direction[c]);
     *k->state[RG_CRACK_TIME] = (rg_real)args->time;
 }
 
@@ -197,7 +221,8 @@ static rg_law_answer ask(const rg_interface_args *args, const point *p, const op
     double state[1 + RG_LAW_MEMORY] = {*k->state[RG_CRACK_OPENING]};
     for (int m = 0; m < memory; m++)
         state[1 + m] = *k->memory[m];
-    rg_law_answer answer = rg_reference_law(law->law, &query, state);
+    rg_law_answer answer = law->onset > 0 ? rg_reference_conserving(law->law, &query, onset(law, p), state)
+                                          : rg_reference_law(law->law, &query, state);
     for (int m = 0; m < memory && advance; m++)
         *k->memory[m] = (rg_real)state[1 + m];
     return answer;
@@ -230,7 +255,8 @@ static void turn(const point *p, const opening *o, double across, double sliding
 static void cohesive(const rg_interface_args *args, const point *p, const opening *o, const crack *k,
                      double t[3], double turning[RG_FNODES][3]) {
     const rg_cohesive *law = &args->law;
-    double before = *k->state[RG_CRACK_OPENING], largest = fmax(before, o->effective);
+    double start = law->onset > 0 ? onset(law, p) : 0; /* counts as no damage */
+    double before = *k->state[RG_CRACK_OPENING], largest = fmax(before, o->effective - start);
     double parts = p->opening * (law->separation / law->opening);
     *k->state[RG_CRACK_OPENING] = (rg_real)largest;
     if (law->intrinsic && before < parts && largest >= parts)

@@ -15,7 +15,7 @@ typedef struct rg_expr rg_expr;
 typedef enum { RG_INTERACTION_THESIS, RG_INTERACTION_DERIVED } rg_interaction;
 typedef enum { RG_FORM_VARIATIONAL, RG_FORM_INCOMPLETE, RG_FORM_INTRINSIC, RG_FORM_CONTINUOUS } rg_form;
 typedef enum { RG_PENALTY_ELASTIC, RG_PENALTY_ISOTROPIC } rg_penalty;
-typedef enum { RG_ACTIVATION_CONTINUOUS, RG_ACTIVATION_TOTAL } rg_activation;
+typedef enum { RG_ACTIVATION_CONTINUOUS, RG_ACTIVATION_TOTAL, RG_ACTIVATION_CONSERVING } rg_activation;
 typedef enum { RG_CONTACT_PENALTY, RG_CONTACT_FLUX, RG_CONTACT_POTENTIAL } rg_contact;
 typedef enum { RG_OUTPUT_DOUBLE, RG_OUTPUT_SINGLE } rg_output_precision;
 typedef enum { RG_FRAGMENTS_EACH, RG_FRAGMENTS_LAST, RG_FRAGMENTS_NONE } rg_fragments_when;
@@ -101,6 +101,7 @@ typedef struct {
         rg_law law;
         double strength, energy, beta;
         rg_activation activation;
+        double onset; /* of a conserving activation (kernels.h: RG_ONSET) */
         rg_contact contact;
         double friction;                     /* coefficient of closed faces */
         double shape[RG_LAWS][RG_LAW_SHAPE]; /* parameters of its own of each law */

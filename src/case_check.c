@@ -257,6 +257,8 @@ static void learn(rg_check *ck, const rg_key *key, const rg_node *node, bool goo
         ck->usage[RG_GROUP_DG] = usage_if(ck->form, RG_GROUP_DG, ck->c);
     } else if (key->offset == offsetof(rg_case, interface.law)) {
         rg_law_rule(ck, node, good);
+    } else if (key->offset == offsetof(rg_case, interface.activation)) {
+        rg_activation_rule(ck, node, good);
     } else if (key->offset == offsetof(rg_case, interface.contact) && node != NULL && good) {
         rg_contact_rule(ck, node);
     } else if (key->offset == offsetof(rg_case, interface.friction) && node != NULL && good) {

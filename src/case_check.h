@@ -52,7 +52,12 @@ void rg_law_rule(rg_check *ck, const rg_node *node, bool good);
 /* Form continuous has no other mass than the lumped one, which is its default. */
 void rg_mass_rule(rg_check *ck, const rg_node *node);
 
-/* Contact `flux` brings DG terms back: form intrinsic has none. */
+/* A conserving activation: whether interface.onset is used (with `node` NULL or wrong too), and what form and
+ * law must be. */
+void rg_activation_rule(rg_check *ck, const rg_node *node, bool good);
+
+/* Contact `flux` brings DG terms back: form intrinsic has none, a conserving activation does not count them.
+ */
 void rg_contact_rule(rg_check *ck, const rg_node *node);
 
 /* Friction acts on faces that contact `penalty` keeps closed. */

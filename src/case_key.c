@@ -43,7 +43,7 @@ static const char *const laws[] = {
 #include "cohesive_laws.h"
 #undef RG_LAW
     "none", NULL};
-static const char *const activations[] = {"continuous", "total", NULL};
+static const char *const activations[] = {"continuous", "total", "conserving", NULL};
 static const char *const contacts[] = {"penalty", "flux", "potential", NULL};
 static const char *const precisions[] = {"double", "single", NULL};
 static const char *const keeps[] = {"energy", "opening", NULL};
@@ -113,6 +113,8 @@ static const rg_key case_keys[] = {
     {.name = "interface.beta", REAL, FROM(0), DEFAULT(1), GROUP(SHEAR), CASE(interface.beta)},
     {.name = "interface.activation", CHOICE(activations), DEFAULT(RG_ACTIVATION_CONTINUOUS), GROUP(SWITCH),
      CASE(interface.activation)},
+    {.name = "interface.onset", REAL, FROM_TO(0, 1), .low_open = true, DEFAULT(0.3), GROUP(ONSET),
+     CASE(interface.onset)},
     {.name = "interface.contact", CHOICE(contacts), DEFAULT(RG_CONTACT_PENALTY), GROUP(COHESIVE),
      CASE(interface.contact)},
     {.name = "interface.friction", REAL, FROM(0), DEFAULT(0), GROUP(COHESIVE), CASE(interface.friction)},
@@ -331,6 +333,8 @@ bool rg_group_used(rg_key_group group, const rg_case *c) {
         return dg;
     case RG_GROUP_SWITCH:
         return breaks && dg;
+    case RG_GROUP_ONSET:
+        return breaks && dg && c->interface.activation == RG_ACTIVATION_CONSERVING;
     default:
         return breaks;
     }
@@ -350,6 +354,7 @@ bool rg_key_used(const rg_key *key, const void *base) {
     case RG_GROUP_INTERFACE:
     case RG_GROUP_DG:
     case RG_GROUP_SWITCH:
+    case RG_GROUP_ONSET:
         return rg_group_used(key->group, base);
     case RG_GROUP_WEIBULL:
         return ((const rg_case *)base)->interface.weibull.modulus > 0;

@@ -46,6 +46,7 @@ typedef enum {
     RG_GROUP_INTERFACE,    /* unless it is, and interface.faces is not given */
     RG_GROUP_DG,           /* the same, and unless interface.form is intrinsic */
     RG_GROUP_SWITCH,       /* if points switch from DG to a law: there is one, and DG terms */
+    RG_GROUP_ONSET,        /* ... by the conserving activation */
     RG_GROUP_WEIBULL,      /* if interface.weibull.modulus is given */
     RG_GROUP_VELOCITY,     /* boundary entries: one of the two */
     RG_GROUP_DISPLACEMENT, /* the other */

@@ -51,19 +51,22 @@ static int forms_of(rg_law law) {
 /* What a form asks of a law. */
 typedef struct {
     int bit;           /* of the law's forms; 0: no law at all */
-    const char *words; /* the form */
+    const char *words; /* the form, or what else asks */
     const char *other; /* why another law does not fit */
 } demand;
 
-static const demand dg_law = {RG_FORMS_DG, "variational or incomplete",
+static const demand dg_law = {RG_FORMS_DG, "form variational or incomplete",
                               "starts with a slope, which only form intrinsic can use"};
-static const demand face_law = {RG_FORMS_DG, "continuous",
+static const demand face_law = {RG_FORMS_DG, "form continuous",
                                 "starts with a slope, which only form intrinsic can use"};
-static const demand sloped_law = {RG_FORMS_INTRINSIC, "intrinsic",
+static const demand sloped_law = {RG_FORMS_INTRINSIC, "form intrinsic",
                                   "does not start with a slope, which form intrinsic needs"};
-static const demand no_law = {0, "continuous and no interface.faces",
+static const demand no_law = {0, "form continuous and no interface.faces",
                               "nothing can break, because form continuous has interfaces only on the faces "
                               "that interface.faces selects"};
+
+static const demand falling_law = {RG_ENVELOPE, "activation conserving",
+                                   "needs a law that falls from the strength by opening alone"};
 
 static const demand *demand_of(const rg_case *c) {
     switch (c->interface.form) {
@@ -77,7 +80,7 @@ static const demand *demand_of(const rg_case *c) {
 }
 
 static bool fits(const demand *d, rg_law law) {
-    return law == RG_LAW_NONE ? d != &sloped_law : (forms_of(law) & d->bit) != 0;
+    return law == RG_LAW_NONE ? d != &sloped_law && d != &falling_law : (forms_of(law) & d->bit) != 0;
 }
 
 const char *rg_why_unused(rg_key_group group, const rg_case *c) {
@@ -86,7 +89,11 @@ const char *rg_why_unused(rg_key_group group, const rg_case *c) {
     if (group == RG_GROUP_FACES) {
         return "form is not continuous";
     }
-    if (group == RG_GROUP_INTERFACE || group == RG_GROUP_DG || (group == RG_GROUP_SWITCH && !none)) {
+    if (group == RG_GROUP_ONSET && rg_group_used(RG_GROUP_SWITCH, c)) {
+        return "activation is not conserving";
+    }
+    bool switches = group == RG_GROUP_SWITCH || group == RG_GROUP_ONSET;
+    if (group == RG_GROUP_INTERFACE || group == RG_GROUP_DG || (switches && !none)) {
         return intrinsic ? "form is intrinsic" : "form is continuous, without interface.faces";
     }
     snprintf(text, sizeof text, "law is %s", law_word(c->interface.law));
@@ -94,8 +101,8 @@ const char *rg_why_unused(rg_key_group group, const rg_case *c) {
 }
 
 /* "with form intrinsic: free, exponential" */
-static void laws_of_form(const demand *d, char *text, size_t size) {
-    int used = snprintf(text, size, "with form %s:", d->words);
+static void laws_for(const demand *d, char *text, size_t size) {
+    int used = snprintf(text, size, "with %s:", d->words);
     const char *join = " ";
     for (int law = 0; law <= (int)RG_LAWS && (size_t)used < size; law++) {
         if (fits(d, (rg_law)law)) {
@@ -110,7 +117,7 @@ static void check_law_and_form(rg_check *ck, const rg_node *node) {
     rg_law law = ck->c->interface.law;
     if (!fits(d, law)) {
         char allowed[256];
-        laws_of_form(d, allowed, sizeof allowed);
+        laws_for(d, allowed, sizeof allowed);
         rg_subject subject = {.key = "interface.law", .value = law_word(law), .allowed = allowed};
         rg_problem_add(ck->problems, node->at, &subject, "%s", d->other);
     }
@@ -138,7 +145,44 @@ void rg_law_rule(rg_check *ck, const rg_node *node, bool good) {
     }
 }
 
+static void check_conserving(rg_check *ck, const rg_node *node) {
+    const rg_case *c = ck->c;
+    char laws[128];
+    rg_subject subject = {.key = "interface.activation", .value = "conserving"};
+    if (c->interface.form != RG_FORM_VARIATIONAL) {
+        subject.allowed = "with this form: continuous, total";
+        rg_problem_add(ck->problems, node->at, &subject,
+                       "counts the energy of the lift, which form variational alone has");
+    }
+    if (!fits(&falling_law, c->interface.law)) {
+        laws_for(&falling_law, laws, sizeof laws);
+        subject.allowed = laws;
+        rg_problem_add(ck->problems, node->at, &subject, "%s, and interface.law is %s", falling_law.other,
+                       law_word(c->interface.law));
+    }
+}
+
+void rg_activation_rule(rg_check *ck, const rg_node *node, bool good) {
+    rg_usage switches = ck->usage[RG_GROUP_SWITCH];
+    bool conserving = ck->c->interface.activation == RG_ACTIVATION_CONSERVING;
+    ck->usage[RG_GROUP_ONSET] = switches == RG_UNUSED            ? RG_UNUSED
+                                : switches == RG_UNSURE || !good ? RG_UNSURE
+                                : conserving                     ? RG_USED
+                                                                 : RG_UNUSED;
+    if (node != NULL && ck->usage[RG_GROUP_ONSET] == RG_USED) {
+        check_conserving(ck, node);
+    }
+}
+
 void rg_contact_rule(rg_check *ck, const rg_node *node) {
+    bool conserving = ck->usage[RG_GROUP_ONSET] == RG_USED;
+    if (conserving && ck->c->interface.contact == RG_CONTACT_FLUX) {
+        rg_subject subject = {.key = "interface.contact",
+                              .value = "flux",
+                              .allowed = "with activation conserving: penalty, potential"};
+        rg_problem_add(ck->problems, node->at, &subject,
+                       "brings DG terms back, whose energy activation conserving does not count");
+    }
     if (ck->form && ck->c->interface.form == RG_FORM_INTRINSIC &&
         ck->c->interface.contact == RG_CONTACT_FLUX) {
         rg_subject subject = {

@@ -22,6 +22,14 @@ static double cohesive_zone(const rg_case *c, const rg_material *m) {
            (c->interface.strength * c->interface.strength);
 }
 
+/* A point that has just switched by the conserving activation unloads 1/onset times as stiffly as a closed
+ * one bears contact, sliding beta^2 times that. In all directions alike, at all faces at once, that stiffness
+ * adds up to 1.2 times what the normal one does (measured on cubes of 6 tets: 1.19; jittered 1.06), so that
+ * up to this safety no state that a face can take is unstable. */
+static double steady_safety(const rg_cohesive *law) {
+    return (1 + 1e-9) * sqrt(law->onset / (1.2 * fmax(1, law->beta * law->beta)));
+}
+
 static double largest_edge(const rg_solver *s) {
     double square = 0;
     for (size_t i = 0; i < s->domain->iblocks * RG_LANES; i++) {
@@ -120,6 +128,13 @@ void rg_estimate_print(const rg_solver *s, const rg_estimate *e, FILE *out) {
         e->peak_bytes_per_element * (double)e->elements * 1e-9);
     fprintf(out, "time loop      about %.3g s on %d ranks x %d threads (%s, %s precision)\n", e->seconds,
             s->ranks, s->threads, s->kernels->name, RG_PRECISION);
+    if (s->law.onset > 0 && c->time.safety > steady_safety(&s->law)) {
+        fprintf(out,
+                "warning: with interface.onset %.3g no step of time.safety above %.2g follows points that "
+                "have just "
+                "switched; the energy will show it\n",
+                s->law.onset, steady_safety(&s->law));
+    }
     if (isfinite(e->cohesive_zone)) {
         double ratio = e->cohesive_zone / e->largest_edge;
         fprintf(out, "cohesive zone  %.3g m, %.2g times the longest edge (%.3g m)\n", e->cohesive_zone, ratio,

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "case_key.h"
 #include "cohesive_facts.h"
 
 static rg_law_facts facts_of(const rg_cohesive *law) {
@@ -25,6 +26,8 @@ rg_cohesive rg_law_make(const rg_case *c) {
                        .strength = c->interface.strength,
                        .beta = c->interface.beta,
                        .total = c->interface.activation == RG_ACTIVATION_TOTAL,
+                       .onset = rg_group_used(RG_GROUP_ONSET, c) ? c->interface.onset : 0,
+                       .beta_s = c->interface.beta_s,
                        .flux = c->interface.contact == RG_CONTACT_FLUX,
                        .potential = c->interface.contact == RG_CONTACT_POTENTIAL,
                        .intrinsic = c->interface.form == RG_FORM_INTRINSIC,

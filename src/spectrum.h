@@ -23,7 +23,8 @@ void rg_spectrum(rg_solver *s);
  * Lanczos iteration in the inner product of M (the incomplete form, not symmetric, by power iteration). The
  * states tried are those a face can take: all faces intact; all broken and closed (contact on both sides of
  * zero, hence linear). A point that just broke unloads along a much steeper line (its opening is still tiny),
- * which no step of use could follow: that is what time.safety is for. Sums are exact, so the result has the
+ * which no step of use could follow: that is what time.safety is for (estimate.c bounds it for the conserving
+ * activation). Sums are exact, so the result has the
  * same bits on any ranks and threads. Collective. */
 void rg_spectrum_whole(rg_solver *s);
 

@@ -198,12 +198,12 @@ static void same_case(const rg_case *a, const rg_case *b) {
     assert_true(a->interface.form == b->interface.form && a->interface.penalty == b->interface.penalty);
     assert_true(a->interface.law == b->interface.law && a->interface.contact == b->interface.contact);
     assert_true(a->interface.activation == b->interface.activation);
-    const double of_a[] = {a->interface.beta_s,     a->interface.strength, a->interface.energy,
-                           a->interface.beta,       a->time.end,           a->time.safety,
-                           a->output.interval_time, a->output.energy_limit};
-    const double of_b[] = {b->interface.beta_s,     b->interface.strength, b->interface.energy,
-                           b->interface.beta,       b->time.end,           b->time.safety,
-                           b->output.interval_time, b->output.energy_limit};
+    const double of_a[] = {a->interface.beta_s, a->interface.strength,   a->interface.energy,
+                           a->interface.beta,   a->interface.onset,      a->time.end,
+                           a->time.safety,      a->output.interval_time, a->output.energy_limit};
+    const double of_b[] = {b->interface.beta_s, b->interface.strength,   b->interface.energy,
+                           b->interface.beta,   b->interface.onset,      b->time.end,
+                           b->time.safety,      b->output.interval_time, b->output.energy_limit};
     assert_memory_equal(of_a, of_b, sizeof of_a);
     assert_true(a->time.steps == b->time.steps && a->output.interval_steps == b->output.interval_steps);
     assert_true(a->output.fields == b->output.fields && a->output.fragments == b->output.fragments);
@@ -235,6 +235,8 @@ static void test_round_trip_of_cases(void **state) {
     check_round_trip(CASES "spall-jittered.yaml", 0, NULL);
     check_round_trip(CASES "free-bar.yaml", 0, NULL);
     check_round_trip(CASES "torn-bar.yaml", 0, NULL);
+    static const char *const onset[] = {"interface.onset=0.7"};
+    check_round_trip(CASES "endurance.yaml", 1, onset);
 }
 
 static void test_round_trip_of_everything(void **state) {

@@ -128,6 +128,19 @@ static const struct mistake {
     {"  energy: 34\n", "  energy: 34\n  form: continuous\n  faces: 1\nmass: consistent\n",
      ":15:7: mass: consistent: couples all nodes that elements share, so that each step would have to solve "
      "with it; allowed: with form continuous: lumped\n"},
+    {"  law: linear\n", "  law: linear\n  onset: 0.2\n",
+     ":11:3: interface.onset: 0.2: not used, because interface.activation is not conserving\n"},
+    {"  law: linear\n", "  law: linear\n  activation: conserving\n  onset: 0\n  contact: flux\n",
+     ":12:10: interface.onset: 0: out of range; allowed: number > 0 and <= 1\n"
+     ":13:12: interface.contact: flux: brings DG terms back, whose energy activation conserving does not "
+     "count; allowed: with activation conserving: penalty, potential\n"},
+    {"  law: linear\n", "  law: fatigue\n  form: incomplete\n  activation: conserving\n",
+     ":12:15: interface.activation: conserving: counts the energy of the lift, which form variational "
+     "alone has; allowed: with this form: continuous, total\n"
+     ":12:15: interface.activation: conserving: needs a law that falls from the strength by opening alone, "
+     "and interface.law is fatigue; allowed: with activation conserving: linear, rate\n"},
+    {"  law: linear\n", "  law: exponential\n  form: intrinsic\n  onset: 0.2\n",
+     ":12:3: interface.onset: 0.2" BY_FORM},
     {"  law: linear\n", "  law: free\n",
      ":12:3: interface.energy: 34: not used, because interface.law is free\n"},
     {"output:\n", "output:\n  dir: 12\n",

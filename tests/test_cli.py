@@ -146,6 +146,15 @@ def test_check_does_not_warn_of_a_resolved_cohesive_zone(tmp_path):
     assert "4.4 times the longest edge" in process.stdout and "warning" not in process.stdout
 
 
+@pytest.mark.parametrize("sets, bound", [({}, None), ({"time.safety": 0.51}, "0.5"), ({"interface.onset": 0.075}, "0.25"),
+                                         ({"interface.beta": 2}, "0.25"), ({"interface.activation": "continuous"}, None)])
+def test_check_warns_of_an_onset_too_stiff_for_the_step(sets, bound):
+    process = launch("check", BENCH / "endurance.yaml", *overrides(sets))
+    assert process.returncode == 0
+    assert ("no step of time.safety above" in process.stdout) == (bound is not None)
+    assert bound is None or f"no step of time.safety above {bound} follows" in process.stdout
+
+
 def test_run_takes_the_steps_that_check_announced(run):
     announced = launch("check", FRAGMENTS, *overrides({"time.end": 1e-7})).stdout
     summary = run(FRAGMENTS, sets={"time.end": 1e-7}).summary

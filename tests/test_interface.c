@@ -22,6 +22,8 @@ enum { ALL = 63, MINUS_FACE = 3, PLUS_FACE = 1 };
 #define EPS   (RG_ONSET * SIGMA / STIFF) /* first opening (m) */
 #define FIRST (1 - EPS / DELTA)          /* traction just after the switch, in strengths */
 #define GC    (SIGMA * DELTA / 2)
+#define ONSET (0.3 * SIGMA / STIFF) /* first opening of a conserving activation of onset 0.3 (m) */
+#define LEFT  0.86602540378443865   /* sqrt(1 - 2 * 2e-8/DELTA) */
 #define TIME  2.5e-7
 
 /* Vectors are (normal, tangential); tractions and energies per area. */
@@ -29,10 +31,13 @@ typedef struct {
     const char *name;
     double beta;
     bool total, flux, linear, strong; /* linear: contact_below is infinite; strong: infinite strength */
-    bool broken, unlinked;            /* before */
-    double opening, origin[2];        /* before */
-    double pull[2], jump[2];          /* what the point feels */
-    double traction[2];               /* expected from here on */
+    bool conserving;
+    double
+        beta_s; /* of a conserving activation; where lift and penalty are alike it gives back t . [u] alone */
+    bool broken, unlinked;     /* before */
+    double opening, origin[2]; /* before */
+    double pull[2], jump[2];   /* what the point feels */
+    double traction[2];        /* expected from here on */
     bool is_broken, is_unlinked;
     double new_opening, new_origin[2];
     double energy[RG_E_INTERFACE];
@@ -120,6 +125,114 @@ static const scenario scenarios[] = {
      .new_origin = {1e-9 - EPS, 2e-9},
      .energy = {0, SIGMA *FIRST *EPS / 2, 0, GC *EPS / DELTA}},
     {.name = "infinite strength", .beta = 1, .strong = true, .pull = {1e12, 1e12}, .traction = {1e12, 1e12}},
+    {.name = "conserving activation, no jump",
+     .beta = 2,
+     .conserving = true,
+     .pull = {0, 2.001 * SIGMA},
+     .traction = {0, 2 * SIGMA},
+     .is_broken = true,
+     .is_unlinked = true,
+     .new_origin = {0, -ONSET / 2}},
+    {.name = "conserving activation, jump along the traction", /* W(1e-8) = SIGMA g */
+     .beta = 1,
+     .conserving = true,
+     .pull = {1.001 * SIGMA, 0},
+     .jump = {1e-8 * (1 - 0.5e-8 / DELTA), 3e-9},
+     .traction = {SIGMA * (1 - 1e-8 / DELTA), 0},
+     .is_broken = true,
+     .is_unlinked = true,
+     .new_opening = 1e-8,
+     .new_origin = {1e-8 * (1 - 0.5e-8 / DELTA) - 1e-8 - ONSET, 3e-9},
+     .energy = {0, SIGMA *(1 - 1e-8 / DELTA) * 1e-8 / 2, 0, GC * 1e-8 / DELTA}},
+    {.name = "conserving activation, jump against the traction", /* delta_0 = onset/2 */
+     .beta = 1,
+     .conserving = true,
+     .pull = {1.001 * SIGMA, 0},
+     .jump = {-0.375 * ONSET, 0},
+     .traction = {SIGMA / 2, 0},
+     .is_broken = true,
+     .is_unlinked = true,
+     .new_origin = {-0.875 * ONSET, 0},
+     .energy = {0, -SIGMA * 0.375 * ONSET, 0, 0}},
+    {.name =
+         "conserving activation, penalty given back", /* g = 1.6e-8 + 0.3125 STIFF 1.6e-8^2/SIGMA = 2e-8 */
+     .beta = 1,
+     .conserving = true,
+     .beta_s = 4,
+     .pull = {1.001 * SIGMA, 0},
+     .jump = {1.6e-8, 0},
+     .traction = {SIGMA * LEFT, 0},
+     .is_broken = true,
+     .is_unlinked = true,
+     .new_opening = DELTA * (1 - LEFT),
+     .new_origin = {1.6e-8 - DELTA * (1 - LEFT) - ONSET, 0},
+     .energy = {0, SIGMA *LEFT *DELTA *(1 - LEFT) / 2, 0, GC *(1 - LEFT)}},
+    {.name = "conserving activation, jump that takes all of the energy",
+     .beta = 1,
+     .conserving = true,
+     .pull = {1.001 * SIGMA, 0},
+     .jump = {0.6 * DELTA, 0},
+     .is_broken = true,
+     .is_unlinked = true,
+     .new_opening = DELTA,
+     .new_origin = {-0.4 * DELTA - ONSET, 0},
+     .energy = {0, 0, 0, GC}},
+    {.name = "conserving activation, jump far against the traction",
+     .beta = 1,
+     .conserving = true,
+     .pull = {1.001 * SIGMA, 0},
+     .jump = {-2 * ONSET, 0},
+     .is_broken = true,
+     .is_unlinked = true,
+     .new_origin = {-2 * ONSET, 0},
+     .energy = {0, -SIGMA *ONSET / 2, 0, 0}},
+    {.name = "conserving, loading",
+     .beta = 1,
+     .conserving = true,
+     .broken = true,
+     .unlinked = true,
+     .opening = 3e-8,
+     .jump = {4e-8 + ONSET, 0},
+     .traction = {SIGMA * 0.75, 0},
+     .is_broken = true,
+     .is_unlinked = true,
+     .new_opening = 4e-8,
+     .energy = {0, SIGMA * 0.75 * 4e-8 / 2, 0, GC / 4}},
+    {.name = "conserving, half unloaded, aside",
+     .beta = 2,
+     .conserving = true,
+     .broken = true,
+     .unlinked = true,
+     .opening = 4e-8,
+     .jump = {0, (4e-8 + ONSET) / 4},
+     .traction = {0, 2 * SIGMA * 0.75 / 2},
+     .is_broken = true,
+     .is_unlinked = true,
+     .new_opening = 4e-8,
+     .energy = {0, SIGMA * 0.75 / 2 * ((4e-8 + ONSET) / 4 - ONSET), 0, GC / 4}},
+    {.name = "conserving, closed",
+     .beta = 1,
+     .conserving = true,
+     .broken = true,
+     .unlinked = true,
+     .opening = 4e-8,
+     .jump = {-1e-9, 0},
+     .traction = {-STIFF * 1e-9, 0},
+     .is_broken = true,
+     .is_unlinked = true,
+     .new_opening = 4e-8,
+     .energy = {0, -SIGMA * 0.75 / 2 * ONSET, STIFF * 1e-18 / 2, GC / 4}},
+    {.name = "conserving, failed",
+     .beta = 1,
+     .conserving = true,
+     .broken = true,
+     .unlinked = true,
+     .opening = 1e-8,
+     .jump = {DELTA + ONSET, 0},
+     .is_broken = true,
+     .is_unlinked = true,
+     .new_opening = DELTA,
+     .energy = {0, 0, 0, GC}},
     {.name = "total activation",
      .beta = 1,
      .total = true,
@@ -404,6 +517,8 @@ static void check_scenario(const rg_kernels *set, const scenario *s, double up, 
                              .beta = s->beta,
                              .contact_below = s->linear ? INFINITY : 0,
                              .total = s->total,
+                             .onset = s->conserving ? 0.3 : 0,
+                             .beta_s = s->beta_s > 0 ? s->beta_s : 1.5,
                              .flux = s->flux};
     const double pull[3] = {s->pull[1], 0, up * s->pull[0]}, jump[3] = {s->jump[1], 0, up * s->jump[0]};
     const double traction[3] = {s->traction[1], 0, up * s->traction[0]};

@@ -1,5 +1,6 @@
-/* Every cohesive law of the registry: its scalar form against closed-form theory, then the kernels of every
- * instruction set against the scalar form on random states. */
+/* Every cohesive law of the registry, also under a conserving activation where it can be: its scalar form
+ * against closed-form theory, then the kernels of every instruction set against the scalar form on random
+ * states. */
 #include <stdarg.h>
 #include <stddef.h>
 #include <setjmp.h>
@@ -23,6 +24,7 @@ typedef struct {
     rg_law law;
     double shape[RG_LAW_SHAPE];
     double beta;
+    double onset; /* of a conserving activation (m); 0: none */
     rg_law_facts facts;
 } subject;
 
@@ -36,22 +38,27 @@ static void own_parameters(rg_law law, bool off, double shape[RG_LAW_SHAPE]) {
 #undef RG_LAW_PARAMETER
 }
 
-static subject make_subject(rg_law law, bool off, double beta) {
+/* `onset` in critical openings, of laws that can be conserving. */
+static subject make_subject(rg_law law, bool off, double beta, double onset) {
     subject s = {.law = law, .beta = beta};
     own_parameters(law, off, s.shape);
     s.facts = rg_law_facts_of(law, s.shape, beta);
     if (s.facts.forms & RG_NORMAL_MEASURE)
         s.beta = 0;
+    s.onset = (s.facts.forms & RG_ENVELOPE) != 0 ? onset * DELTA : 0;
     return s;
 }
 
-/* Every law with three sets of parameters. */
+/* Every law with three sets of parameters, and two onsets where it has one. */
 static void for_each_law(void (*test)(const subject *s)) {
     for (int law = 0; law < (int)RG_LAWS; law++) {
-        const subject all[] = {make_subject((rg_law)law, false, 1), make_subject((rg_law)law, true, 2),
-                               make_subject((rg_law)law, true, 0.5)};
+        const subject all[] = {make_subject((rg_law)law, false, 1, 0), make_subject((rg_law)law, true, 2, 0),
+                               make_subject((rg_law)law, true, 0.5, 0),
+                               make_subject((rg_law)law, true, 2, 0.1),
+                               make_subject((rg_law)law, true, 0.5, 0.7)};
         for (size_t k = 0; k < sizeof all / sizeof *all; k++)
-            test(&all[k]);
+            if (k < 3 || all[k].onset > 0)
+                test(&all[k]);
     }
 }
 
@@ -64,13 +71,15 @@ static rg_law_query query_of(const subject *s, double normal, double sliding) {
 static rg_law_answer ask(const subject *s, double normal, double sliding, double state[1 + RG_LAW_MEMORY]) {
     rg_law_query q = query_of(s, normal, sliding);
     q.before = state[0];
+    if (s->onset > 0)
+        return rg_reference_conserving(s->law, &q, s->onset, state);
     state[0] = fmax(state[0], q.effective);
     return rg_reference_law(s->law, &q, state);
 }
 
 /* The answer at an opening after one as large as `largest`; no memory besides. */
 static rg_law_answer ask_at(const subject *s, double normal, double sliding, double largest) {
-    double state[1 + RG_LAW_MEMORY] = {largest};
+    double state[1 + RG_LAW_MEMORY] = {largest - s->onset};
     return ask(s, normal, sliding, state);
 }
 
@@ -81,7 +90,8 @@ static double random_in(uint64_t *key, double low, double high) {
 
 static void expect_near(const subject *s, const char *what, double got, double expected, double tolerance) {
     if (!(fabs(got - expected) <= tolerance))
-        fail_msg("%s, beta %g: %s is %.12g instead of %.12g", s->facts.word, s->beta, what, got, expected);
+        fail_msg("%s, beta %g, onset %g: %s is %.12g instead of %.12g", s->facts.word, s->beta, s->onset,
+                 what, got, expected);
 }
 
 /* ---- Work of separation ---- */
@@ -106,11 +116,12 @@ static double work(const subject *s, bool slide, double from, double to, int pan
 
 static void check_work(const subject *s) {
     double expected = s->facts.work * SIGMA * DELTA, unit = SIGMA * DELTA;
-    double opening = work(s, false, 0, DELTA, 10000) + work(s, false, DELTA, 60 * DELTA, 20000);
+    double start = s->onset, last = DELTA + start;
+    double opening = work(s, false, start, last, 10000) + work(s, false, last, 60 * DELTA, 20000);
     expect_near(s, "work of opening", opening, expected, 1e-8 * unit);
     if (s->beta > 0) { /* q is the ratio of the two where the law has it */
-        double q = s->law == RG_LAW_XU_NEEDLEMAN ? s->shape[0] : 1, end = DELTA / s->beta;
-        double sliding = work(s, true, 0, end, 10000) + work(s, true, end, 60 * end, 20000);
+        double q = s->law == RG_LAW_XU_NEEDLEMAN ? s->shape[0] : 1, end = last / s->beta;
+        double sliding = work(s, true, start / s->beta, end, 10000) + work(s, true, end, 60 * end, 20000);
         expect_near(s, "work of sliding", sliding, q * expected, 1e-8 * unit);
     }
 }
@@ -165,13 +176,14 @@ static void test_potential(void **state) {
 static void walk(const subject *s, uint64_t key) {
     double state[1 + RG_LAW_MEMORY] = {1e-12 * DELTA};
     double unit = SIGMA * DELTA * fmax(1, s->facts.work), reach = random_in(&key, 0.2, 2) * DELTA;
+    double least = -SIGMA * s->onset / 2; /* stored: from the switch on */
     rg_law_answer last = ask(s, 0, 0, state);
     for (int step = 0; step < PATH_STEPS; step++) {
         double normal = random_in(&key, -0.2, 1) * reach, sliding = random_in(&key, 0, 1) * reach;
         rg_law_answer now = ask(s, normal, sliding, state);
-        if (!(now.dissipated >= last.dissipated - 1e-12 * unit) || !(now.stored >= -1e-12 * unit))
-            fail_msg("%s: dissipated %g after %g, stored %g", s->facts.word, now.dissipated, last.dissipated,
-                     now.stored);
+        if (!(now.dissipated >= last.dissipated - 1e-12 * unit) || !(now.stored >= least - 1e-12 * unit))
+            fail_msg("%s, onset %g: dissipated %g after %g, stored %g", s->facts.word, s->onset,
+                     now.dissipated, last.dissipated, now.stored);
         last = now;
     }
 }
@@ -184,8 +196,11 @@ static void check_dissipation(const subject *s) {
 static void test_dissipation(void **state) {
     (void)state;
     for (int law = 0; law < (int)RG_LAWS; law++) {
-        subject s = make_subject((rg_law)law, true, 1);
-        check_dissipation(&s);
+        for (int k = 0; k < 2; k++) {
+            subject s = make_subject((rg_law)law, true, 1, 0.3 * k);
+            if (k == 0 || s.onset > 0)
+                check_dissipation(&s);
+        }
     }
 }
 
@@ -216,9 +231,8 @@ static void test_balance(void **state) {
 /* ---- Laws with a memory ---- */
 
 /* Opened at a constant rate, the work of separation is (1 + (v/v_0)^n) times that of slow opening. */
-static void test_rate(void **state) {
-    (void)state;
-    subject s = make_subject(RG_LAW_RATE, true, 1);
+static void check_rate(double onset) {
+    subject s = make_subject(RG_LAW_RATE, true, 1, onset);
     enum { STEPS = 2000 };
     double memory[1 + RG_LAW_MEMORY] = {1e-9 * DELTA}, reach = 4 * DELTA, speed = reach / STEPS / 1e-9;
     rg_law_answer a = ask(&s, 0, 0, memory);
@@ -229,10 +243,16 @@ static void test_rate(void **state) {
     expect_near(&s, "work at a rate", a.dissipated, expected, 3e-3 * expected);
 }
 
+static void test_rate(void **state) {
+    (void)state;
+    check_rate(0);
+    check_rate(0.3);
+}
+
 /* Cycles to the same opening wear the point: each peak is lower, by what the equations say for the first. */
 static void test_fatigue(void **state) {
     (void)state;
-    subject s = make_subject(RG_LAW_FATIGUE, false, 1);
+    subject s = make_subject(RG_LAW_FATIGUE, false, 1, 0);
     double memory[1 + RG_LAW_MEMORY] = {1e-9 * DELTA}, top = 0.4 * DELTA, far = s.shape[0] * DELTA, peak[4];
     ask(&s, 0, 0, memory);
     for (int cycle = 0; cycle < 4; cycle++) {
@@ -274,6 +294,39 @@ static void check_stiffness(const subject *s) {
 static void test_stiffness(void **state) {
     (void)state;
     for_each_law(check_stiffness);
+}
+
+/* A conserving law answers as the law does at the damage; is at most strength over onset stiff, which it is
+ * before the first damage; and where it opens, work done since the switch is what it has stored and
+ * dissipated. */
+static void check_conserving(const subject *s) {
+    uint64_t key = 13;
+    double bound = SIGMA / s->onset;
+    for (int k = 0; k < STATES && s->onset > 0; k++) {
+        double damage = random_in(&key, 1e-6, 1.2) * DELTA, part = random_in(&key, 0, 1);
+        double largest = s->onset + damage, sliding = random_in(&key, 0, 1) * largest / s->beta;
+        subject plain = *s;
+        plain.onset = 0;
+        rg_law_answer law = ask_at(&plain, damage, 0, damage), top = ask_at(s, largest, 0, largest);
+        rg_law_answer back = ask_at(s, part * largest, sliding, largest);
+        expect_near(s, "envelope", top.normal, law.normal, 1e-12 * SIGMA);
+        expect_near(s, "work to the envelope", top.stored + top.dissipated, law.stored + law.dissipated,
+                    1e-12 * SIGMA * DELTA);
+        assert_true(back.normal <= bound * part * largest * (1 + 1e-12));
+        assert_true(back.sliding <= s->beta * s->beta * bound * sliding * (1 + 1e-12));
+    }
+    if (s->onset > 0) {
+        rg_law_answer first = ask_at(s, 0.5 * s->onset, 0, s->onset), start = ask_at(s, s->onset, 0, 0);
+        expect_near(s, "first slope", first.normal, bound * 0.5 * s->onset, 1e-9 * SIGMA);
+        expect_near(s, "traction at the switch", start.normal, SIGMA, 1e-9 * SIGMA);
+        expect_near(s, "stored at the switch", start.stored, 0, 1e-9 * SIGMA * DELTA);
+        expect_near(s, "dissipated at the switch", start.dissipated, 0, 1e-9 * SIGMA * DELTA);
+    }
+}
+
+static void test_conserving(void **state) {
+    (void)state;
+    for_each_law(check_conserving);
 }
 
 /* ---- Kernels ---- */
@@ -447,7 +500,7 @@ static void test_kernels(void **state) {
     for (int k = 0; k < n; k++)
         for (int l = 0; l < (int)RG_LAWS; l++)
             for (int kind = 0; kind < 2 && exists((rg_law)l); kind++) {
-                subject s = make_subject((rg_law)l, true, kind == 0 ? 1 : 1.5);
+                subject s = make_subject((rg_law)l, true, kind == 0 ? 1 : 1.5, 0.3);
                 rg_cohesive law = cohesive_of(&s, (s.facts.forms & RG_FORMS_DG) == 0);
                 check_kernel(sets[k], (input_kind)kind, &law, NULL);
                 check_kernel(sets[k], (input_kind)kind, &law, scale);
@@ -455,6 +508,14 @@ static void test_kernels(void **state) {
                 check_kernel(sets[k], (input_kind)kind, &law, kind == 0 ? scale : NULL);
                 law.stick = true;
                 check_kernel(sets[k], (input_kind)kind, &law, NULL);
+                law.friction = 0;
+                law.stick = false;
+                law.onset = 0.3; /* in units of the penalty, as the kernels take it */
+                law.beta_s = 4;
+                if (s.onset > 0) {
+                    check_kernel(sets[k], (input_kind)kind, &law, NULL);
+                    check_kernel(sets[k], (input_kind)kind, &law, scale);
+                }
             }
     free(scale);
 }
@@ -465,7 +526,7 @@ static void test_scale(void **state) {
     (void)state;
     for (size_t k = 0; k < 2 * INPUT_ISLOTS; k++)
         scale[k] = k / RG_LANES % 2 == 0 ? 2 : (rg_real)0.5;
-    subject s = make_subject(RG_LAW_LINEAR, false, 1);
+    subject s = make_subject(RG_LAW_LINEAR, false, 1, 0);
     rg_cohesive law = cohesive_of(&s, false), scaled = law;
     scaled.strength *= 2;
     scaled.opening *= 0.5;
@@ -485,9 +546,11 @@ static void test_scale(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_work),    cmocka_unit_test(test_potential), cmocka_unit_test(test_dissipation),
-        cmocka_unit_test(test_balance), cmocka_unit_test(test_stiffness), cmocka_unit_test(test_kernels),
-        cmocka_unit_test(test_scale),   cmocka_unit_test(test_rate),      cmocka_unit_test(test_fatigue),
+        cmocka_unit_test(test_work),        cmocka_unit_test(test_potential),
+        cmocka_unit_test(test_dissipation), cmocka_unit_test(test_balance),
+        cmocka_unit_test(test_stiffness),   cmocka_unit_test(test_kernels),
+        cmocka_unit_test(test_scale),       cmocka_unit_test(test_rate),
+        cmocka_unit_test(test_fatigue),     cmocka_unit_test(test_conserving),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -13,6 +13,7 @@ VARIANTS = {
     "incomplete": {"interface.form": "incomplete"},
     "lumped": {"mass": "lumped"},
     "thesis": {"interface.activation": "total", "interface.contact": "flux"},
+    "conserving": {"interface.activation": "conserving"},
     "isotropic": {"interface.penalty": "isotropic"},
     "friction": {"interface.friction": 0.5},
     "continuous": {"interface.form": "continuous", "interface.faces": "nz*nz > 0.5"},

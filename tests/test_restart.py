@@ -98,6 +98,7 @@ def test_restart_on_any_layout(whole, stopped, tmp_path, written, to):
 VARIANTS = {
     "incomplete": {"interface.form": "incomplete", "mass": "lumped"},
     "thesis": {"interface.activation": "total", "interface.contact": "flux"},
+    "conserving": {"interface.activation": "conserving", "interface.law": "linear" if SINGLE else "rate"},
     "intrinsic": {"interface.form": "intrinsic", "interface.law": "xu-needleman"},
     "friction": {"interface.friction": 0.5},
     "fatigue": {"interface.law": "fatigue"},
