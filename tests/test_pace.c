@@ -17,22 +17,17 @@
 #include "../src/tile.h"
 
 #define ASCENT 0.1
+#define PULL   "boundary=[{set: z+, component: z, velocity: 2e8*t}, {set: z-, component: z, velocity: -2e8*t}]"
 #define STEPS  200.0
 
 enum { MOST_STEPS = 3000 };
 
 static rg_case *read_case(void) {
-    static const char *const override[] = {"mesh.cells=[2, 2, 6]",
-                                           "mesh.jitter=0.1",
-                                           "mesh.size=[2e-4, 2e-4, 6e-4]",
-                                           "mesh.origin=[0, 0, 0]",
-                                           "output.probes=[]",
-                                           "boundary=[{set: z+, component: z, velocity: \"2e8*t\"}, "
-                                           "{set: z-, component: z, velocity: \"-2e8*t\"}]",
-                                           "interface.form=intrinsic",
-                                           "interface.law=bilinear",
-                                           "interface.bilinear.ascent=0.1",
-                                           "interface.bilinear.steps=200"};
+    static const char *const override[] = {
+        "mesh.cells=[2, 2, 6]",        "mesh.jitter=0.1",        "mesh.size=[2e-4, 2e-4, 6e-4]",
+        "mesh.origin=[0, 0, 0]",       "output.probes=[]",       PULL,
+        "interface.form=intrinsic",    "interface.law=bilinear", "interface.bilinear.ascent=0.1",
+        "interface.bilinear.steps=200"};
     rg_case *c = rg_case_read(RG_SOURCE_ROOT "/bench/cases/spall.yaml", sizeof override / sizeof *override,
                               override, stderr);
     assert_non_null(c);
