@@ -35,6 +35,7 @@ enum {
         6 * HENCKY_DOT + 9 + 2 + (HENCKY_FMA + 1 + HENCKY_FMA) + (HENCKY_FMA + 1) + (1 + HENCKY_FMA),
     HENCKY_EXPONENTIAL =
         HENCKY_COAXIAL + HENCKY_INVARIANTS + 10 * HENCKY_FMA + (HENCKY_FMA + 1 + 6 * 4), /* |y| small */
+    HENCKY_LONG_SERIES = 12 * (2 * (1 + HENCKY_FMA) + 1), /* of the exponential, where |y| is large */
     /* y; exponential; times b; inverse of F; congruence; Cp^-1 */
     HENCKY_FLOW = 7 + HENCKY_EXPONENTIAL + HENCKY_COAXIAL + 9 + HENCKY_CONGRUENCE + 6,
 };

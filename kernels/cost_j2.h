@@ -10,8 +10,8 @@ enum {
     J2_AT_REST = HENCKY_STRAIN + J2_STRESS + HENCKY_PIOLA + HENCKY_STIFFENING,
     J2_YIELD = 1 + HENCKY_FMA,
     J2_LEFT = 1 + HENCKY_EXP + 1, /* only where hardening saturates */
-    /* curve; dep; ep, curve, part, von Mises stress, work */
-    J2_FLOW = J2_YIELD + (1 + HENCKY_FMA + 1) + 1 + J2_YIELD + 1 + HENCKY_FLOW + 2 + 3,
+    /* curve; dep; ep, curve, part, von Mises stress, work; for a strain far beyond yield in one step */
+    J2_FLOW = J2_YIELD + (1 + HENCKY_FMA + 1) + 1 + J2_YIELD + 1 + HENCKY_FLOW + HENCKY_LONG_SERIES + 2 + 3,
     /* left before and after; the other lower bound */
     J2_SATURATION = 2 * J2_LEFT + 2,
     J2_NEWTON = J2_LEFT + (HENCKY_FMA + 1 + 1 + HENCKY_FMA + 1) + 1 + 1,
