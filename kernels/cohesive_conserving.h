@@ -2,13 +2,14 @@
  *
  * Let T(d), T(0) = sigma_c, be the law's envelope, W(d) the integral of T from 0 to d, and delta the
  * effective opening, counted from the onset eps for the sake of a finite stiffness. Of the largest opening
- * delta_max only d = delta_max - eps counts as damage: traction    T(d) delta/delta_max                  at
- * most sigma_c/eps stiff dissipated  D(d) = W(d) - T(d) d/2                the law's own at d; dD = (T - d
- * T')/2 dd >= 0 stored      T(d)/2 (delta^2/delta_max - eps)      since the switch Where delta = delta_max,
- * stored + D = W(d), whose change is the work T dd; where d stays, the change of stored is T(d)
- * delta/delta_max d delta, the work again. So the ledger closes on every path, and the work of separation is
- * the law's own whatever eps. Stored is negative where delta^2 < eps delta_max: a point pushed back beyond
- * its state at the switch has given more than it took.
+ * delta_max only d = delta_max - eps counts as damage:
+ *     traction    T(d) delta/delta_max, at most sigma_c/eps stiff
+ *     dissipated  D(d) = W(d) - T(d) d/2, the law's own at d; dD = (T - d T')/2 dd >= 0
+ *     stored      T(d)/2 (delta^2/delta_max - eps), 0 at the switch
+ * Where delta = delta_max, stored + D = W(d), whose change is the work T dd; where d stays, the change of
+ * stored is T(d) delta/delta_max d delta, the work again. So the ledger closes on every path, and the work of
+ * separation is the law's own whatever eps. Stored is negative where delta^2 < eps delta_max: a point pushed
+ * back beyond its state at the switch has given more than it took.
  *
  * A point that switches leaves the lift of its elements (Ten Eyck & Lew 2006) and the penalty. What they held
  * by its jump comes free, sigma_c g, g = (t . [u] + [u] . Q [u]/2)/sigma_c: t is the part of the traction
