@@ -659,8 +659,19 @@ RG_INLINE void interface_vector(const rg_interface_args *args, size_t block, int
     store_nodal_force(&s);
 }
 
+/* Crack state of the next block that has some: it lies too far on for a processor to foresee. */
+RG_INLINE void prefetch_cracks(const rg_interface_args *args, size_t block, size_t end) {
+    if (block < end && args->active[block]) {
+        const rg_real *state = args->crack + block * args->crack_stride;
+        for (size_t k = 0; k < RG_CRACK_BLOCK; k += 64 / sizeof *state) {
+            __builtin_prefetch(state + k, 1);
+        }
+    }
+}
+
 void RG_ISA_NAME(rg_interface)(const rg_interface_args *args, size_t begin, size_t end) {
     for (size_t b = begin; b < end; b++) {
+        prefetch_cracks(args, b + 1, end);
         for (int lane = 0; lane < RG_LANES; lane += RG_VLEN) {
             if (b < args->first_seam) {
                 interface_vector(args, b, lane, false);
