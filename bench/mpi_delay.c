@@ -1,10 +1,11 @@
 /* A slow network for any MPI program with persistent requests: loaded in front of the MPI library
  * (LD_PRELOAD), it lets what MPI_Startall starts complete a delay later at the earliest. Tests before that
- * say no, waits last until then. The program needs no hook and does not know. Environment: RHEGMA_DELAY_US
- * delays in microseconds, taken in turn: 0,500,1000 RHEGMA_DELAY_STARTS  calls of MPI_Startall after which it
- * is the next one's turn RHEGMA_DELAY_LOG     file in which rank 0 leaves "delay seconds" of every turn, both
- * in seconds RHEGMA_NO_POLL=1     all tests say no, at no cost: what happens then, the library does by itself
- * or in the wait */
+ * say no, waits last until then. The program needs no hook and does not know. Environment:
+ *     RHEGMA_DELAY_US      delays in microseconds, taken in turn: 0,500,1000
+ *     RHEGMA_DELAY_STARTS  calls of MPI_Startall after which it is the next one's turn
+ *     RHEGMA_DELAY_LOG     file in which rank 0 leaves "delay seconds" of every turn, both in seconds
+ *     RHEGMA_NO_POLL=1     all tests say no, at no cost: what happens then, the library does by itself or in
+ *                          the wait */
 #include <mpi.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -60,6 +61,9 @@ static double current_delay(double now) {
 }
 
 int MPI_Startall(int count, MPI_Request requests[]) {
+    if (count == 0) { /* a rank on its own, in the set-up: it would be ahead of the others' turns */
+        return PMPI_Startall(count, requests);
+    }
     double now = PMPI_Wtime();
     *ready_time(requests) = now + current_delay(now);
     return PMPI_Startall(count, requests);
