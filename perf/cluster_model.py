@@ -8,7 +8,8 @@ the slower of the two nodes' links counts, and the latency. Ranks begin together
 alone: those whose messages are through early compute while others still send, so that links are in use for more of the time
 than if all exchanged at once.
 With several threads a sweep takes as long as its thread with most tiles, each of TILE tets, and a step has some
-barriers of the team. The reduction has a sweep and a half to go round and stays hidden as long as 2 log2(ranks) latencies are shorter.
+barriers of the team. The reduction goes round by dissemination, in log2(ranks) rounds, and is late by what they take beyond
+the second sweep.
 """
 
 import dataclasses
@@ -123,7 +124,7 @@ def step(pattern, network, costs, threads=1):
     pack = costs.pack * pattern.shared / threads + 2 * network.overhead * count  # of one exchange
     sweeps = (costs.first + costs.second) * (inner + outer)
     rest = costs.rest + (TEAM_BARRIERS * BARRIER if threads > 1 else 0)
-    reduction = 2 * np.ceil(np.log2(max(pattern.ranks, 2))) * (network.latency + 2 * network.overhead)
+    reduction = np.ceil(np.log2(max(pattern.ranks, 2))) * (network.latency + 2 * network.overhead)
     late = np.maximum(reduction - costs.second * (inner + outer), 0) if pattern.ranks > 1 else np.zeros(1)
     now = np.zeros(pattern.ranks)  # when a rank has sent its traces
     for k in range(WARM + STEPS):
