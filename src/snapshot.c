@@ -51,13 +51,12 @@ typedef struct {
     const void *of;
     size_t values, rows; /* of a record; of a window */
     size_t next;         /* entry of w->row from which on the rows lie in windows to come */
-    bool everything;     /* whether or not in the region */
 } window_source;
 
 /* Keeps of a window's `n` records from row `first` on those that are written; returns how many. */
 static size_t keep_region(window_source *x, size_t first, size_t n, double *record) {
     const rg_snapshots *w = x->w;
-    if (w->row == NULL || x->everything) {
+    if (w->row == NULL) {
         return n;
     }
     size_t kept = 0;
@@ -117,14 +116,13 @@ static void get_vector(const void *of, size_t i, void *out) {
     }
 }
 
-/* Which elements are written. */
+/* Which elements are written. While it looks at them w->row is not there yet, so it gets all. */
 static void find_region(rg_snapshots *w, const rg_solver *s) {
     nodal_records positions = {s->domain, w->slab->slot, NULL};
     window_source x = open_source(w, s->input, NODAL, get_position, &positions);
     rg_cell_source cells = cells_of(&x);
     double *record = RG_NEW(double, cells.cells *NODAL + 1);
     size_t *row = RG_NEW(size_t, w->slab->count + 1);
-    x.everything = true;
     for (size_t k = 0; k < cells.windows; k++) {
         size_t n = cells.get(&x, k, record);
         for (size_t i = 0; i < n; i++) {

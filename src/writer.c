@@ -85,9 +85,13 @@ static void write_cells(rg_writer *w, hid_t place, int nodes, int64_t rows, int6
     rg_free(cells);
 }
 
+static int64_t nodes_of(const rg_volume_field *f) {
+    return f->center == RG_CENTER_CELL ? 1 : 10;
+}
+
 /* Values per cell. */
 static size_t width(const rg_volume_field *f) {
-    return (size_t)f->components * (f->center == RG_CENTER_CELL ? 1 : 10);
+    return (size_t)(f->components * nodes_of(f));
 }
 
 /* Takes the values of a field from the records of `n` cells, in the order and precision of the file: of
@@ -111,10 +115,9 @@ static void extract(const rg_writer *w, const rg_volume_field *f, size_t n, size
 }
 
 static rg_h5_slab slab_of(const rg_writer *w, const rg_volume_field *f) {
-    int64_t nodes = f->center == RG_CENTER_CELL ? 1 : 10;
     rg_h5_slab s = real_slab(w, f->name, f->components);
-    s.rows = nodes * w->total;
-    s.first = nodes * w->first;
+    s.rows = nodes_of(f) * w->total;
+    s.first = nodes_of(f) * w->first;
     return s;
 }
 
@@ -134,7 +137,7 @@ static void write_fields(rg_writer *w, size_t fields, const rg_volume_field *fie
     for (size_t k = 0; k < source->windows; k++) {
         size_t n = source->get(source->of, k, record);
         for (size_t f = 0; f < fields; f++) {
-            slab[f].count = (int64_t)(n * width(&field[f])) / field[f].components;
+            slab[f].count = (int64_t)n * nodes_of(&field[f]);
             extract(w, &field[f], n, source->values, record, part);
             rg_h5_put(&w->h5, dataset[f], &slab[f], part);
             slab[f].first += slab[f].count;

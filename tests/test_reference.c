@@ -169,11 +169,8 @@ static void set_smooth(input *in, double shift) {
             }
 }
 
-/* A third of all points, in all regimes, with openings much larger than the steps of the difference. Closed
- * points do not slide: their force leaves out that the normal turns, which then costs nothing. */
-static void break_some(input *in) {
-    static const double w[CRACKS][2] = {{0.4, 0.25}, {0.2, 0.12}, {-0.3, 0}, {0.5, 0.3}};
-    static const double largest[CRACKS] = {0.2, 0.6, 0.5, 1.5};
+/* A third of all points, in all regimes, with openings much larger than the steps of the difference. */
+static void break_some(input *in, const double w[CRACKS][2], const double largest[CRACKS]) {
     for (size_t i = 0; i < INPUT_INTERFACES; i++)
         for (int q = 0; q < RG_POINTS; q++)
             if ((i * 5 + (size_t)q) % 3 == 0) {
@@ -183,11 +180,14 @@ static void break_some(input *in) {
     input_flags(in);
 }
 
+/* Closed points do not slide: their force leaves out that the normal turns, which then costs nothing. */
 static void check_broken_gradient(const rg_kernels *set) {
+    static const double w[CRACKS][2] = {{0.4, 0.25}, {0.2, 0.12}, {-0.3, 0}, {0.5, 0.3}};
+    static const double largest[CRACKS] = {0.2, 0.6, 0.5, 1.5};
     const rg_cohesive law = {.strength = 2e10, .opening = 5e-6, .beta = 1}; /* no further point breaks */
     input *in = input_make(INPUT_SMALL, law, 3, 1);
     set_smooth(in, 2e-7);
-    break_some(in);
+    break_some(in, w, largest);
     check_gradient(set, in);
 }
 
@@ -206,13 +206,7 @@ static void check_slid_gradient(const rg_kernels *set) {
         const rg_cohesive law = {.strength = 2e10, .opening = INPUT_SIZE, .beta = beta, .potential = true};
         input *in = input_make(INPUT_SMALL, law, 3, 1);
         set_smooth(in, 2e-7);
-        for (size_t i = 0; i < INPUT_INTERFACES; i++)
-            for (int q = 0; q < RG_POINTS; q++)
-                if ((i * 5 + (size_t)q) % 3 == 0) {
-                    size_t regime = (i + (size_t)q) % CRACKS;
-                    input_break_point(in, i, q, w[regime], largest[regime]);
-                }
-        input_flags(in);
+        break_some(in, w, largest);
         check_gradient(set, in);
     }
 }
