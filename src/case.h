@@ -83,8 +83,9 @@ typedef struct {
         double size[3], origin[3];
         double jitter; /* fraction of the smallest cell edge */
         int64_t seed;
-        char *file;      /* a mesh file (mesh_file.h), as an absolute path; NULL: built-in box */
-        rg_expr *weight; /* cost of an element at x, y, z over that of others; NULL: all the same */
+        char *file;       /* a mesh file (mesh_file.h), as an absolute path; NULL: built-in box */
+        rg_expr *weight;  /* cost of an element at x, y, z over that of others; NULL: all the same */
+        double rebalance; /* most over mean work of ranks from which tiles are dealt anew; 0: never */
     } mesh;
     struct {
         rg_material_model model;

@@ -69,6 +69,7 @@ static const rg_key case_keys[] = {
     {.name = "mesh.jitter", REAL, FROM_TO(0, 0.3), DEFAULT(0), BOX, CASE(mesh.jitter)},
     {.name = "mesh.seed", INTEGER, FROM(0), DEFAULT(1), BOX, CASE(mesh.seed)},
     {.name = "mesh.weight", .type = RG_KEY_EXPR, OPTIONAL, .no_time = true, MAY_CHANGE, CASE(mesh.weight)},
+    {.name = "mesh.rebalance", REAL, FROM(0), DEFAULT(0), MAY_CHANGE, CASE(mesh.rebalance)},
 
     {.name = "material.model", CHOICE(models), REQUIRED, CASE(material.model)},
     {.name = "material.young", .unit = "Pa", REAL, ABOVE(0), REQUIRED, ELASTIC, CASE(material.young)},

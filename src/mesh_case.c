@@ -50,31 +50,36 @@ rg_mesh *rg_mesh_of_case(const rg_case *c) {
     return rg_mesh_box(c->mesh.cells, c->mesh.origin, c->mesh.size, c->mesh.jitter, c->mesh.seed);
 }
 
-static rg_part *part_of_file(const rg_case *c, int rank, MPI_Comm comm) {
+static rg_part *part_of_file(const rg_case *c, double *cost, bool known, int rank, MPI_Comm comm) {
     if (rank == 0) {
         check_sets(c);
     }
     MPI_Barrier(comm); /* what is wrong with the file as such, rank 0 has told */
-    double *weight = c->mesh.weight != NULL ? rg_tile_weights_of_file(c, comm) : NULL;
-    return rg_part_read(c->mesh.file, weight, comm);
+    if (!known && c->mesh.weight != NULL) {
+        cost = rg_tile_weights_of_file(c, comm);
+    }
+    return rg_part_read(c->mesh.file, cost, comm);
 }
 
-static rg_part *part_of_box(const rg_case *c, int rank, MPI_Comm comm) {
+static rg_part *part_of_box(const rg_case *c, double *cost, bool known, int rank, MPI_Comm comm) {
     rg_mesh *mesh = NULL;
-    double *weight = NULL;
     int tile = 0;
     if (rank == 0) {
         mesh = rg_mesh_of_case(c);
         tile = rg_tile_elements(mesh->elements);
-        weight = c->mesh.weight != NULL ? rg_tile_weights_of_mesh(c, mesh, tile) : NULL;
+        if (!known && c->mesh.weight != NULL) {
+            cost = rg_tile_weights_of_mesh(c, mesh, tile);
+        }
     }
-    rg_part *part = rg_part_distribute_weighted(mesh, tile, weight, comm);
+    rg_part *part = rg_part_distribute_weighted(mesh, tile, cost, comm);
     rg_mesh_free(mesh);
     return part;
 }
 
-rg_part *rg_part_of_case(const rg_case *c, MPI_Comm comm) {
-    int rank;
+rg_part *rg_part_of_case(const rg_case *c, double *cost, MPI_Comm comm) {
+    int rank, known = cost != NULL;
     MPI_Comm_rank(comm, &rank);
-    return c->mesh.file != NULL ? part_of_file(c, rank, comm) : part_of_box(c, rank, comm);
+    MPI_Bcast(&known, 1, MPI_INT, 0, comm);
+    return c->mesh.file != NULL ? part_of_file(c, cost, known, rank, comm)
+                                : part_of_box(c, cost, known, rank, comm);
 }

@@ -10,7 +10,8 @@
 rg_mesh *rg_mesh_of_case(const rg_case *c);
 
 /* Each rank's part of it, likewise. Of a mesh file no rank reads more than that; the box is made on rank 0.
- * Collective; the caller frees it. */
-rg_part *rg_part_of_case(const rg_case *c, MPI_Comm comm);
+ * cost[tiles] on rank 0, from rg_alloc, taken over: what each tile costs, in place of mesh.weight; or NULL.
+ * Collective; the caller frees the part. */
+rg_part *rg_part_of_case(const rg_case *c, double *cost, MPI_Comm comm);
 
 #endif

@@ -7,6 +7,7 @@
 
 #include "affinity.h"
 #include "autopsy.h"
+#include "balance.h"
 #include "error.h"
 #include "fragment_table.h"
 #include "interrupt.h"
@@ -39,8 +40,12 @@ typedef struct {
     rg_restart keep;
     rg_checkpoints checkpoints;
     rg_schedule schedule;
+    rg_balance balance;
     double dt_reference;
+    bool restart; /* goes on from a checkpoint */
     bool stopped; /* asked to, with a checkpoint */
+    bool uneven;  /* stopped with a checkpoint to deal the tiles anew */
+    double setup; /* wall time of the last set-up (s) */
     char failure[RG_FAILURE_WORDS];
 } run;
 
@@ -142,17 +147,27 @@ static void examine(run *r, int64_t step, double time, double dt) {
     rg_autopsy_add(r->failure, s, step, time, r->keep.good_time);
 }
 
-/* Writes a checkpoint if it is time for one; returns whether to stop after it. */
+/* Whether the work of the ranks is so uneven that another partition pays. */
+static bool uneven(run *r) {
+    rg_solver *s = r->solver;
+    double checkpoint = rg_schedule_seconds(s, r->checkpoints.slowest);
+    return !done(r) &&
+           rg_balance_pays(&r->balance, s, checkpoint + r->setup, rg_progress_left(&r->progress, s));
+}
+
+/* Writes a checkpoint if it is time for one, or for another partition; returns whether to stop after it. */
 static bool save(run *r) {
     const rg_solver *s = r->solver;
-    if (!rg_schedule_due(&r->schedule, s, done(r))) {
+    bool due = rg_schedule_due(&r->schedule, s, done(r));
+    r->uneven = s->wish < RG_WISH_STOP && uneven(r);
+    if (!due && !r->uneven) {
         return false;
     }
     rg_restart_settle(&r->keep, s, r->energy, r->probes, r->fragments, r->snapshots);
     rg_checkpoint_write(&r->checkpoints, (int)r->input->checkpoint.keep);
     rg_schedule_done(&r->schedule, s, r->checkpoints.slowest);
     r->stopped = s->wish >= RG_WISH_STOP;
-    return r->stopped;
+    return r->stopped || r->uneven;
 }
 
 /* Forces of the current state and, where it is to be output, that; then the step to the next one. The time
@@ -208,7 +223,6 @@ static void measure_exchange(rg_solver *s) {
 
 static void time_loop(run *r) {
     double started = MPI_Wtime(), other = 0;
-    r->summary.first_step = r->solver->step;
     bool on = true;
     while (on) {
         double begin = MPI_Wtime();
@@ -216,8 +230,11 @@ static void time_loop(run *r) {
         other += MPI_Wtime() - begin;
         on = !stop && advance(r, &other);
     }
-    r->summary.loop_seconds = MPI_Wtime() - started - other;
-    r->summary.output_seconds = other;
+    r->summary.loop_seconds += MPI_Wtime() - started - other;
+    r->summary.output_seconds += other;
+    r->summary.checkpoints += r->checkpoints.written;
+    r->summary.checkpoint_seconds += r->checkpoints.total;
+    r->summary.checkpoint_median = rg_checkpoints_median(&r->checkpoints);
 }
 
 /* ---- outputs ---- */
@@ -283,16 +300,20 @@ static void close_outputs(run *r) {
 
 /* ---- beginning and end ---- */
 
-/* The state, at rest or from a checkpoint, up to where the estimate can be made. */
-static void make_state(run *r, MPI_Comm comm) {
+/* The state, at rest or from a checkpoint, up to where the estimate can be made. `cost` as in
+ * rg_part_of_case. */
+static void make_state(run *r, double *cost, MPI_Comm comm) {
     const rg_case *c = r->input;
-    r->solver = r->options->restart ? rg_solver_make_from_part(c, rg_part_of_case(c, comm), comm)
-                                    : rg_solver_make(c, comm);
+    r->solver = r->restart ? rg_solver_make_from_part(c, rg_part_of_case(c, cost, comm), comm)
+                           : rg_solver_make(c, comm);
+    if (c->mesh.rebalance > 0 && r->solver->ranks > 1) {
+        r->solver->tile_seconds = RG_NEW(double, r->solver->domain->tiles);
+    }
     r->probes = rg_probes_find(r->solver);
     rg_restart_register(&r->state, &r->keep, r->solver, &r->ledger, &r->summary);
     rg_checkpoints_open(&r->checkpoints, c->output.dir, r->solver, &r->state, &r->slab);
     r->keep.next_output = c->output.interval_time;
-    if (!r->options->restart) {
+    if (!r->restart) {
         rg_spectrum(r->solver);
         return;
     }
@@ -304,16 +325,31 @@ static void make_state(run *r, MPI_Comm comm) {
     }
 }
 
-static void begin(run *r, MPI_Comm comm) {
-    const rg_case *c = r->input;
-    double started = MPI_Wtime();
-    make_state(r, comm);
+/* All that a time loop needs: at rest or from a checkpoint, on a partition by `cost` (rg_part_of_case). */
+static void prepare(run *r, double *cost, MPI_Comm comm) {
+    make_state(r, cost, comm);
     measure_exchange(r->solver);
-    if (!r->options->restart) {
+    if (!r->restart) {
         rg_solver_start(r->solver);
     }
     r->summary.estimate = rg_estimate_run(r->solver);
     r->dt_reference = r->summary.estimate.dt;
+    r->summary.partitions++;
+}
+
+static void open_or_reopen(run *r) {
+    if (r->restart) {
+        reopen_outputs(r);
+        rg_solver_resume(r->solver);
+    } else {
+        open_outputs(r);
+    }
+    rg_schedule_start(&r->schedule, r->solver, r->options->walltime);
+}
+
+static void begin(run *r, MPI_Comm comm) {
+    double started = MPI_Wtime();
+    prepare(r, NULL, comm);
     bool speaks = r->solver->rank == 0 && !r->options->quiet;
     if (speaks) {
         rg_estimate_print(r->solver, &r->summary.estimate, stdout);
@@ -321,19 +357,39 @@ static void begin(run *r, MPI_Comm comm) {
     if (!r->options->quiet) {
         rg_affinity_print(comm, stdout);
     }
-    if (r->options->restart) {
-        reopen_outputs(r);
-        rg_solver_resume(r->solver);
-    } else {
-        open_outputs(r);
-    }
+    open_or_reopen(r);
     r->solver->phases = (rg_phases){.last = 0};
-    if (speaks && r->options->restart) {
+    if (speaks && r->restart) {
         printf("goes on from step %" PRId64 ", time %.6g s\n", r->solver->step, r->solver->time);
     }
-    rg_schedule_start(&r->schedule, r->solver, r->options->walltime);
-    rg_progress_begin(&r->progress, speaks, c->time.end, r->summary.estimate.steps);
-    r->summary.setup_seconds = MPI_Wtime() - started;
+    r->summary.first_step = r->solver->step;
+    rg_progress_begin(&r->progress, speaks, r->solver);
+    rg_balance_start(&r->balance, r->solver, false);
+    r->summary.setup_seconds = r->setup = MPI_Wtime() - started;
+}
+
+/* The run goes on from the checkpoint just written, in the same files, on a partition by what the tiles cost.
+ */
+static void deal_anew(run *r, MPI_Comm comm) {
+    double started = MPI_Wtime(), *cost = rg_balance_costs(r->solver), before = r->balance.now;
+    rg_phases phases = r->solver->phases;
+    close_outputs(r);
+    rg_solver_free(r->solver);
+    *r = (run){.input = r->input,
+               .options = r->options,
+               .restart = true,
+               .summary = r->summary,
+               .progress = r->progress};
+    prepare(r, cost, comm);
+    open_or_reopen(r);
+    r->solver->phases = phases;
+    rg_balance_start(&r->balance, r->solver, true);
+    r->setup = MPI_Wtime() - started;
+    r->summary.setup_seconds += r->setup;
+    rg_progress_say(&r->progress,
+                    "step %" PRId64 ": the ranks' work was uneven (most %.2f of the mean), the mesh is "
+                    "dealt anew (by cost, most %.2f of the mean) in %.2f s",
+                    r->solver->step, before, r->solver->part->quality.cost_imbalance, r->setup);
 }
 
 /* Says how it ended; returns the exit status. */
@@ -351,9 +407,6 @@ static int conclude(run *r) {
         return RG_INTERRUPTED;
     }
     r->summary.failure = r->failure;
-    r->summary.checkpoints = r->checkpoints.written;
-    r->summary.checkpoint_seconds = r->checkpoints.total;
-    r->summary.checkpoint_median = rg_checkpoints_median(&r->checkpoints);
     rg_summary_write(&r->summary, r->solver, &r->ledger, r->fragments);
     if (failed && s->rank == 0) {
         fprintf(stderr, "rhegma: stopped: %s\n", r->failure);
@@ -368,8 +421,13 @@ int rg_run(const rg_case *c, MPI_Comm comm, const rg_run_options *options) {
     run *r = RG_NEW(run, 1);
     r->input = c;
     r->options = options;
+    r->restart = options->restart;
     begin(r, comm);
     time_loop(r);
+    while (r->uneven) {
+        deal_anew(r, comm);
+        time_loop(r);
+    }
     rg_progress_end(&r->progress);
     int status = conclude(r);
     close_outputs(r);

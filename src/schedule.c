@@ -17,6 +17,10 @@ static void set_clock(const rg_schedule *t, const rg_solver *s, double seconds) 
     }
 }
 
+double rg_schedule_seconds(const rg_solver *s, double seconds) {
+    return seconds > 0 ? seconds : (double)s->part->total * BYTES_PER_ELEMENT / BYTES_PER_SECOND;
+}
+
 static double after(double interval, double time) {
     return interval > 0 ? (floor(time / interval + 1e-6) + 1) * interval : INFINITY;
 }
@@ -25,7 +29,7 @@ void rg_schedule_start(rg_schedule *t, const rg_solver *s, double walltime) {
     *t = (rg_schedule){.next_time = after(s->input->checkpoint.time, s->time),
                        .last = s->step > 0 ? s->step : -1};
     t->limit = s->rank == 0 ? rg_interrupt_limit(walltime) : INFINITY;
-    set_clock(t, s, (double)s->part->total * BYTES_PER_ELEMENT / BYTES_PER_SECOND);
+    set_clock(t, s, rg_schedule_seconds(s, 0));
 }
 
 bool rg_schedule_due(const rg_schedule *t, const rg_solver *s, bool end) {

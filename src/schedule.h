@@ -16,6 +16,9 @@ void rg_schedule_start(rg_schedule *t, const rg_solver *s, double walltime);
 /* Whether the present state is to be saved: the same on all ranks. `end`: it is the last one. */
 bool rg_schedule_due(const rg_schedule *t, const rg_solver *s, bool end);
 
+/* What a checkpoint takes (s): the slowest so far, `seconds`; or a guess where there was none yet. */
+double rg_schedule_seconds(const rg_solver *s, double seconds);
+
 /* It was, in at most `seconds`. */
 void rg_schedule_done(rg_schedule *t, const rg_solver *s, double seconds);
 

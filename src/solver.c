@@ -146,7 +146,7 @@ rg_solver *rg_solver_make_from_part(const rg_case *input, rg_part *part, MPI_Com
 }
 
 rg_solver *rg_solver_make(const rg_case *input, MPI_Comm comm) {
-    rg_part *part = rg_part_of_case(input, comm);
+    rg_part *part = rg_part_of_case(input, NULL, comm);
     bool shared = input->interface.form == RG_FORM_CONTINUOUS; /* rg_spectrum has no use for a patch then */
     rg_part *patch = shared ? NULL : rg_patch_gather(part, comm);
     rg_solver *s = rg_solver_make_from_part(input, part, comm);
@@ -339,7 +339,11 @@ static void sweep(rg_solver *s, tile_work *work, const impulse *p, size_t begin,
     const rg_workspace *w = &s->work[omp_get_thread_num()];
 #pragma omp for schedule(static)
     for (size_t t = begin; t < end; t++) {
+        double before = s->tile_seconds != NULL ? MPI_Wtime() : 0;
         work(s, t, w, p);
+        if (s->tile_seconds != NULL) {
+            s->tile_seconds[t] += MPI_Wtime() - before;
+        }
         if (under != NULL && omp_get_thread_num() == 0) {
             rg_halo_poll(under);
         }
@@ -612,6 +616,7 @@ void rg_solver_free(rg_solver *s) {
                       s->tractions, s->watched,  s->work,     s->history, s->heat,       s->acceleration};
     rg_free(s->scale);
     rg_free(s->tile_pace);
+    rg_free(s->tile_seconds);
     rg_constraints_free(s->constraints);
     rg_bodies_free(s->bodies);
     rg_halo_free(s->halo_u[0]);

@@ -54,6 +54,7 @@ struct rg_solver {
     double *heat;        /* [blocks][lane]: dissipated by bulk viscosity (J); NULL where there is none */
     rg_real *stiffening; /* [blocks][lane] */
     rg_real *tile_stiffening;
+    double *tile_seconds;        /* [tiles]: that the sweeps took (balance.h); NULL: nobody asks */
     double *tile_pace;           /* pace.h; NULL: the law asks for no steps */
     double pace;                 /* largest on all ranks (1/s) */
     double stiffening_anywhere;  /* largest on all ranks; infinite if not finite */

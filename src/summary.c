@@ -33,6 +33,7 @@ static void write_run(FILE *f, const rg_summary *m, const rg_solver *s, const rg
     rg_json_integer(f, "dofs", e->dofs);
     rg_json_integer(f, "ranks", s->ranks);
     rg_json_integer(f, "threads", s->threads);
+    rg_json_integer(f, "partitions", m->partitions);
     rg_json_number(f, "imbalance", s->part->quality.imbalance);
     rg_json_number(f, "cost_imbalance", s->part->quality.cost_imbalance);
     rg_json_integer(f, "cut_faces", s->part->quality.cut_faces);
@@ -82,14 +83,10 @@ void rg_summary_write(rg_summary *m, rg_solver *s, const rg_ledger *l, const rg_
     rg_halo *nodes = s->assembly == NULL ? NULL : rg_assembly_halo(s->assembly);
     rg_halo *halo[] = {s->halo_u[0], s->halo_t, nodes}; /* of a step */
     int halos = nodes == NULL ? 2 : 3;
-    m->halo_wait_seconds = rg_halo_waited(s->halo_u[1]);
-    for (int k = 0; k < halos; k++) {
-        m->halo_wait_seconds += rg_halo_waited(halo[k]);
-    }
-    MPI_Allreduce(MPI_IN_PLACE, &m->halo_wait_seconds, 1, MPI_DOUBLE, MPI_MAX, s->comm);
     double work = (double)e->elements * (double)(s->step - m->first_step);
     m->us_per_tet_step = work > 0 ? 1e6 * m->loop_seconds * s->ranks * s->threads / work : 0;
     rg_phases_report phases = rg_phases_gather(&s->phases, s->domain, halo, halos, s->comm);
+    m->halo_wait_seconds = phases.phase[RG_PHASE_WAIT].most;
     if (s->rank != 0) {
         return;
     }

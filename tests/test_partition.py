@@ -207,6 +207,36 @@ def test_weight_that_is_refused(box, tmp_path, mesh, weight):
     assert f"mesh.weight: {weight} is " in process.stderr and "allowed: numbers > 0" in process.stderr
 
 
+# ---- mesh.rebalance ----
+
+
+def frames(run):
+    with h5py.File(run.dir / "fields.h5") as file:
+        return {name: (group.attrs["time"], group["displacement"][:].tobytes()) for name, group in file["frames"].items()}
+
+
+@pytest.mark.parametrize("ranks, threads", [(2, 1), (3, 1), (2, 2)])
+def test_a_run_goes_on_where_its_tiles_are_dealt_anew(run, box, ranks, threads):
+    """Below 1 they are at every look, each 100 steps; the bar is about to break at the first and has broken at the last."""
+    sets = {**SETS, "time.steps": 320, "time.end": 1e-6, "output.interval": 40, "output.fields": ["displacement"],
+            "output.probes": [{"name": "a", "at": [0.01e-3, 0.03e-3, 0.5e-3]}]}
+    one = run(box, sets=sets)
+    other = run(box, ranks=ranks, threads=threads, sets={**sets, "mesh.rebalance": 0.5})
+    assert one.summary["broken_area_m2"] > 0 and one.summary["partitions"] == 1
+    assert other.summary["partitions"] == 4 and other.summary["restarted_from_step"] == 0
+    assert other.summary["state_hash"] == one.summary["state_hash"]
+    for name in ("energy.csv", "history.csv", "fragments.csv"):
+        assert (other.dir / name).read_bytes() == (one.dir / name).read_bytes(), name
+    assert frames(other) == frames(one)
+
+
+@pytest.mark.parametrize("limit", [1.001, 100])
+def test_tiles_stay_where_another_partition_would_not_pay(run, box, limit):
+    """Too little is left to save, or the work is even enough."""
+    other = run(box, ranks=2, sets={**SETS, "mesh.rebalance": limit})
+    assert other.summary["steps"] > 100 and other.summary["partitions"] == 1 and other.summary["checkpoints"] == 0
+
+
 # ---- Files that are wrong although their checksums are right ----
 
 
