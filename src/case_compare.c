@@ -43,9 +43,20 @@ char *rg_case_fixed(const rg_case *c) {
     return text;
 }
 
+/* A damaged checkpoint may have lines that are no "key: value". */
+static size_t key_length(const char *line) {
+    return strcspn(line, ":\n");
+}
+
+static const char *value_of(const char *line) {
+    const char *at = line + key_length(line);
+    at += *at == ':';
+    return at + (*at == ' ');
+}
+
 /* The line of `text` with the key of `line`; NULL if there is none. */
 static const char *find_line(const char *text, const char *line) {
-    size_t key = strcspn(line, ":") + 1;
+    size_t key = key_length(line) + 1;
     while (text != NULL && strncmp(text, line, key) != 0) {
         text = strchr(text, '\n');
         text = text == NULL || text[1] == '\0' ? NULL : text + 1;
@@ -66,11 +77,10 @@ static bool same_line(const char *a, const char *b) {
 /* Adds "\n  key: value, in the checkpoint ..." to *words. */
 static void add_change(char **words, const char *here, const char *before) {
     const char *line = here != NULL ? here : before;
-    int key = (int)strcspn(line, ":");
-    const char *now = here != NULL ? here + key + 2 : "not given";
-    const char *then = before != NULL ? before + key + 2 : "not given";
-    char *longer = rg_text_format("%s\n  %.*s: %.*s; in the checkpoint: %.*s", *words, key, line,
-                                  (int)strcspn(now, "\n"), now, (int)strcspn(then, "\n"), then);
+    const char *now = here != NULL ? value_of(here) : "not given";
+    const char *then = before != NULL ? value_of(before) : "not given";
+    char *longer = rg_text_format("%s\n  %.*s: %.*s; in the checkpoint: %.*s", *words, (int)key_length(line),
+                                  line, (int)strcspn(now, "\n"), now, (int)strcspn(then, "\n"), then);
     rg_free(*words);
     *words = longer;
 }
