@@ -2,6 +2,7 @@
 
 import math
 
+import h5py
 import numpy as np
 import pytest
 from conftest import CASES, SINGLE
@@ -36,6 +37,17 @@ def test_ball_and_plate_keep_their_momentum(impact):
 def test_ledger_closes(impact):
     assert impact.summary["energy_error_rel"] < 5e-3
     assert impact.summary["plastic_J"] > 0.05 and impact.summary["damage_J"] > 1
+
+
+def test_cracks_are_their_own_mirror_image(run):
+    """Equal cubes, cut around parallel diagonals, are their own mirror image about x = y."""
+    plate = run(IMPACT, sets={"mesh.jitter": 0, "time.end": 2e-6, "output.fields": ["crack"]})
+    with h5py.File(plate.dir / "fields.h5") as file:
+        last = file["frames"][max(file["frames"])]
+        middle = last["crack/points"][:].reshape(-1, 3, 3).mean(axis=1)
+    assert len(middle) > 200 and np.ptp(middle[:, 0] - middle[:, 1]) > 8e-3
+    apart = np.linalg.norm(middle[:, None, [1, 0, 2]] - middle[None], axis=2).min(axis=1)
+    assert apart.max() < 1e-9  # m: rounding, and what rubble made of it
 
 
 def test_wave_crosses_the_plate_at_the_dilatational_speed(run):
