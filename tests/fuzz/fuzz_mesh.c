@@ -17,7 +17,7 @@
 #include "h5_changes.h"
 #include "host.h"
 
-enum { MESHES = 2, FIELDS = 14, ATTRIBUTES = 8, CHANGE = 5, MOST_CHANGES = 16 };
+enum { MESHES = 2, FIELDS = 14, ATTRIBUTES = 8, CHANGE = 5, MOST_CHANGES = 16, IMAGE = 1 << 20 };
 
 typedef struct {
     const rg_rows *rows;
@@ -56,12 +56,22 @@ static void write_good(const char *path, const int64_t cells[3]) {
     rg_free(owner);
 }
 
-static void load(base *b, const char *path) {
-    FILE *f = fopen(path, "rb");
-    rg_fuzz_require(f != NULL, "the good file can be read");
-    b->image = malloc(1 << 20);
-    b->size = fread(b->image, 1, 1 << 20, f);
+static void write_image(const uint8_t *image, size_t size) {
+    FILE *f = fopen(rg_fuzz_scratch(), "wb");
+    rg_fuzz_require(f != NULL && fwrite(image, 1, size, f) == size && fclose(f) == 0, "the scratch file");
+}
+
+static size_t read_image(uint8_t *image, size_t most) {
+    FILE *f = fopen(rg_fuzz_scratch(), "rb");
+    rg_fuzz_require(f != NULL, "the scratch file can be read");
+    size_t size = fread(image, 1, most, f);
     fclose(f);
+    return size;
+}
+
+static void load(base *b) {
+    b->image = malloc(IMAGE);
+    b->size = read_image(b->image, IMAGE);
 }
 
 static size_t offset_of(hid_t file, const char *name, size_t *width, int64_t *values) {
@@ -164,17 +174,22 @@ static void repair_sums(uint8_t *image, const field *p) {
     free(values);
 }
 
-/* Kinds 0 to 3 change the image; others the file, later. */
-static void change_image(const base *b, uint8_t *image, size_t *size, const uint8_t *c) {
+static void change_value(const base *b, uint8_t *image, const uint8_t *c) {
     size_t where = (size_t)c[2] + 256 * (size_t)c[3];
     const field *p = &b->field[c[1] % FIELDS];
+    if (c[0] == 2 || c[0] == 3) {
+        set_value(image, p, (int64_t)where % p->values, c[4]);
+        repair_sums(image, p);
+    }
+}
+
+/* Flips or cuts: the last changes, because HDF5 itself does not survive writing to a damaged file. */
+static void damage(uint8_t *image, size_t *size, const uint8_t *c) {
+    size_t where = (size_t)c[2] + 256 * (size_t)c[3];
     if (c[0] == 0) {
         image[where % *size] = c[4];
     } else if (c[0] == 1) {
         *size = where % *size + 1;
-    } else if (c[0] == 2 || c[0] == 3) {
-        set_value(image, p, (int64_t)where % p->values, c[4]);
-        repair_sums(image, p);
     }
 }
 
@@ -222,25 +237,28 @@ static void body(const uint8_t *data, size_t size) {
 }
 
 static void make_file(const base *b, const uint8_t *data, size_t size) {
-    const char *path = rg_fuzz_scratch();
-    uint8_t *image = malloc(b->size);
-    size_t length = b->size;
+    const uint8_t *change = data + 2, *end = change;
     bool later = false;
+    uint8_t *image = malloc(IMAGE);
     memcpy(image, b->image, b->size);
-    for (size_t at = 2, n = 0; at + CHANGE <= size && n < MOST_CHANGES; at += CHANGE, n++) {
-        change_image(b, image, &length, data + at);
-        later = later || data[at] >= 4;
+    for (size_t n = 0; end + CHANGE <= data + size && n < MOST_CHANGES; end += CHANGE, n++) {
+        change_value(b, image, end);
+        later = later || end[0] >= 4;
     }
-    FILE *f = fopen(path, "wb");
-    rg_fuzz_require(f != NULL && fwrite(image, 1, length, f) == length && fclose(f) == 0, "the scratch file");
-    free(image);
-    hid_t file = later ? H5Fopen(path, H5F_ACC_RDWR, H5P_DEFAULT) : -1;
-    for (size_t at = 2, n = 0; file >= 0 && at + CHANGE <= size && n < MOST_CHANGES; at += CHANGE, n++) {
-        change_file(b, file, data + at);
+    write_image(image, b->size);
+    hid_t file = later ? H5Fopen(rg_fuzz_scratch(), H5F_ACC_RDWR, H5P_DEFAULT) : -1;
+    for (const uint8_t *c = change; file >= 0 && c < end; c += CHANGE) {
+        change_file(b, file, c);
     }
     if (file >= 0) {
         H5Fclose(file);
     }
+    size_t length = read_image(image, IMAGE);
+    for (const uint8_t *c = change; c < end; c += CHANGE) {
+        damage(image, &length, c);
+    }
+    write_image(image, length);
+    free(image);
 }
 
 static void make_bases(const uint8_t *data, size_t size) {
@@ -249,7 +267,7 @@ static void make_bases(const uint8_t *data, size_t size) {
     (void)size;
     for (int m = 0; m < MESHES; m++) {
         write_good(rg_fuzz_scratch(), cells[m]);
-        load(&bases[m], rg_fuzz_scratch());
+        load(&bases[m]);
         find_fields(&bases[m], rg_fuzz_scratch());
     }
 }
