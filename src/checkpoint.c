@@ -298,13 +298,16 @@ static char *get_case(const rg_h5_file *f) {
     if (dataset >= 0) {
         H5Dclose(dataset);
     }
+    if (!ok) {
+        return NULL;
+    }
     char *text = RG_NEW(char, size[0] + 1);
     rg_h5_slab s = {.name = "case",
                     .type = H5T_NATIVE_UINT8,
                     .columns = 1,
                     .rows = (int64_t)size[0],
                     .count = (int64_t)size[0]};
-    if (!ok || !rg_h5_read(f->file, &s, text)) {
+    if (!rg_h5_read(f->file, &s, text)) {
         rg_free(text);
         return NULL;
     }
