@@ -202,16 +202,32 @@ RG_INLINE rg_vec rg_select(rg_mask m, rg_vec yes, rg_vec no) {
     return (rg_vec)((m & (rg_mask)yes) | (~m & (rg_mask)no));
 }
 
-/* The larger one; the second where either is not a number. */
-RG_INLINE rg_vec rg_max(rg_vec a, rg_vec b) {
+/* The larger and the smaller one; the second where either is not a number. */
 #if RG_VBYTES == 64
+RG_INLINE rg_vec rg_max(rg_vec a, rg_vec b) {
     return (rg_vec)RG_INTRINSIC(_mm512_max_)((RG_M512)a, (RG_M512)b);
-#elif RG_VBYTES == 32
-    return (rg_vec)RG_INTRINSIC(_mm256_max_)((RG_M256)a, (RG_M256)b);
-#else
-    return rg_select(a > b, a, b);
-#endif
 }
+
+RG_INLINE rg_vec rg_min(rg_vec a, rg_vec b) {
+    return (rg_vec)RG_INTRINSIC(_mm512_min_)((RG_M512)a, (RG_M512)b);
+}
+#elif RG_VBYTES == 32
+RG_INLINE rg_vec rg_max(rg_vec a, rg_vec b) {
+    return (rg_vec)RG_INTRINSIC(_mm256_max_)((RG_M256)a, (RG_M256)b);
+}
+
+RG_INLINE rg_vec rg_min(rg_vec a, rg_vec b) {
+    return (rg_vec)RG_INTRINSIC(_mm256_min_)((RG_M256)a, (RG_M256)b);
+}
+#else
+RG_INLINE rg_vec rg_max(rg_vec a, rg_vec b) {
+    return rg_select(a > b, a, b);
+}
+
+RG_INLINE rg_vec rg_min(rg_vec a, rg_vec b) {
+    return rg_select(a < b, a, b);
+}
+#endif
 
 RG_INLINE rg_vec rg_abs(rg_vec a) {
     const rg_word no_sign = sizeof(rg_real) == 8 ? (rg_word)INT64_MAX : INT32_MAX;
@@ -232,11 +248,17 @@ RG_INLINE rg_vec rg_sqrt(rg_vec a) {
 }
 
 RG_INLINE bool rg_any(rg_mask m) {
+#if RG_VBYTES == 64
+    return _mm512_test_epi64_mask((__m512i)m, (__m512i)m) != 0;
+#elif RG_VBYTES == 32
+    return !_mm256_testz_si256((__m256i)m, (__m256i)m);
+#else
     rg_word any = 0;
     for (int l = 0; l < RG_VLEN; l++) {
         any |= m[l];
     }
     return any != 0;
+#endif
 }
 
 RG_INLINE rg_vec rg_dot(const rg_vec a[3], const rg_vec b[3]) {

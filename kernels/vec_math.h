@@ -40,10 +40,6 @@ RG_INLINE rg_vec rg_log(rg_vec x) {
     return rg_select(x > 0.0, log, rg_splat(__builtin_nan("")));
 }
 
-RG_INLINE rg_vec rg_min(rg_vec a, rg_vec b) {
-    return -rg_max(-a, -b);
-}
-
 #ifdef RG_SINGLE
 enum { RG_EXP_TERMS = 7 };
 #define RG_EXP_LOW  -87.0
