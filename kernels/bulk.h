@@ -8,6 +8,16 @@
 #include "material_point.h"
 #include "tet10_gradient.h"
 
+enum { HISTORY_VALUES = RG_HISTORY == 0 ? 1 : RG_HISTORY };
+
+#ifndef RG_TOGETHER
+#define RG_TOGETHER 1
+RG_INLINE void material_steps(const rg_bulk_args *args, rg_vec H[][3][3], rg_vec history[][HISTORY_VALUES],
+                              rg_vec P[][3][3], rg_point out[]) {
+    material_step(args, H[0], history[0], P[0], out);
+}
+#endif
+
 /* Area-weighted corner tractions sum_g e_ig P_g (area_f N_f), e_ig = (delta_ig - a)/(b - a). */
 RG_INLINE void store_traction(vec3 q[4][RG_GAUSS], vec3 Q[4], rg_real *traction) {
     rg_vec row[RG_TRACTION_ROW];
@@ -56,21 +66,25 @@ RG_INLINE void bulk_vector(const rg_bulk_args *args, size_t block, int lane, boo
     common_derivatives(&e, lift, common);
     rg_real *past = history_of(args, block, lane);
     rg_vec stiffening = {0}, bad = {0}, weight = 0.25 * e.volume, released[RG_RELEASED] = {{0}};
-    for (int g = 0; g < RG_GAUSS; g++) {
-        rg_vec H[3][3], P[3][3], history[RG_HISTORY + 1];
-        rg_point point;
-        displacement_gradient(&e, lift, common, g, H);
-        load_history(past, g, history);
-        material_step(args, H, history, P, &point);
-        stiffening = rg_max(stiffening, point.stiffening);
-        bad += 0.0 * point.stiffening; /* a maximum forgets what is not a number */
-        if (RG_HISTORY > 0 && args->advance) {
-            store_history(past, g, history);
-            for (int k = 0; k < RG_RELEASED; k++) {
-                released[k] += weight * point.released[k];
-            }
+    for (int first = 0; first < RG_GAUSS; first += RG_TOGETHER) {
+        rg_vec H[RG_TOGETHER][3][3], P[RG_TOGETHER][3][3], history[RG_TOGETHER][HISTORY_VALUES];
+        rg_point point[RG_TOGETHER];
+        for (int i = 0; i < RG_TOGETHER; i++) {
+            displacement_gradient(&e, lift, common, first + i, H[i]);
+            load_history(past, first + i, history[i]);
         }
-        project_stress(&e, weight, P, g, q, Q);
+        material_steps(args, H, history, P, point);
+        for (int i = 0; i < RG_TOGETHER; i++) {
+            stiffening = rg_max(stiffening, point[i].stiffening);
+            bad += 0.0 * point[i].stiffening; /* a maximum forgets what is not a number */
+            if (RG_HISTORY > 0 && args->advance) {
+                store_history(past, first + i, history[i]);
+                for (int k = 0; k < RG_RELEASED; k++) {
+                    released[k] += weight * point[i].released[k];
+                }
+            }
+            project_stress(&e, weight, P[i], first + i, q, Q);
+        }
     }
     if (RG_HISTORY > 0 && args->advance) {
         store_released(past, released);

@@ -77,7 +77,11 @@ rg_de_constants rg_de_prepare(const rg_deshpande_evans *p, double dt) {
         .log_transition = log(p->transition_rate / p->plastic_rate),
     };
     c.jump = (1 - c.inv_n) * c.log_transition;
-    c.silent = exp((log(RG_DE_NO_GROWTH * c.offset / dt) - c.log_rate) / c.exponent) / c.intensity;
+    double silent = exp((log(RG_DE_NO_GROWTH * c.offset / dt) - c.log_rate) / c.exponent) / c.intensity;
+    c.silent = silent * silent;
+    for (int k = 0; k < RG_DE_BINOMIAL; k++) {
+        c.binomial[k] = k == 0 ? c.hardening : c.binomial[k - 1] * (c.hardening - k) / (k + 1);
+    }
     c.quiet = quiet_stress(&c);
     return c;
 }

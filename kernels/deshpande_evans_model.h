@@ -72,6 +72,7 @@ enum {
 #define RG_DE_NO_GROWTH 1e-12 /* growth of X in one step, over X + beta/alpha, below which there is none */
 #define RG_DE_LITTLE    1e-6  /* ... and below which one explicit Euler step is enough */
 enum { RG_DE_PANELS = 8 };    /* else: panels of the quadrature over X */
+enum { RG_DE_BINOMIAL = 8 };  /* terms of the hardening by x = 1 %; the first left out is 1e-17 of the sum */
 
 /* What the kernel needs of the parameters and of the size of the step. */
 typedef struct {
@@ -87,9 +88,10 @@ typedef struct {
     double intensity;         /* sqrt(pi a)/K_IC (1/Pa) */
     double exponent;          /* m */
     double log_rate, log_cap; /* log(dX/dt) at K_I = K_IC and at the shear wave speed (1/s) */
-    double silent;            /* no growth where K_I/sqrt(pi a) is below this (Pa) */
+    double silent;            /* no growth where K_I^2/(pi a) is below this (Pa^2) */
     double dt, reach;         /* s; largest growth of X in dt */
     double half_yield, yield_strain, hardening; /* sY/2, epsY, M */
+    double binomial[RG_DE_BINOMIAL];            /* of (1 + x)^M = 1 + sum binomial[k] x^(k + 1) */
     double inv_n, n, log_edot0_dt, log_transition,
         jump;     /* log(edot0 dt); log(edot_t/edot0) and its (1 - 1/n) */
     double quiet; /* no plastic flow where se is below this (Pa) */

@@ -8,6 +8,12 @@
  *         P (Pa) and `out` at the deformation gradient F = I + H. If args->advance, history goes on by the
  *         step for which args->material was prepared, and `out->released` tells what that set free.
  *
+ *         Or, with #define RG_TOGETHER RG_GAUSS,
+ *
+ *     RG_INLINE void material_steps(const rg_bulk_args *args, rg_vec H[][3][3], rg_vec history[][RG_HISTORY],
+ *                                   rg_vec P[][3][3], rg_point out[]);
+ *         The same for RG_TOGETHER points at once.
+ *
  *     RG_INLINE void material_state(const rg_material *m, rg_vec H[3][3], rg_vec history[], bool stress,
  *                                   rg_point_state *out);
  *         The state at F as it is; P only if `stress`.

@@ -80,6 +80,14 @@ RG_INLINE rg_vec rg_expm1(rg_vec x) {
     return (power - 1.0) + power * p;
 }
 
+/* exp x, and exp x - 1 to a few ulp; range as in rg_exp. */
+RG_INLINE rg_vec rg_exp_and_less_1(rg_vec x, rg_vec *less_1) {
+    rg_vec power, p;
+    rg_exp_parts(x, &power, &p);
+    *less_1 = (power - 1.0) + power * p;
+    return power + power * p;
+}
+
 #define RG_SMALL 0.01 /* where one polynomial does for these two */
 
 /* exp x - 1, |x| <= RG_SMALL: the first term left out is 2e-16 of the sum. */

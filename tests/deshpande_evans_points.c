@@ -21,32 +21,41 @@ static void store(double *to, int count, const rg_vec in[]) {
     }
 }
 
-void RG_ISA_NAME(points_step)(const points *p, size_t blocks) {
-    for (size_t b = 0; b < blocks; b++) {
+/* Up to RG_GAUSS blocks at once, as the kernel takes the points of an element. */
+static void step(const points *p, bool advance, size_t block, int n, size_t lane) {
+    rg_vec F[RG_GAUSS][3][3], P[RG_GAUSS][3][3], history[RG_GAUSS][RG_DE_HISTORY];
+    rg_de_result result[RG_GAUSS];
+    for (int g = 0; g < n; g++) {
+        size_t b = block + (size_t)g;
+        load(p->F + b * 9 * RG_LANES + lane, 9, F[g][0]);
+        load(p->history + b * RG_DE_HISTORY * RG_LANES + lane, RG_DE_HISTORY, history[g]);
+    }
+    rg_de_points(p->constants, advance, n, F, history, P, result);
+    for (int g = 0; g < n; g++) {
+        size_t b = block + (size_t)g;
+        const rg_de_result *r = &result[g];
+        store(p->history + b * RG_DE_HISTORY * RG_LANES + lane, RG_DE_HISTORY, history[g]);
+        store(p->P + b * 9 * RG_LANES + lane, 9, P[g][0]);
+        store(p->result + b * POINT_RESULT * RG_LANES + lane, POINT_RESULT,
+              (rg_vec[]){r->stiffening, r->energy, r->plastic, r->damage});
+    }
+}
+
+static void all_points(const points *p, bool advance, size_t blocks) {
+    for (size_t b = 0; b < blocks; b += RG_GAUSS) {
+        int n = blocks - b < RG_GAUSS ? (int)(blocks - b) : RG_GAUSS;
         for (size_t lane = 0; lane < RG_LANES; lane += RG_VLEN) {
-            rg_vec F[3][3], P[3][3], history[RG_DE_HISTORY];
-            load(p->F + b * 9 * RG_LANES + lane, 9, F[0]);
-            load(p->history + b * RG_DE_HISTORY * RG_LANES + lane, RG_DE_HISTORY, history);
-            rg_de_result r = rg_de_step(p->constants, F, history, P);
-            store(p->history + b * RG_DE_HISTORY * RG_LANES + lane, RG_DE_HISTORY, history);
-            store(p->P + b * 9 * RG_LANES + lane, 9, P[0]);
-            store(p->result + b * POINT_RESULT * RG_LANES + lane, POINT_RESULT,
-                  (rg_vec[]){r.stiffening, r.energy, r.plastic, r.damage});
+            step(p, advance, b, n, lane);
         }
     }
 }
 
+void RG_ISA_NAME(points_step)(const points *p, size_t blocks) {
+    all_points(p, true, blocks);
+}
+
 void RG_ISA_NAME(points_at_rest)(const points *p, size_t blocks) {
-    for (size_t b = 0; b < blocks; b++) {
-        for (size_t lane = 0; lane < RG_LANES; lane += RG_VLEN) {
-            rg_vec F[3][3], P[3][3], history[RG_DE_HISTORY];
-            load(p->F + b * 9 * RG_LANES + lane, 9, F[0]);
-            load(p->history + b * RG_DE_HISTORY * RG_LANES + lane, RG_DE_HISTORY, history);
-            rg_de_result r = rg_de_at_rest(p->constants, F, history, P);
-            store(p->P + b * 9 * RG_LANES + lane, 9, P[0]);
-            rg_store(p->result + (b * POINT_RESULT + POINT_ENERGY) * RG_LANES + lane, r.energy);
-        }
-    }
+    all_points(p, false, blocks);
 }
 
 void RG_ISA_NAME(points_hencky)(const double *b, double *e, size_t blocks) {
