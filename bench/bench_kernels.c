@@ -42,8 +42,13 @@ static const kernel_case cases[] = {
     {"ceramic flowing",
      RG_COST_BULK,
      0,
-     {.lift = true, .model = CERAMIC, .advance = true, .flowing = 1, .newton = 3},
+     {.lift = true, .model = CERAMIC, .advance = true, .flowing = 1, .newton = 1},
      BENCH_FLOWING},
+    {"ceramic flowing, cracking",
+     RG_COST_BULK,
+     0,
+     {.lift = true, .model = CERAMIC, .advance = true, .growing = 1, .panels = 1, .flowing = 1, .newton = 1},
+     BENCH_CRUSHED},
     {"interface intact", RG_COST_INTERFACE, 0, {.lift = true}, BENCH_ROUGH},
     {"interface 10 % broken", RG_COST_INTERFACE, 10, {.lift = true}, BENCH_ROUGH},
     {"interface all broken", RG_COST_INTERFACE, 100, {.lift = true}, BENCH_ROUGH},
@@ -145,7 +150,7 @@ static void run_blocks(const job *j, size_t begin, size_t end) {
     rg_drift_args drift = {1e-9, j->problem->velocity, j->problem->u};
     switch (j->what->kernel) {
     case RG_COST_BULK:
-        bench_problem_virgin(j->problem, j->what->flags.model, begin, end);
+        bench_problem_restore(j->problem, j->what->flags.model, j->what->state, begin, end);
         j->set->bulk(&bulk, begin, end);
         break;
     case RG_COST_INTERFACE:

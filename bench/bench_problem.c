@@ -105,8 +105,9 @@ static void fill(rg_real *x, size_t begin, size_t end, int rows, uint64_t field,
 
 /* Adds to the displacement of all elements what the state's homogeneous strain makes of it. */
 static void strain(bench_problem *p, size_t begin, size_t end, bench_state state) {
-    static const double gradient[BENCH_STATES][3] = {
-        [BENCH_CRACKING] = {4e-4, 4e-4, 4e-4}, [BENCH_FLOWING] = {-0.05, -0.05, -0.08}};
+    static const double gradient[BENCH_STATES][3] = {[BENCH_CRACKING] = {4e-4, 4e-4, 4e-4},
+                                                     [BENCH_FLOWING] = {-0.05, -0.05, -0.08},
+                                                     [BENCH_CRUSHED] = {0, 0, -0.06}};
     for (size_t e = begin * RG_LANES; e < end * RG_LANES; e++) {
         for (int n = 0; n < RG_NODES; n++) {
             double x[3];
@@ -265,10 +266,23 @@ rg_cost_variant bench_mesh_state(const rg_domain *d, const uint8_t *active, cons
     return v;
 }
 
-void bench_problem_virgin(bench_problem *p, rg_material_model model, size_t begin, size_t end) {
+static void crush(bench_problem *p, size_t begin, size_t end) {
+    static const double history[RG_DE_HISTORY] = {[RG_DE_GROWTH] = 0.34, [RG_DE_STRAIN] = 5e-4};
+    size_t block = RG_LANES * rg_history_rows(RG_DE_HISTORY);
+    for (size_t b = begin; b < end; b++) {
+        for (size_t k = 0; k < RG_GAUSS * RG_DE_HISTORY * RG_LANES; k++) {
+            p->history[b * block + k] = (rg_real)history[k / RG_LANES % RG_DE_HISTORY];
+        }
+    }
+}
+
+void bench_problem_restore(bench_problem *p, rg_material_model model, bench_state state, size_t begin,
+                           size_t end) {
     if (model == RG_MATERIAL_J2) {
         size_t block = RG_LANES * rg_history_rows(RG_J2_HISTORY);
         memset(p->history + begin * block, 0, (end - begin) * block * sizeof *p->history);
+    } else if (state == BENCH_CRUSHED) {
+        crush(p, begin, end);
     }
 }
 

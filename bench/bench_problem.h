@@ -7,7 +7,14 @@
 #include "domain.h"
 
 /* Strain of a material with a history. */
-typedef enum { BENCH_ROUGH, BENCH_QUIET, BENCH_CRACKING, BENCH_FLOWING, BENCH_STATES } bench_state;
+typedef enum {
+    BENCH_ROUGH,
+    BENCH_QUIET,
+    BENCH_CRACKING,
+    BENCH_FLOWING,
+    BENCH_CRUSHED,
+    BENCH_STATES
+} bench_state;
 
 typedef struct {
     rg_material material[RG_MATERIAL_MODELS];
@@ -29,12 +36,16 @@ bench_problem *bench_problem_make(bench_size size, bool quick);
 /* Back to the start: fields random, `percent` of the faces broken at all their points, the history virgin,
  * outputs not numbers (so that a value left out shows). In states other than BENCH_ROUGH all elements have
  * about the same strain: none to speak of; a tension in which cracks grow, slowly; a compression in which the
- * solid flows. Both go on for as long as one cares to time them. */
+ * solid flows, which both go on for as long as one cares to time them; a compression in which it flows and
+ * cracks grow, until they close. */
 void bench_problem_reset(bench_problem *p, int percent, bench_state state);
 
-/* Takes what it has flowed from a metal, in blocks [begin, end), if `model` is one: at a strain to which it
- * has flowed it does not flow again. A call that is timed includes this, some 2 % of it. */
-void bench_problem_virgin(bench_problem *p, rg_material_model model, size_t begin, size_t end);
+/* Gives blocks [begin, end) of a metal, or of a crushed ceramic, the history back with which they go on: at a
+ * strain to which a metal has flowed it does not flow again. A call that is timed includes this, some 2 % of
+ * it.
+ */
+void bench_problem_restore(bench_problem *p, rg_material_model model, bench_state state, size_t begin,
+                           size_t end);
 
 void bench_problem_free(bench_problem *p);
 
