@@ -56,7 +56,7 @@ void rg_mesh_mean_extent(const rg_mesh *mesh, const double box[2][3], double ext
 /* Elements of a tile in a mesh of so many: RG_TILE, fewer in a small mesh, so that there are tiles enough. */
 int rg_tile_elements(rg_gid elements);
 
-/* Fills `neighbour` and `face` from `corner`. Ends the run with a message if three elements share a face. */
+/* Fills `neighbour` and `face` from `corner`. Ends the run, naming them, if three elements share a face. */
 void rg_mesh_connect(rg_mesh *mesh);
 
 /* Lower and upper corner of all vertices (m). */
@@ -121,9 +121,10 @@ rg_part *rg_part_distribute_weighted(const rg_mesh *mesh, int tile, double *weig
 /* Collective. The same from the mesh file at `path`: rank 0 reads the graph of tiles and a partition for the
  * ranks of `comm` (METIS makes one if the file has none for so many, or there are weights), each rank then
  * reads its own tiles; no rank ever holds more than its part. The result has the same bits as that of
- * rg_part_distribute of the whole mesh with the same partition. Ends the run (RG_USAGE) with a message if the
- * file is damaged, an element has no volume, elements on both sides of a face do not agree about it, or the
- * surface is not closed (part_check.h). The caller owns the result. */
+ * rg_part_distribute of the whole mesh with the same partition. Ends the run (RG_USAGE) if the file is
+ * damaged, an element has no volume, elements on both sides of a face do not agree about it, graph, counts or
+ * box are not those of the elements, or the surface is not closed (part_check.h): with messages that do not
+ * depend on the number of ranks (faults.h). The caller owns the result. */
 rg_part *rg_part_read(const char *path, double *weight, MPI_Comm comm);
 
 /* Number of the surface set of that name; -1 if the mesh has none. */

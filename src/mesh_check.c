@@ -2,11 +2,11 @@
 
 #include <inttypes.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "../kernels/layout.h"
-#include "error.h"
 #include "mem.h"
 #include "tet.h"
 
@@ -24,20 +24,6 @@ static double distance(const double a[3], const double b[3]) {
 
 /* ---- elements ---- */
 
-static void check_corners(const rg_mesh *mesh, const char *name, rg_gid e) {
-    const rg_gid *c = mesh->corner + 4 * e;
-    for (int i = 0; i < 4; i++) {
-        bool known = c[i] >= 0 && c[i] < mesh->vertices;
-        if (!known || (i > 0 && c[i] <= c[i - 1])) {
-            rg_fatal(RG_USAGE,
-                     "%s: element %" PRId64
-                     ": its corners must be four different vertices in ascending order; "
-                     "they are %" PRId64 ", %" PRId64 ", %" PRId64 ", %" PRId64,
-                     name, rg_mesh_original(mesh, e), c[0], c[1], c[2], c[3]);
-        }
-    }
-}
-
 double rg_tet_longest_edge(const double *x) {
     double edge = 0;
     for (int i = 0; i < 4; i++) {
@@ -54,20 +40,41 @@ bool rg_tet_has_volume(const double *x) {
            least_volume * edge * edge * edge; /* no: not finite */
 }
 
-static void check_volume(const rg_mesh *mesh, const char *name, rg_gid e) {
-    double x[12];
+bool rg_tet_sound(const double *x, const rg_gid corner[4], rg_gid name, char *what) {
+    if (!(corner[0] < corner[1] && corner[1] < corner[2] && corner[2] < corner[3])) {
+        snprintf(what, RG_FAULT_WORDS,
+                 "element %" PRId64
+                 ": its corners must be four different vertices in ascending order; they are "
+                 "%" PRId64 ", %" PRId64 ", %" PRId64 ", %" PRId64,
+                 name, corner[0], corner[1], corner[2], corner[3]);
+    } else if (!rg_tet_has_volume(x)) {
+        snprintf(what, RG_FAULT_WORDS,
+                 "element %" PRId64 " at (%g, %g, %g) m has no volume: %g m3 with edges of up to %g m", name,
+                 x[0], x[1], x[2], fabs(rg_tet_volume(x, x + 3, x + 6, x + 9)), rg_tet_longest_edge(x));
+    } else {
+        return true;
+    }
+    return false;
+}
+
+static void check_element(const rg_mesh *mesh, rg_faults *faults, rg_gid e) {
+    const rg_gid *c = mesh->corner + 4 * e;
+    double x[12] = {0};
+    char what[RG_FAULT_WORDS];
     for (int i = 0; i < 4; i++) {
+        if (c[i] < 0 || c[i] >= mesh->vertices) {
+            rg_faults_add(faults, e, 0, "element %" PRId64 ": there is no vertex %" PRId64,
+                          rg_mesh_original(mesh, e), c[i]);
+            return;
+        }
         memcpy(x + 3 * i, corner(mesh, e, i), 3 * sizeof *x);
     }
-    if (!rg_tet_has_volume(x)) {
-        rg_fatal(RG_USAGE,
-                 "%s: element %" PRId64 " at (%g, %g, %g) m has no volume: %g m3 with edges of up to %g m",
-                 name, rg_mesh_original(mesh, e), x[0], x[1], x[2],
-                 fabs(rg_tet_volume(x, x + 3, x + 6, x + 9)), rg_tet_longest_edge(x));
+    if (!rg_tet_sound(x, c, rg_mesh_original(mesh, e), what)) {
+        rg_faults_add(faults, e, 0, "%s", what);
     }
 }
 
-static void check_neighbour(const rg_mesh *mesh, const char *name, rg_gid e, int f) {
+static void check_neighbour(const rg_mesh *mesh, rg_faults *faults, rg_gid e, int f) {
     rg_gid other = mesh->neighbour[4 * e + f];
     if (other < 0) {
         return;
@@ -79,22 +86,22 @@ static void check_neighbour(const rg_mesh *mesh, const char *name, rg_gid e, int
         agree = mesh->corner[4 * e + rg_face_node[f][i]] == mesh->corner[4 * other + rg_face_node[g][i]];
     }
     if (!agree) {
-        rg_fatal(RG_USAGE,
-                 "%s: neighbour: element %" PRId64 " takes element %" PRId64
-                 " for its neighbour across face %d, but they do not share it",
-                 name, rg_mesh_original(mesh, e),
-                 other < mesh->elements ? rg_mesh_original(mesh, other) : other, f);
+        rg_faults_add(faults, e, 1 + f,
+                      "neighbour: element %" PRId64 " takes element %" PRId64
+                      " for its neighbour across face %d, but they do not share it",
+                      rg_mesh_original(mesh, e),
+                      other < mesh->elements ? rg_mesh_original(mesh, other) : other, f);
     }
 }
 
-static void check_use(const rg_mesh *mesh, const char *name) {
+static void check_use(const rg_mesh *mesh, rg_faults *faults) {
     int8_t *used = RG_NEW(int8_t, (size_t)mesh->vertices);
     for (rg_gid i = 0; i < 4 * mesh->elements; i++) {
         used[mesh->corner[i]] = 1;
     }
     for (rg_gid v = 0; v < mesh->vertices; v++) {
         if (!used[v]) {
-            rg_fatal(RG_USAGE, "%s: no element uses vertex %" PRId64, name, v);
+            rg_faults_add(faults, mesh->elements + v, 0, "no element uses vertex %" PRId64, v);
         }
     }
     rg_free(used);
@@ -120,70 +127,92 @@ static rg_gid element_of(const rg_mesh *mesh, rg_gid vertex) {
     return rg_mesh_original(mesh, i / 4);
 }
 
-static _Noreturn void refuse_pair(const rg_mesh *mesh, const char *name, rg_gid v, rg_gid w) {
-    const double *x = mesh->x + 3 * v;
-    rg_fatal(
-        RG_USAGE,
-        "%s: elements %" PRId64 " and %" PRId64
-        " have different vertices at the same place (%.9g, %.9g, %.9g) m: the mesh is open there; merge its "
-        "duplicate nodes",
-        name, element_of(mesh, v), element_of(mesh, w), x[0], x[1], x[2]);
+/* twin[v]: the lowest vertex at the place of v, below v; -1 if there is none. */
+static void check_twins(const rg_mesh *mesh, const rg_gid *twin, rg_faults *faults) {
+    for (rg_gid v = 0; v < mesh->vertices; v++) {
+        char *words = twin[v] >= 0 ? rg_faults_place(faults, v, 0) : NULL;
+        if (words != NULL) {
+            const double *x = mesh->x + 3 * v;
+            snprintf(
+                words, RG_FAULT_WORDS,
+                "elements %" PRId64 " and %" PRId64
+                " have different vertices at the same place (%.9g, %.9g, %.9g) m: the mesh is open there; "
+                "merge its duplicate nodes",
+                element_of(mesh, twin[v]), element_of(mesh, v), x[0], x[1], x[2]);
+        }
+    }
 }
 
-static void check_places(const rg_mesh *mesh, const char *name) {
+static void check_places(const rg_mesh *mesh, rg_faults *faults) {
     static const double line[3] = {0.5257311, 0.6360098, 0.5648217}; /* of length 1 */
     struct projected *p = RG_NEW(struct projected, (size_t)mesh->vertices);
+    rg_gid *twin = RG_NEW(rg_gid, (size_t)mesh->vertices);
     double box[2][3];
     rg_mesh_box_around(mesh, box);
     double reach = same_place * distance(box[0], box[1]);
     for (rg_gid v = 0; v < mesh->vertices; v++) {
         const double *x = mesh->x + 3 * v;
         p[v] = (struct projected){line[0] * x[0] + line[1] * x[1] + line[2] * x[2], v};
+        twin[v] = -1;
     }
     qsort(p, (size_t)mesh->vertices, sizeof *p, by_place);
     for (rg_gid i = 0; i < mesh->vertices; i++) {
         for (rg_gid j = i + 1; j < mesh->vertices && p[j].along - p[i].along <= reach; j++) {
-            if (distance(mesh->x + 3 * p[i].vertex, mesh->x + 3 * p[j].vertex) <= reach) {
-                refuse_pair(mesh, name, p[i].vertex, p[j].vertex);
+            rg_gid v = p[i].vertex, w = p[j].vertex, low = v < w ? v : w, high = v < w ? w : v;
+            if (distance(mesh->x + 3 * v, mesh->x + 3 * w) <= reach && (twin[high] < 0 || low < twin[high])) {
+                twin[high] = low;
             }
         }
     }
+    check_twins(mesh, twin, faults);
+    rg_free(twin);
     rg_free(p);
 }
 
-static void check_hanging(const rg_mesh *mesh, const char *name) {
-    rg_gid vertex, slot;
-    if (rg_mesh_hanging(mesh, &vertex, &slot)) {
-        const double *x = mesh->x + 3 * vertex;
-        rg_fatal(RG_USAGE,
-                 "%s: a vertex of element %" PRId64
-                 " at (%.9g, %.9g, %.9g) m lies on a face of element %" PRId64
-                 " without being its corner (a hanging node): the mesh is open there",
-                 name, element_of(mesh, vertex), x[0], x[1], x[2], rg_mesh_original(mesh, slot / 4));
+static void check_hanging(const rg_mesh *mesh, rg_faults *faults) {
+    rg_gid *face = rg_mesh_hanging(mesh);
+    for (rg_gid v = 0; v < mesh->vertices; v++) {
+        char *words = face[v] >= 0 ? rg_faults_place(faults, v, 0) : NULL;
+        if (words != NULL) {
+            const double *x = mesh->x + 3 * v;
+            snprintf(words, RG_FAULT_WORDS,
+                     "a vertex of element %" PRId64
+                     " at (%.9g, %.9g, %.9g) m lies on a face of element %" PRId64
+                     " without being its corner (a hanging node): the mesh is open there",
+                     element_of(mesh, v), x[0], x[1], x[2], rg_mesh_original(mesh, face[v] / 4));
+        }
     }
+    rg_free(face);
 }
 
 void rg_mesh_check_elements(const rg_mesh *mesh, const char *name) {
+    rg_faults faults = {.name = name};
     for (rg_gid e = 0; e < mesh->elements; e++) {
-        check_corners(mesh, name, e);
-        check_volume(mesh, name, e);
+        check_element(mesh, &faults, e);
     }
+    rg_faults_end(&faults);
 }
 
-void rg_mesh_check_surface(const rg_mesh *mesh, const char *name) {
-    check_places(mesh, name);
-    check_hanging(mesh, name);
+void rg_mesh_check_surface(const rg_mesh *mesh, rg_faults *faults) {
+    int64_t before = faults->count;
+    check_places(mesh, faults);
+    if (faults->count == before) { /* each copy of a corner would hang */
+        check_hanging(mesh, faults);
+    }
 }
 
 void rg_mesh_check(const rg_mesh *mesh, const char *name) {
+    rg_faults faults = {.name = name};
     rg_mesh_check_elements(mesh, name);
     for (rg_gid e = 0; e < mesh->elements; e++) {
         for (int f = 0; f < 4; f++) {
-            check_neighbour(mesh, name, e, f);
+            check_neighbour(mesh, &faults, e, f);
         }
     }
-    check_use(mesh, name);
-    rg_mesh_check_surface(mesh, name);
+    check_use(mesh, &faults);
+    rg_faults_end(&faults);
+    rg_mesh_check_surface(mesh, &faults);
+    rg_faults_end(&faults);
 }
 
 /* ---- parts ---- */

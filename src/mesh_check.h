@@ -4,10 +4,11 @@
 
 #include <stdbool.h>
 
+#include "faults.h"
 #include "mesh.h"
 
-/* Ends the run (RG_USAGE) with a message that begins with `name` and names elements by their numbers in the
- * input, if the mesh, sorted or not but connected, has
+/* Ends the run (RG_USAGE) with messages (faults.h) that begin with `name` and name elements by their numbers
+ * in the input, if the mesh, sorted or not but connected, has
  *   - a position that is not finite, or a vertex that no element uses,
  *   - an element whose corners are not ascending, or without volume (below 1e-12 of its longest edge cubed),
  *   - neighbours that do not agree on their common face,
@@ -21,9 +22,13 @@ void rg_mesh_check(const rg_mesh *mesh, const char *name);
 /* The part of this that concerns elements by themselves: corners and volume. Needs no connection. */
 void rg_mesh_check_elements(const rg_mesh *mesh, const char *name);
 
-/* The part that concerns the vertices of the surface: places and hanging nodes. Looks at `x`, `corner` and
- * where `neighbour` is -1. */
-void rg_mesh_check_surface(const rg_mesh *mesh, const char *name);
+/* The part that concerns the vertices of the surface: adds those at one place to `faults`, and if there are
+ * none hanging nodes, each vertex once. Looks at `x`, `corner` and where `neighbour` is -1. */
+void rg_mesh_check_surface(const rg_mesh *mesh, rg_faults *faults);
+
+/* Whether an element can be computed on: its corners, at x[4][3] (m), are ascending, and it has a volume. If
+ * not, what[RG_FAULT_WORDS] says so of element `name`. */
+bool rg_tet_sound(const double *x, const rg_gid corner[4], rg_gid name, char *what);
 
 /* Whether the element with corners x[4][3] (m) has a volume, as above; the longest of its edges (m). */
 bool rg_tet_has_volume(const double *x);
@@ -33,8 +38,8 @@ double rg_tet_longest_edge(const double *x);
  */
 int32_t rg_mesh_parts(const rg_mesh *mesh, int32_t *part);
 
-/* A vertex on a surface face that is none of its corners; false if there is none. *slot is 4 * element +
- * face. */
-bool rg_mesh_hanging(const rg_mesh *mesh, rg_gid *vertex, rg_gid *slot);
+/* [vertices]: the first surface face, 4 * element + face, on which a vertex lies without being its corner; -1
+ * where there is none. The caller frees it with rg_free. */
+rg_gid *rg_mesh_hanging(const rg_mesh *mesh);
 
 #endif

@@ -23,6 +23,20 @@ struct rg_mesh_file {
     rg_mesh_header head;
 };
 
+enum { WHY = RG_H5_REASON + 80 };
+
+/* Datasets with rows for each tile, in the order in which the faults of an element are told. */
+enum { CORNER, NEIGHBOUR, FACE, SET, REGION, ORIGINAL, VERTEX_START, VERTEX, X, PARTS };
+static const rg_rows *const part[PARTS] = {[CORNER] = &rg_rows_corner,
+                                           [NEIGHBOUR] = &rg_rows_neighbour,
+                                           [FACE] = &rg_rows_face,
+                                           [SET] = &rg_rows_set,
+                                           [REGION] = &rg_rows_region,
+                                           [ORIGINAL] = &rg_rows_original,
+                                           [VERTEX] = &rg_rows_vertex,
+                                           [X] = &rg_rows_x,
+                                           [VERTEX_START] = &rg_rows_vertex_start};
+
 static const rg_gid most = INT64_C(1) << 40; /* elements or vertices: what a sane header says */
 
 /* "path: dataset: what is wrong" */
@@ -30,7 +44,7 @@ static _Noreturn void refuse(const rg_mesh_file *f, const char *dataset, const c
     __attribute__((format(printf, 3, 4)));
 
 static void refuse(const rg_mesh_file *f, const char *dataset, const char *format, ...) {
-    char what[300];
+    char what[WHY];
     va_list args;
     va_start(args, format);
     vsnprintf(what, sizeof what, format, args);
@@ -38,9 +52,15 @@ static void refuse(const rg_mesh_file *f, const char *dataset, const char *forma
     rg_fatal(RG_USAGE, "%s: %s: %s", f->path, dataset, what);
 }
 
+static void unreadable(const rg_mesh_file *f, char why[WHY]) {
+    snprintf(why, WHY, "cannot be read: %s; the file is damaged or not a mesh file",
+             f->reason[0] != '\0' ? f->reason : "not what it should be");
+}
+
 static _Noreturn void refuse_h5(const rg_mesh_file *f, const char *dataset) {
-    refuse(f, dataset, "cannot be read: %s; the file is damaged or not a mesh file",
-           f->reason[0] != '\0' ? f->reason : "not what it should be");
+    char why[WHY];
+    unreadable(f, why);
+    refuse(f, dataset, "%s", why);
 }
 
 /* ---- datasets ---- */
@@ -75,55 +95,82 @@ typedef struct {
     const int64_t *start;
 } stretch;
 
-static void verify(const rg_mesh_file *f, const rg_rows *r, const stretch *s, const void *data) {
+/* Whether the blocks are what was written; if not, `why` says so. */
+static bool verify(const rg_mesh_file *f, const rg_rows *r, const stretch *s, const void *data,
+                   char why[WHY]) {
     char name[80];
+    int64_t wrong = -1;
     snprintf(name, sizeof name, "checksum/%s", r->name);
     uint64_t *sum = RG_NEW(uint64_t, (size_t)(s->end - s->begin) + 1);
-    if (!read_dataset(f->file, name, H5T_NATIVE_UINT64, 1, s->blocks, s->begin, s->end, sum)) {
-        refuse_h5(f, name);
-    }
-    for (int64_t b = 0; b < s->end - s->begin; b++) {
+    bool there = read_dataset(f->file, name, H5T_NATIVE_UINT64, 1, s->blocks, s->begin, s->end, sum);
+    for (int64_t b = 0; b < s->end - s->begin && there && wrong < 0; b++) {
         const char *block = (const char *)data + (size_t)(s->start[b] - s->start[0]) * rg_rows_bytes(r);
-        if (rg_rows_checksum(r, block, s->start[b + 1] - s->start[b]) != sum[b]) {
-            refuse(f, r->name, "the checksum of %s %" PRId64 " is wrong; the file is damaged",
-                   s->blocks == 1 ? "part" : "tile", s->begin + b);
-        }
+        wrong = rg_rows_checksum(r, block, s->start[b + 1] - s->start[b]) == sum[b] ? -1 : b;
     }
     rg_free(sum);
+    if (!there) {
+        snprintf(why, WHY, "its checksum cannot be read: %s", f->reason);
+    } else if (wrong >= 0) {
+        snprintf(why, WHY, "the checksum of %s %" PRId64 " is wrong; the file is damaged",
+                 s->blocks == 1 ? "part" : "tile", s->begin + wrong);
+    }
+    return there && wrong < 0;
 }
 
-/* The caller owns the result. */
-static void *take(rg_mesh_file *f, const rg_rows *r, const stretch *s) {
+/* Reads a stretch, which must have its checksums. NULL: it cannot be read, or is not what was written; `why`
+ * says more. The caller owns the result. */
+static void *take(const rg_mesh_file *f, const rg_rows *r, const stretch *s, char why[WHY]) {
     int64_t begin = s->start[0], end = s->start[s->end - s->begin];
     hid_t type = rg_rows_type(r);
     void *data = rg_alloc((size_t)(end - begin) + 1, rg_rows_bytes(r));
-    if (!read_dataset(f->file, r->name, type, r->columns, s->rows, begin, end, data)) {
-        refuse_h5(f, r->name);
-    }
+    bool good = read_dataset(f->file, r->name, type, r->columns, s->rows, begin, end, data);
     if (r->type == RG_ROWS_NAME) {
         H5Tclose(type);
     }
-    verify(f, r, s, data);
+    if (!good) {
+        unreadable(f, why);
+    } else {
+        good = verify(f, r, s, data, why);
+    }
+    if (!good) {
+        rg_free(data);
+    }
+    return good ? data : NULL;
+}
+
+static void *take_whole(const rg_mesh_file *f, const rg_rows *r, int64_t rows) {
+    char why[WHY];
+    if (rows == 0) {
+        return rg_alloc(1, 1);
+    }
+    void *data = take(f, r, &(stretch){rows, 1, 0, 1, (const int64_t[]){0, rows}}, why);
+    if (data == NULL) {
+        refuse(f, r->name, "%s", why);
+    }
     return data;
 }
 
-static void *take_whole(rg_mesh_file *f, const rg_rows *r, int64_t rows) {
-    return rows == 0 ? rg_alloc(1, 1) : take(f, r, &(stretch){rows, 1, 0, 1, (const int64_t[]){0, rows}});
-}
-
-/* How many rows dataset `r` has. */
+/* How many rows dataset `r` has. Refuses it unless it has its columns. */
 static int64_t count_rows(const rg_mesh_file *f, const rg_rows *r) {
     hsize_t size[2] = {0, 0};
     hid_t dataset = H5Dopen2(f->file, r->name, H5P_DEFAULT);
     hid_t space = dataset < 0 ? -1 : H5Dget_space(dataset);
     bool ok = space >= 0 && H5Sget_simple_extent_ndims(space) == (r->columns > 1 ? 2 : 1) &&
-              H5Sget_simple_extent_dims(space, size, NULL) > 0 && size[0] <= 8 * (hsize_t)most;
+              H5Sget_simple_extent_dims(space, size, NULL) > 0 && size[0] <= 8 * (hsize_t)most &&
+              (r->columns == 1 || size[1] == (hsize_t)r->columns);
     if (!ok) {
         refuse_h5(f, r->name);
     }
     H5Sclose(space);
     H5Dclose(dataset);
     return (int64_t)size[0];
+}
+
+static void expect_rows(const rg_mesh_file *f, const rg_rows *r, int64_t rows) {
+    int64_t there = count_rows(f, r);
+    if (there != rows) {
+        refuse(f, r->name, "has %" PRId64 " rows, not %" PRId64, there, rows);
+    }
 }
 
 /* ---- header ---- */
@@ -178,6 +225,20 @@ static void check_format(const rg_mesh_file *f) {
     }
 }
 
+/* A dataset that is not there, or has another shape, is told here once and not for each tile. */
+static void check_datasets(const rg_mesh_file *f) {
+    int64_t vertices = count_rows(f, &rg_rows_vertex);
+    for (int k = 0; k < PARTS; k++) {
+        char name[80];
+        int64_t rows = k == VERTEX_START       ? f->head.tiles + 1
+                       : k == VERTEX || k == X ? vertices
+                                               : f->head.elements;
+        snprintf(name, sizeof name, "checksum/%s", part[k]->name);
+        expect_rows(f, part[k], rows);
+        expect_rows(f, &(rg_rows){name, RG_ROWS_INT64, 1}, k == VERTEX_START ? 1 : f->head.tiles);
+    }
+}
+
 static void read_header(rg_mesh_file *f) {
     rg_mesh_header *h = &f->head;
     check_format(f);
@@ -194,27 +255,53 @@ static void read_header(rg_mesh_file *f) {
     }
     read_names(f, &rg_rows_surface_sets, h->sets, h->set_name);
     read_names(f, &rg_rows_volume_sets, h->regions, h->region_name);
+    check_datasets(f);
 }
 
-rg_mesh_file *rg_mesh_file_open(const char *path) {
+/* A file whose header has not been read yet. */
+static rg_mesh_file *open_file(const char *path, rg_faults *faults) {
     rg_mesh_file *f = RG_NEW(rg_mesh_file, 1);
     f->path = RG_NEW(char, strlen(path) + 1);
     strcpy(f->path, path);
     FILE *probe = fopen(path, "rb"); /* for the reason, which HDF5 does not tell */
     if (probe == NULL) {
-        rg_fatal(RG_USAGE, "%s: cannot be read: %s", path, strerror(errno));
+        rg_faults_add(faults, 0, 0, "cannot be read: %s", strerror(errno));
+        return f;
     }
     fclose(probe);
     rg_h5_listen(f->reason);
     f->file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
     if (f->file < 0) {
-        rg_fatal(RG_USAGE,
-                 "%s: not a mesh file of Rhegma, or a damaged one: %s; 'rhegma mesh %s -o NAME.h5' "
-                 "makes one of a mesh that Gmsh reads",
-                 path, f->reason, path);
+        rg_faults_add(
+            faults, 0, 0,
+            "not a mesh file of Rhegma, or a damaged one: %s; 'rhegma mesh IN -o OUT.h5' makes one of "
+            "a mesh that Gmsh reads",
+            f->reason);
     }
+    return f;
+}
+
+rg_mesh_file *rg_mesh_file_open(const char *path) {
+    rg_faults faults = {.name = path};
+    rg_mesh_file *f = open_file(path, &faults);
+    rg_faults_end(&faults);
     read_header(f);
     return f;
+}
+
+rg_mesh_file *rg_mesh_file_open_on_all(const char *path, MPI_Comm comm) {
+    rg_faults faults = {.name = path};
+    rg_mesh_file *f = open_file(path, &faults);
+    rg_faults_agree(&faults, comm);
+    read_header(f);
+    return f;
+}
+
+rg_gid rg_mesh_file_original(const rg_mesh_file *f, rg_gid element) {
+    rg_gid original = element;
+    read_dataset(f->file, rg_rows_original.name, H5T_NATIVE_INT64, 1, f->head.elements, element, element + 1,
+                 &original);
+    return original;
 }
 
 const rg_mesh_header *rg_mesh_file_header(const rg_mesh_file *f) {
@@ -234,87 +321,137 @@ void rg_mesh_file_close(rg_mesh_file *f) {
 
 /* ---- a run of tiles ---- */
 
-static void check_range(const rg_mesh_file *f, const rg_rows *r, const int64_t *value, int64_t count,
-                        int64_t low, int64_t end) {
+/* A run of tiles while it is read. */
+typedef struct {
+    const rg_mesh_file *file;
+    rg_mesh_slab *slab;
+    stretch elements, vertices;
+    rg_faults *faults; /* NULL: nobody wants to know them */
+    bool good;
+} reading;
+
+/* A fault of dataset k, in element `element`. */
+static void complain(reading *r, rg_gid element, int k, const char *format, ...)
+    __attribute__((format(printf, 4, 5)));
+
+static void complain(reading *r, rg_gid element, int k, const char *format, ...) {
+    char what[WHY];
+    va_list args;
+    va_start(args, format);
+    vsnprintf(what, sizeof what, format, args);
+    va_end(args);
+    r->good = false;
+    if (r->faults != NULL) {
+        rg_faults_add(r->faults, element, k, "%s: %s", part[k]->name, what);
+    }
+}
+
+static void *take_part(reading *r, int k, const stretch *s) {
+    char why[WHY];
+    void *data = take(r->file, part[k], s, why);
+    if (data == NULL) {
+        complain(r, r->slab->first, k, "%s", why);
+    }
+    return data;
+}
+
+/* Where the vertices of the tiles stand. */
+static int64_t *take_vertex_start(reading *r, int64_t rows) {
+    const stretch *s = &r->elements;
+    int64_t tiles = s->end - s->begin, *start = RG_NEW(int64_t, (size_t)tiles + 1);
+    char why[WHY];
+    bool there = read_dataset(r->file->file, part[VERTEX_START]->name, H5T_NATIVE_INT64, 1,
+                              r->file->head.tiles + 1, s->begin, s->end + 1, start);
+    if (!there) {
+        unreadable(r->file, why);
+        complain(r, r->slab->first, VERTEX_START, "%s", why);
+    }
+    for (int64_t t = 0; t < tiles && there && r->good; t++) {
+        int64_t most_here = 4 * (s->start[t + 1] - s->start[t]);
+        if (start[t] < 0 || start[t + 1] < start[t] || start[t + 1] > rows ||
+            start[t + 1] - start[t] > most_here) {
+            complain(r, s->start[t], VERTEX_START,
+                     "the vertices of tile %" PRId64 " cannot stand in rows %" PRId64 " to %" PRId64,
+                     s->begin + t, start[t], start[t + 1]);
+        }
+    }
+    return start;
+}
+
+static void take_all(reading *r, int64_t rows) {
+    rg_mesh_slab *slab = r->slab;
+    const stretch *s = &r->elements;
+    int64_t *start = take_vertex_start(r, rows), tiles = s->end - s->begin;
+    bool placed = r->good;
+    slab->corner = take_part(r, CORNER, s);
+    slab->neighbour = take_part(r, NEIGHBOUR, s);
+    slab->face = take_part(r, FACE, s);
+    slab->set = take_part(r, SET, s);
+    slab->region = take_part(r, REGION, s);
+    slab->original = take_part(r, ORIGINAL, s);
+    r->vertices = (stretch){rows, s->blocks, s->begin, s->end, start};
+    if (placed) {
+        slab->vertices = start[tiles] - start[0];
+        slab->vertex = take_part(r, VERTEX, &r->vertices);
+        slab->x = take_part(r, X, &r->vertices);
+    }
+}
+
+static void check_vertices(reading *r) {
+    const stretch *s = &r->vertices;
+    int64_t rows = r->slab->vertices;
+    if (rows > INT32_MAX) {
+        refuse(r->file, "vertex", "%" PRId64 " vertices are too many at once", rows);
+    }
+    for (int64_t i = 0; i < rows && r->good; i++) {
+        if (r->slab->vertex[i] < 0 || r->slab->vertex[i] >= r->file->head.vertices) {
+            complain(r, r->slab->first, VERTEX,
+                     "value %" PRId64 " of tile %" PRId64 " is not between 0 and %" PRId64,
+                     r->slab->vertex[i], s->begin, r->file->head.vertices - 1);
+        }
+    }
+}
+
+/* The first value that is not from `low` to `end` - 1. */
+static void check_range(reading *r, int k, const int64_t *value, int64_t count, int columns, int64_t low,
+                        int64_t end) {
     for (int64_t i = 0; i < count; i++) {
         if (value[i] < low || value[i] >= end) {
-            refuse(f, r->name, "value %" PRId64 " is not between %" PRId64 " and %" PRId64, value[i], low,
-                   end - 1);
+            complain(r, r->slab->first + i / columns, k,
+                     "value %" PRId64 " of element %" PRId64 " is not between %" PRId64 " and %" PRId64,
+                     value[i], r->slab->original[i / columns], low, end - 1);
+            return;
         }
     }
 }
 
-static void check_bytes(const rg_mesh_file *f, const rg_rows *r, const int8_t *value, int64_t count,
-                        int end) {
+static void check_bytes(reading *r, int k, const int8_t *value, int64_t count, int columns, int end) {
     for (int64_t i = 0; i < count; i++) {
         if (value[i] < -1 || value[i] >= end) {
-            refuse(f, r->name, "value %d is not between -1 and %d", value[i], end - 1);
+            complain(r, r->slab->first + i / columns, k,
+                     "value %d of element %" PRId64 " is not between -1 and %d", value[i],
+                     r->slab->original[i / columns], end - 1);
+            return;
         }
     }
 }
 
-static void read_elements(rg_mesh_file *f, const stretch *s, rg_mesh_slab *slab) {
-    const rg_mesh_header *h = &f->head;
+static void check_values(reading *r) {
+    const rg_mesh_slab *slab = r->slab;
+    const rg_mesh_header *h = &r->file->head;
     rg_gid faces = 4 * slab->elements;
-    slab->corner = take(f, &rg_rows_corner, s);
-    slab->neighbour = take(f, &rg_rows_neighbour, s);
-    slab->face = take(f, &rg_rows_face, s);
-    slab->set = take(f, &rg_rows_set, s);
-    slab->region = take(f, &rg_rows_region, s);
-    slab->original = take(f, &rg_rows_original, s);
-    check_range(f, &rg_rows_corner, slab->corner, faces, 0, h->vertices);
-    check_range(f, &rg_rows_neighbour, slab->neighbour, faces, -1, h->elements);
-    check_bytes(f, &rg_rows_face, slab->face, faces, 4);
-    check_bytes(f, &rg_rows_set, slab->set, faces, h->sets);
-    check_bytes(f, &rg_rows_region, slab->region, slab->elements, h->regions);
-    for (rg_gid slot = 0; slot < faces; slot++) {
+    check_range(r, CORNER, slab->corner, faces, 4, 0, h->vertices);
+    check_range(r, NEIGHBOUR, slab->neighbour, faces, 4, -1, h->elements);
+    check_bytes(r, FACE, slab->face, faces, 4, 4);
+    check_bytes(r, SET, slab->set, faces, 4, h->sets);
+    check_bytes(r, REGION, slab->region, slab->elements, 1, h->regions);
+    for (rg_gid slot = 0; slot < faces && r->good; slot++) {
         if ((slab->neighbour[slot] < 0) != (slab->face[slot] < 0)) {
-            refuse(f, "face", "element %" PRId64 " has a neighbour without a face or a face without one",
-                   slab->first + slot / 4);
+            complain(r, slab->first + slot / 4, FACE,
+                     "element %" PRId64 " has a neighbour without a face or a face without one",
+                     slab->original[slot / 4]);
         }
     }
-}
-
-/* A vertex as one tile lists it. */
-struct listed {
-    rg_gid vertex;
-    int64_t row;
-};
-
-static int by_vertex(const void *a, const void *b) {
-    const struct listed *p = a, *q = b;
-    if (p->vertex != q->vertex) {
-        return p->vertex < q->vertex ? -1 : 1;
-    }
-    return (p->row > q->row) - (p->row < q->row);
-}
-
-/* Gives each of the `rows` vertices that the tiles list a place in the slab: the result, by row. */
-static rg_lid *merge_vertices(const rg_mesh_file *f, rg_mesh_slab *slab, int64_t rows, const rg_gid *vertex,
-                              const double *x) {
-    struct listed *list = RG_NEW(struct listed, (size_t)rows);
-    rg_lid *place = RG_NEW(rg_lid, (size_t)rows);
-    for (int64_t i = 0; i < rows; i++) {
-        list[i] = (struct listed){vertex[i], i};
-    }
-    qsort(list, (size_t)rows, sizeof *list, by_vertex);
-    slab->vertex = RG_NEW(rg_gid, (size_t)rows);
-    slab->x = RG_NEW(double, 3 * (size_t)rows);
-    for (int64_t i = 0; i < rows; i++) {
-        const double *here = x + 3 * list[i].row;
-        double *known = slab->x + 3 * (slab->vertices - 1);
-        if (i > 0 && list[i].vertex == list[i - 1].vertex) {
-            if (memcmp(known, here, 3 * sizeof *x) != 0) {
-                refuse(f, "x", "vertex %" PRId64 " is at two places", list[i].vertex);
-            }
-        } else {
-            slab->vertex[slab->vertices++] = list[i].vertex;
-            memcpy(known + 3, here, 3 * sizeof *x);
-        }
-        place[list[i].row] = (rg_lid)(slab->vertices - 1);
-    }
-    rg_free(list);
-    return place;
 }
 
 static int64_t find(const rg_gid *list, int64_t count, rg_gid value) {
@@ -327,69 +464,80 @@ static int64_t find(const rg_gid *list, int64_t count, rg_gid value) {
     return count > 0 && list[low] == value ? low : -1;
 }
 
-/* Fills `at`: where each corner stands among the slab's vertices, by way of its tile's list. */
-static void locate_corners(const rg_mesh_file *f, rg_mesh_slab *slab, const stretch *s, const rg_gid *vertex,
-                           const rg_lid *place) {
+/* Fills `at`: where each corner stands among the vertices of its tile. */
+static void locate_corners(reading *r) {
+    rg_mesh_slab *slab = r->slab;
+    const stretch *s = &r->vertices;
     slab->at = RG_NEW(rg_lid, 4 * (size_t)slab->elements);
-    for (rg_gid slot = 0; slot < 4 * slab->elements; slot++) {
-        int64_t t = slot / 4 / f->head.tile_elements, from = s->start[t] - s->start[0];
-        int64_t i = find(vertex + from, s->start[t + 1] - s->start[t], slab->corner[slot]);
+    for (rg_gid slot = 0; slot < 4 * slab->elements && r->good; slot++) {
+        int64_t t = slot / 4 / r->file->head.tile_elements, from = s->start[t] - s->start[0];
+        int64_t i = find(slab->vertex + from, s->start[t + 1] - s->start[t], slab->corner[slot]);
         if (i < 0) {
-            refuse(f, "vertex", "tile %" PRId64 " does not list vertex %" PRId64 " of element %" PRId64,
-                   s->begin + t, slab->corner[slot], slab->first + slot / 4);
+            complain(r, slab->first + slot / 4, VERTEX,
+                     "tile %" PRId64 " does not list vertex %" PRId64 " of element %" PRId64, s->begin + t,
+                     slab->corner[slot], slab->original[slot / 4]);
         }
-        slab->at[slot] = place[from + i];
+        slab->at[slot] = (rg_lid)(from + i);
     }
 }
 
-/* Where the vertices of tiles begin .. end stand. */
-static int64_t *read_vertex_start(const rg_mesh_file *f, int64_t begin, int64_t end, int64_t rows) {
-    const rg_rows *r = &rg_rows_vertex_start;
-    int64_t *start = RG_NEW(int64_t, (size_t)(end - begin) + 1);
-    if (!read_dataset(f->file, r->name, H5T_NATIVE_INT64, 1, f->head.tiles + 1, begin, end + 1, start)) {
-        refuse_h5(f, r->name);
-    }
-    for (int64_t t = 0; t < end - begin; t++) {
-        if (start[t] < 0 || start[t + 1] < start[t] || start[t + 1] > rows) {
-            refuse(f, r->name,
-                   "the vertices of tile %" PRId64 " cannot stand in rows %" PRId64 " to %" PRId64, begin + t,
-                   start[t], start[t + 1]);
+static void check_shapes(reading *r) {
+    const rg_mesh_slab *slab = r->slab;
+    char what[RG_FAULT_WORDS];
+    for (rg_gid e = 0; e < slab->elements; e++) {
+        double x[4][3];
+        for (int i = 0; i < 4; i++) {
+            memcpy(x[i], slab->x + 3 * slab->at[4 * e + i], sizeof x[i]);
+        }
+        if (!rg_tet_sound(x[0], slab->corner + 4 * e, slab->original[e], what)) {
+            r->good = false;
+            if (r->faults != NULL) {
+                rg_faults_add(r->faults, slab->first + e, PARTS, "%s", what);
+            }
         }
     }
-    return start;
 }
 
-static void read_vertices(rg_mesh_file *f, rg_mesh_slab *slab, int64_t begin, int64_t end) {
-    int64_t rows = count_rows(f, &rg_rows_vertex);
-    int64_t *start = read_vertex_start(f, begin, end, rows), here = start[end - begin] - start[0];
-    stretch s = {rows, f->head.tiles, begin, end, start};
-    rg_gid *vertex = take(f, &rg_rows_vertex, &s);
-    double *x = take(f, &rg_rows_x, &s);
-    if (here > INT32_MAX) {
-        refuse(f, "vertex", "%" PRId64 " vertices are too many at once; use more ranks", here);
-    }
-    check_range(f, &rg_rows_vertex, vertex, here, 0, f->head.vertices);
-    rg_lid *place = merge_vertices(f, slab, here, vertex, x);
-    locate_corners(f, slab, &s, vertex, place);
-    rg_free(place);
-    rg_free(vertex);
-    rg_free(x);
-    rg_free(start);
-}
-
-rg_mesh_slab *rg_mesh_file_slab(rg_mesh_file *f, int64_t begin, int64_t end) {
+/* NULL: there are faults. */
+static rg_mesh_slab *read_run(rg_mesh_file *f, int64_t begin, int64_t end, rg_faults *faults) {
     const rg_mesh_header *h = &f->head;
     rg_mesh_slab *slab = RG_NEW(rg_mesh_slab, 1);
-    int64_t *start = RG_NEW(int64_t, (size_t)(end - begin) + 1);
+    int64_t *start = RG_NEW(int64_t, (size_t)(end - begin) + 1), rows = count_rows(f, &rg_rows_vertex);
+    f->reason[0] = '\0'; /* of this run */
     for (int64_t t = begin; t <= end; t++) {
         rg_gid at = t * h->tile_elements;
         start[t - begin] = at < h->elements ? at : h->elements;
     }
     slab->first = start[0];
     slab->elements = start[end - begin] - start[0];
-    read_elements(f, &(stretch){h->elements, h->tiles, begin, end, start}, slab);
-    read_vertices(f, slab, begin, end);
+    reading r = {.file = f,
+                 .slab = slab,
+                 .elements = {h->elements, h->tiles, begin, end, start},
+                 .faults = faults,
+                 .good = true};
+    take_all(&r, rows);
+    void (*const next[])(reading *) = {check_vertices, check_values, locate_corners, check_shapes};
+    for (size_t i = 0; i < sizeof next / sizeof *next && r.good; i++) {
+        next[i](&r);
+    }
+    rg_free((void *)(uintptr_t)r.vertices.start);
     rg_free(start);
+    if (!r.good) {
+        rg_mesh_slab_free(slab);
+    }
+    return r.good ? slab : NULL;
+}
+
+/* What is wrong with a run is told tile by tile, so that it is the same whichever tiles are read at once. */
+rg_mesh_slab *rg_mesh_file_slab(rg_mesh_file *f, int64_t begin, int64_t end, rg_faults *faults) {
+    rg_mesh_slab *slab = read_run(f, begin, end, NULL);
+    int64_t before = faults->count;
+    for (int64_t t = begin; t < end && slab == NULL; t++) {
+        rg_mesh_slab_free(read_run(f, t, t + 1, faults));
+    }
+    if (slab == NULL && faults->count == before) {
+        refuse(f, "tiles", "%" PRId64 " to %" PRId64 " cannot be read at once", begin, end - 1);
+    }
     return slab;
 }
 
@@ -424,7 +572,12 @@ rg_tile_graph *rg_mesh_file_graph(rg_mesh_file *f) {
     }
     g->neighbour = take_whole(f, &rg_rows_tile_neighbour, rows);
     g->faces = take_whole(f, &rg_rows_tile_faces, rows);
-    check_range(f, &rg_rows_tile_neighbour, g->neighbour, rows, 0, tiles);
+    for (int64_t i = 0; i < rows; i++) {
+        if (g->neighbour[i] < 0 || g->neighbour[i] >= tiles) {
+            refuse(f, "tile_neighbour", "value %" PRId64 " is not between 0 and %" PRId64, g->neighbour[i],
+                   tiles - 1);
+        }
+    }
     return g;
 }
 
@@ -474,12 +627,36 @@ int rg_mesh_file_partitions(rg_mesh_file *f, int **parts) {
 
 /* ---- the whole ---- */
 
-/* The slab's arrays become the mesh's. */
-static rg_mesh *adopt(rg_mesh_slab *slab, rg_mesh_header *h) {
+/* One position for each vertex from those that the tiles list, [vertices][3]. */
+static double *merge_positions(const rg_mesh_file *f, const rg_mesh_slab *slab, rg_faults *faults) {
+    double *x = RG_NEW(double, 3 * (size_t)f->head.vertices);
+    int8_t *seen = RG_NEW(int8_t, (size_t)f->head.vertices);
+    rg_gid used = 0;
+    for (rg_gid i = 0; i < slab->vertices; i++) {
+        rg_gid v = slab->vertex[i];
+        if (seen[v] == 0) {
+            memcpy(x + 3 * v, slab->x + 3 * i, 3 * sizeof *x);
+            used++;
+        } else if (seen[v] == 1 && memcmp(x + 3 * v, slab->x + 3 * i, 3 * sizeof *x) != 0) {
+            rg_faults_add(faults, v, 0, "x: vertex %" PRId64 " is at two places", v);
+            seen[v] = 2;
+        }
+        seen[v] = seen[v] == 2 ? 2 : 1;
+    }
+    if (used != f->head.vertices) {
+        rg_faults_add(faults, -1, 0, "vertices: %" PRId64 ", but the elements use %" PRId64, f->head.vertices,
+                      used);
+    }
+    rg_free(seen);
+    return x;
+}
+
+/* The arrays of the slab and the names of the sets become the mesh's. */
+static rg_mesh *adopt(rg_mesh_slab *slab, double *x, rg_mesh_header *h) {
     rg_mesh *mesh = RG_NEW(rg_mesh, 1);
-    *mesh = (rg_mesh){.vertices = slab->vertices,
+    *mesh = (rg_mesh){.vertices = h->vertices,
                       .elements = slab->elements,
-                      .x = slab->x,
+                      .x = x,
                       .corner = slab->corner,
                       .neighbour = slab->neighbour,
                       .face = slab->face,
@@ -493,6 +670,7 @@ static rg_mesh *adopt(rg_mesh_slab *slab, rg_mesh_header *h) {
     memset(h->set_name, 0, sizeof h->set_name);
     memset(h->region_name, 0, sizeof h->region_name);
     rg_free(slab->vertex);
+    rg_free(slab->x);
     rg_free(slab->at);
     rg_free(slab);
     return mesh;
@@ -507,12 +685,13 @@ static void check_box(const rg_mesh_file *f, const rg_mesh *mesh) {
 }
 
 rg_mesh *rg_mesh_file_read(const char *path) {
+    rg_faults faults = {.name = path};
     rg_mesh_file *f = rg_mesh_file_open(path);
-    rg_mesh_slab *slab = rg_mesh_file_slab(f, 0, f->head.tiles);
-    if (slab->vertices != f->head.vertices) {
-        refuse(f, "vertices", "%" PRId64 ", but the elements use %" PRId64, f->head.vertices, slab->vertices);
-    }
-    rg_mesh *mesh = adopt(slab, &f->head);
+    rg_mesh_slab *slab = rg_mesh_file_slab(f, 0, f->head.tiles, &faults);
+    rg_faults_end(&faults);
+    double *x = merge_positions(f, slab, &faults);
+    rg_faults_end(&faults);
+    rg_mesh *mesh = adopt(slab, x, &f->head);
     check_box(f, mesh);
     rg_mesh_check(mesh, path);
     rg_mesh_file_close(f);

@@ -39,12 +39,14 @@
  *
  * Vertices keep the numbers of the input, since these orient all faces.
  *
- * Errors end the run with status RG_USAGE and a message that names file and dataset. */
+ * Errors end the run with status RG_USAGE and a message that names file and dataset; of the rows of tiles all
+ * that is wrong is told at once (faults.h). */
 #ifndef RG_MESH_FILE_H
 #define RG_MESH_FILE_H
 
 #include <stdbool.h>
 
+#include "faults.h"
 #include "mesh.h"
 #include "tile_graph.h"
 
@@ -63,14 +65,15 @@ typedef struct {
     const int32_t *owner; /* [tiles] */
 } rg_tile_partition;
 
-/* A run of tiles and the vertices they need. */
+/* A run of tiles and the vertices they need: those of one tile after those of the other, so that what several
+ * need is repeated. */
 typedef struct {
     rg_gid first, elements; /* number of the first element, and how many there are */
     rg_gid vertices;
-    rg_gid *vertex;    /* [vertices] their numbers, ascending */
+    rg_gid *vertex;    /* [vertices] their numbers, ascending within a tile */
     double *x;         /* [vertices][3] m */
     rg_gid *corner;    /* [elements][4] numbers of vertices */
-    rg_lid *at;        /* [elements][4] where they stand in `vertex` */
+    rg_lid *at;        /* [elements][4] where they stand in `vertex`, among those of the element's tile */
     rg_gid *neighbour; /* [elements][4], and so on as in rg_mesh */
     int8_t *face, *set, *region;
     rg_gid *original;
@@ -80,11 +83,21 @@ typedef struct rg_mesh_file rg_mesh_file;
 
 /* Opens a mesh file and reads its header. Not collective, no MPI: every rank may open the file for itself. */
 rg_mesh_file *rg_mesh_file_open(const char *path);
+
+/* The same on all ranks of `comm`, collective: those that cannot open it say so once. What is wrong with the
+ * header every rank would tell, so one of them has read it before. */
+rg_mesh_file *rg_mesh_file_open_on_all(const char *path, MPI_Comm comm);
+
 const rg_mesh_header *rg_mesh_file_header(const rg_mesh_file *f);
 
-/* Tiles begin .. end - 1, checked against their checksums and for indices out of range. Caller frees. */
-rg_mesh_slab *rg_mesh_file_slab(rg_mesh_file *f, int64_t begin, int64_t end);
+/* Tiles begin .. end - 1, checked against their checksums, for indices out of range, and each element by
+ * itself (rg_tet_sound). Caller frees. NULL: something is wrong, and `faults` has it, told tile by tile. */
+rg_mesh_slab *rg_mesh_file_slab(rg_mesh_file *f, int64_t begin, int64_t end, rg_faults *faults);
 void rg_mesh_slab_free(rg_mesh_slab *slab);
+
+/* The number that element `element` had in the input, for messages; its number in the file if that cannot be
+ * read. */
+rg_gid rg_mesh_file_original(const rg_mesh_file *f, rg_gid element);
 
 rg_tile_graph *rg_mesh_file_graph(rg_mesh_file *f);
 

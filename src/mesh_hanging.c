@@ -138,12 +138,14 @@ static bool is_corner(const struct triangle *t, rg_gid vertex) {
     return vertex == t->vertex[0] || vertex == t->vertex[1] || vertex == t->vertex[2];
 }
 
-/* A vertex that hangs on the triangle, -1 if there is none. */
-static rg_gid hanging_on(const struct grid *g, const rg_mesh *mesh, const struct triangle *t) {
+/* Looks for vertices that hang on face `slot`; of[vertex] is the first face on which one hangs, -1 without.
+ */
+static void search(const struct grid *g, const rg_mesh *mesh, rg_gid slot, rg_gid *of) {
+    struct triangle t = get_triangle(mesh, slot);
     int64_t low[3], high[3];
     for (int i = 0; i < 3; i++) {
-        low[i] = cell_along(g, i, t->low[i]);
-        high[i] = cell_along(g, i, t->high[i]);
+        low[i] = cell_along(g, i, t.low[i]);
+        high[i] = cell_along(g, i, t.high[i]);
     }
     for (int64_t z = low[2]; z <= high[2]; z++) {
         for (int64_t y = low[1]; y <= high[1]; y++) {
@@ -151,27 +153,25 @@ static rg_gid hanging_on(const struct grid *g, const rg_mesh *mesh, const struct
             for (rg_gid i = first_in(g, row + low[0]); i < g->count && g->kept[i].cell <= row + high[0];
                  i++) {
                 rg_gid v = g->kept[i].vertex;
-                if (!is_corner(t, v) && touches(t, mesh->x + 3 * v)) {
-                    return v;
+                if (of[v] < 0 && !is_corner(&t, v) && touches(&t, mesh->x + 3 * v)) {
+                    of[v] = slot;
                 }
             }
         }
     }
-    return -1;
 }
 
-bool rg_mesh_hanging(const rg_mesh *mesh, rg_gid *vertex, rg_gid *slot) {
+rg_gid *rg_mesh_hanging(const rg_mesh *mesh) {
     struct grid g = make_grid(mesh);
-    *vertex = -1;
-    for (*slot = 0; *slot < 4 * mesh->elements; ++*slot) {
-        if (mesh->neighbour[*slot] < 0) {
-            struct triangle t = get_triangle(mesh, *slot);
-            *vertex = hanging_on(&g, mesh, &t);
-            if (*vertex >= 0) {
-                break;
-            }
+    rg_gid *of = RG_NEW(rg_gid, (size_t)mesh->vertices);
+    for (rg_gid v = 0; v < mesh->vertices; v++) {
+        of[v] = -1;
+    }
+    for (rg_gid slot = 0; slot < 4 * mesh->elements; slot++) {
+        if (mesh->neighbour[slot] < 0) {
+            search(&g, mesh, slot, of);
         }
     }
     rg_free(g.kept);
-    return *vertex >= 0;
+    return of;
 }

@@ -2,11 +2,11 @@
 
 #include <inttypes.h>
 #include <stdbool.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "../kernels/layout.h"
-#include "error.h"
 #include "hash.h"
 #include "mem.h"
 #include "mesh_check.h"
@@ -32,16 +32,13 @@ static uint64_t position_key(const double x[3]) {
     return h;
 }
 
+/* Follows from the positions of the corners alone, in any order. */
 static uint64_t face_key(const double x[4][3], int f) {
     uint64_t sum = 0;
     for (int k = 0; k < 3; k++) {
         sum += position_key(x[rg_face_node[f][k]]);
     }
     return sum;
-}
-
-uint64_t rg_part_face_key(const rg_element *e, int f) {
-    return face_key(e->x, f);
 }
 
 /* ---- the surface, on rank 0 ---- */
@@ -63,7 +60,12 @@ static outer *list_outer(const rg_part *part, int *count) {
     return list;
 }
 
-/* All of them on rank 0, NULL and 0 on the others. */
+static int by_id(const void *a, const void *b) {
+    const outer *p = a, *q = b;
+    return (p->id > q->id) - (p->id < q->id);
+}
+
+/* All of them on rank 0, in order; NULL and 0 on the others. */
 static outer *gather_outer(const rg_part *part, MPI_Comm comm, int *total) {
     int rank, ranks, own;
     MPI_Comm_rank(comm, &rank);
@@ -81,6 +83,9 @@ static outer *gather_outer(const rg_part *part, MPI_Comm comm, int *total) {
     MPI_Type_commit(&type);
     MPI_Gatherv(mine, own, type, all, count, at, type, 0, comm);
     MPI_Type_free(&type);
+    if (rank == 0) {
+        qsort(all, (size_t)*total, sizeof *all, by_id);
+    }
     rg_free(mine);
     rg_free(count);
     rg_free(at);
@@ -109,13 +114,16 @@ static face *list_faces(const outer *list, int count, int64_t *faces) {
     return all;
 }
 
-static void check_pairs(const face *all, int64_t faces, const char *name) {
+static void check_pairs(const face *all, int64_t faces, const rg_mesh_file *file, rg_faults *faults) {
     for (int64_t i = 1; i < faces; i++) {
-        if (all[i].key == all[i - 1].key) {
-            rg_fatal(RG_USAGE,
-                     "%s: elements %" PRId64 " and %" PRId64
+        bool twice = all[i].key == all[i - 1].key;
+        char *words = twice ? rg_faults_place(faults, all[i - 1].element, all[i].element) : NULL;
+        if (words != NULL) {
+            snprintf(words, RG_FAULT_WORDS,
+                     "elements %" PRId64 " and %" PRId64
                      " have a face at the same place, but are not neighbours: the mesh is open there",
-                     name, all[i - 1].element, all[i].element);
+                     rg_mesh_file_original(file, all[i - 1].element),
+                     rg_mesh_file_original(file, all[i].element));
         }
     }
 }
@@ -159,8 +167,22 @@ static rg_mesh *surface_mesh(const outer *list, int count) {
     return m;
 }
 
+static void check_surface(const outer *list, int count, const rg_mesh_file *file, rg_faults *faults) {
+    rg_mesh *surface = surface_mesh(list, count);
+    rg_faults found = {.name = faults->name};
+    rg_mesh_check_surface(surface, &found);
+    for (rg_gid e = 0; e < surface->elements && found.count > 0; e++) { /* now that they are needed */
+        surface->original[e] = rg_mesh_file_original(file, list[e].id);
+    }
+    if (found.count > 0) {
+        rg_mesh_check_surface(surface, faults);
+    }
+    rg_mesh_free(surface);
+}
+
 /* ---- three elements ---- */
 
+/* Where in all[faces] `key` is; -1: nowhere. */
 static int64_t find(const face *all, int64_t faces, uint64_t key) {
     int64_t low = 0, high = faces;
     while (low < high) {
@@ -174,45 +196,54 @@ static int64_t find(const face *all, int64_t faces, uint64_t key) {
     return low < faces && all[low].key == key ? low : -1;
 }
 
+/* Where the surface has the face in `slot` of the part, which is between two elements; the lower one looks.
+ */
+static int64_t third(const rg_part *part, const face *all, int64_t faces, int64_t slot) {
+    const rg_element *e = &part->element[slot / 4];
+    int f = (int)(slot % 4);
+    return e->neighbour[f] > e->id ? find(all, faces, face_key(e->x, f)) : -1;
+}
+
 /* Looks for the surface's faces among the own ones between elements. */
-static void check_inside(const rg_part *part, const face *all, int64_t faces, const char *name) {
-    int64_t wrong = INT64_MAX;
-#pragma omp parallel for schedule(static) reduction(min : wrong)
-    for (int64_t slot = 0; slot < 4 * (int64_t)part->elements; slot++) {
-        const rg_element *e = &part->element[slot / 4];
-        int f = (int)(slot % 4);
-        if (e->neighbour[f] > e->id && find(all, faces, rg_part_face_key(e, f)) >= 0) {
-            wrong = slot < wrong ? slot : wrong;
-        }
+static void check_inside(const rg_part *part, const face *all, int64_t faces, const rg_mesh_file *file,
+                         rg_faults *faults) {
+    int64_t wrong = 0, slots = 4 * (int64_t)part->elements;
+#pragma omp parallel for schedule(static) reduction(+ : wrong)
+    for (int64_t slot = 0; slot < slots; slot++) {
+        wrong += third(part, all, faces, slot) >= 0;
     }
-    if (wrong < INT64_MAX) {
-        const rg_element *e = &part->element[wrong / 4];
-        int f = (int)(wrong % 4);
-        rg_fatal(RG_USAGE, "%s: elements %" PRId64 ", %" PRId64 " and %" PRId64 " share a face", name, e->id,
-                 e->neighbour[f], all[find(all, faces, rg_part_face_key(e, f))].element);
+    for (int64_t slot = 0; slot < slots && wrong > 0; slot++) {
+        const rg_element *e = &part->element[slot / 4];
+        int64_t at = third(part, all, faces, slot);
+        char *words = at >= 0 ? rg_faults_place(faults, e->id, slot % 4 - 4) : NULL;
+        if (words != NULL) {
+            snprintf(words, RG_FAULT_WORDS, "elements %" PRId64 ", %" PRId64 " and %" PRId64 " share a face",
+                     rg_mesh_file_original(file, e->id), rg_mesh_file_original(file, e->neighbour[slot % 4]),
+                     rg_mesh_file_original(file, all[at].element));
+        }
     }
 }
 
-void rg_part_check(const rg_part *part, const char *name, MPI_Comm comm) {
+void rg_part_check(const rg_part *part, const char *name, const rg_mesh_file *file, MPI_Comm comm) {
+    rg_faults faults = {.name = name};
     int count, rank;
     int64_t faces = 0;
     MPI_Comm_rank(comm, &rank);
     outer *list = gather_outer(part, comm, &count);
     face *all = list_faces(list, count, &faces);
-    if (rank == 0) {
-        rg_mesh *surface = surface_mesh(list, count);
-        check_pairs(all, faces, name);
-        rg_mesh_check_surface(surface, name);
-        rg_mesh_free(surface);
-    }
-    rg_free(list);
+    check_pairs(all, faces, file, &faults); /* rank 0's; the others have none yet */
     MPI_Bcast(&faces, 1, MPI_INT64_T, 0, comm);
     if (rank != 0) {
         rg_free(all);
         all = RG_NEW(face, (size_t)faces + 1);
     }
     MPI_Bcast(all, (int)(2 * faces), MPI_UINT64_T, 0, comm);
-    check_inside(part, all, faces, name);
-    MPI_Barrier(comm); /* whoever found something speaks and ends the job */
+    check_inside(part, all, faces, file, &faults);
     rg_free(all);
+    rg_faults_agree(&faults, comm);
+    if (rank == 0) {
+        check_surface(list, count, file, &faults);
+    }
+    rg_free(list);
+    rg_faults_agree(&faults, comm);
 }

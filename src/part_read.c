@@ -2,14 +2,16 @@
 #include <inttypes.h>
 #include <math.h>
 #include <stdbool.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "../kernels/layout.h"
 #include "deal.h"
-#include "error.h"
+#include "faults.h"
+#include "hash.h"
 #include "mem.h"
 #include "mesh.h"
-#include "mesh_check.h"
 #include "mesh_file.h"
 #include "part_check.h"
 #include "tet.h"
@@ -17,22 +19,42 @@
 enum { SLAB = 256 }; /* most tiles at once: what is read beside the part stays small */
 
 typedef struct {
-    const char *path;
     MPI_Comm comm;
     int rank, ranks;
     rg_mesh_file *file;
     const rg_mesh_header *head;
-    int32_t *owner; /* [tiles] of the mesh */
-    rg_lid *place;  /* [tiles]: where the elements of an own tile begin */
+    rg_faults faults;
+    int32_t *owner;   /* [tiles] of the mesh */
+    uint64_t *beside; /* [tiles]: what the graph says of their neighbours, see beside() */
+    rg_lid *place;    /* [tiles]: where the elements of an own tile begin */
     rg_part *own;
 } reader;
 
 /* ---- who reads what ---- */
 
+/* A face to tile `other`; the sum of these tells the neighbours of a tile, and how many faces it shares with
+ * each.
+ */
+static uint64_t beside(int64_t other) {
+    return rg_hash(0, (uint64_t)other);
+}
+
+static uint64_t *sum_graph(const rg_tile_graph *g) {
+    uint64_t *sum = RG_NEW(uint64_t, (size_t)g->tiles);
+    for (int64_t t = 0; t < g->tiles; t++) {
+        for (int64_t i = g->start[t]; i < g->start[t + 1]; i++) {
+            sum[t] += (uint64_t)g->faces[i] * beside(g->neighbour[i]);
+        }
+    }
+    return sum;
+}
+
 /* The stored partition for so many ranks, or else METIS's; that knew of no weights. */
-static rg_deal *deal_out(const char *path, double *weight, int ranks) {
-    rg_mesh_file *f = rg_mesh_file_open(path);
+static rg_deal *deal_out(reader *r, double *weight) {
+    int ranks = r->ranks;
+    rg_mesh_file *f = rg_mesh_file_open(r->faults.name);
     rg_tile_graph *g = rg_mesh_file_graph(f);
+    r->beside = sum_graph(g);
     int32_t *owner = RG_NEW(int32_t, (size_t)g->tiles);
     g->weight = weight;
     if (weight != NULL || !rg_mesh_file_partition(f, ranks, owner)) {
@@ -51,6 +73,8 @@ static void share_owners(reader *r, const rg_deal *deal) {
         memcpy(r->owner, deal->owner, (size_t)tiles * sizeof *r->owner);
     }
     MPI_Bcast(r->owner, (int)tiles, MPI_INT32_T, 0, r->comm);
+    r->beside = r->rank == 0 ? r->beside : RG_NEW(uint64_t, (size_t)tiles);
+    MPI_Bcast(r->beside, (int)tiles, MPI_UINT64_T, 0, r->comm);
     r->place = RG_NEW(rg_lid, (size_t)tiles);
     rg_lid at = 0;
     for (rg_lid t = 0; t < r->own->tiles; t++) {
@@ -89,24 +113,18 @@ static rg_element *element_at(const reader *r, rg_gid id) {
     return r->own->element + r->place[id / r->own->tile] + id % r->own->tile;
 }
 
-static void read_slab(const reader *r, int64_t begin, int64_t end) {
-    rg_mesh_slab *s = rg_mesh_file_slab(r->file, begin, end);
+static void read_slab(reader *r, int64_t begin, int64_t end) {
+    rg_mesh_slab *s = rg_mesh_file_slab(r->file, begin, end, &r->faults);
+    rg_gid elements = s != NULL ? s->elements : 0;
 #pragma omp parallel for schedule(static)
-    for (rg_gid i = 0; i < s->elements; i++) {
+    for (rg_gid i = 0; i < elements; i++) {
         unpack(r, s, i, element_at(r, s->first + i));
-    }
-    for (rg_gid i = 0; i < s->elements; i++) {
-        const rg_element *e = element_at(r, s->first + i);
-        if (!rg_tet_has_volume(e->x[0])) {
-            rg_fatal(RG_USAGE, "%s: element %" PRId64 " at (%g, %g, %g) m has no volume: %g m3", r->path,
-                     s->original[i], e->x[0][0], e->x[0][1], e->x[0][2], e->volume);
-        }
     }
     rg_mesh_slab_free(s);
 }
 
 /* Runs of consecutive tiles are read at once. */
-static void read_tiles(const reader *r) {
+static void read_tiles(reader *r) {
     for (int64_t begin = 0, end; begin < r->head->tiles; begin = end) {
         end = begin;
         while (end < r->head->tiles && end - begin < SLAB && r->owner[end] == r->rank) {
@@ -120,180 +138,237 @@ static void read_tiles(const reader *r) {
     }
 }
 
-/* ---- neighbours ---- */
+/* ---- neighbours: each side of a face claims the other ---- */
 
-static _Noreturn void disagree(const reader *r, const rg_element *e, int f) {
-    rg_fatal(RG_USAGE,
-             "%s: neighbour: elements %" PRId64 " and %" PRId64 " do not agree that they share a face",
-             r->path, e->id, e->neighbour[f]);
+/* What one side says. A side is 4 * element + face. */
+typedef struct {
+    int64_t side, other;
+    uint64_t place; /* of the face */
+    double volume;  /* of the element */
+} claim;
+
+/* Where face f is, its corners in their order. */
+static uint64_t place_of(const rg_element *e, int f) {
+    uint64_t h = 0;
+    for (int k = 0; k < 9; k++) {
+        h = rg_hash_double(h, e->x[rg_face_node[f][k / 3]][k % 3]);
+    }
+    return h;
 }
 
-static bool agree(const rg_element *e, int f, const rg_element *other) {
-    int g = e->face[f];
-    return other->neighbour[g] == e->id && other->face[g] == f &&
-           rg_part_face_key(other, g) == rg_part_face_key(e, f);
+static claim claim_of(const rg_element *e, int f) {
+    return (claim){4 * e->id + f, 4 * e->neighbour[f] + e->face[f], place_of(e, f), e->volume};
 }
 
-/* Faces to own elements and the surface. */
+/* Takes a claim upon face c->other of own element e, if e says the same of that face. */
+static bool accept(rg_element *e, const claim *c) {
+    int f = (int)(c->other % 4);
+    bool same = c->side != c->other && e->neighbour[f] == c->side / 4 && e->face[f] == c->side % 4 &&
+                place_of(e, f) == c->place;
+    if (same) {
+        e->other_volume[f] = c->volume;
+    }
+    return same;
+}
+
+/* Pairs of elements that do not agree, lower one first. Both owners know of a pair; the lower one's tells. */
+typedef struct {
+    rg_gid (*pair)[2];
+    size_t count, room;
+} quarrels;
+
+static void quarrel(quarrels *q, rg_gid a, rg_gid b) {
+    if (q->count == q->room) {
+        q->room = 2 * q->room + 16;
+        q->pair = rg_realloc(q->pair, q->room, sizeof *q->pair);
+    }
+    q->pair[q->count][0] = a < b ? a : b;
+    q->pair[q->count++][1] = a < b ? b : a;
+}
+
+static int by_elements(const void *a, const void *b) {
+    const rg_gid *p = a, *q = b;
+    int i = p[0] == q[0];
+    return (p[i] > q[i]) - (p[i] < q[i]);
+}
+
+static void tell_quarrels(reader *r, quarrels *q) {
+    if (q->count > 0) {
+        qsort(q->pair, q->count, sizeof *q->pair, by_elements);
+    }
+    for (size_t i = 0; i < q->count; i++) {
+        const rg_gid *pair = q->pair[i];
+        bool first = i == 0 || by_elements(pair - 2, pair) != 0;
+        char *words = first ? rg_faults_place(&r->faults, pair[0], pair[1]) : NULL;
+        if (words != NULL) {
+            snprintf(words, RG_FAULT_WORDS,
+                     "neighbour: elements %" PRId64 " and %" PRId64 " do not agree that they share a face",
+                     rg_mesh_file_original(r->file, pair[0]), rg_mesh_file_original(r->file, pair[1]));
+        }
+    }
+    rg_free(q->pair);
+}
+
+/* Faces to own elements and the surface. A volume of 0 is left where nobody claims the face. */
 static void fill_inside(const reader *r) {
-    int64_t wrong = INT64_MAX;
-#pragma omp parallel for schedule(static) reduction(min : wrong)
+#pragma omp parallel for schedule(static)
     for (int64_t slot = 0; slot < 4 * (int64_t)r->own->elements; slot++) {
         rg_element *e = &r->own->element[slot / 4];
         int f = (int)(slot % 4);
         if (e->neighbour[f] < 0) {
             e->other_volume[f] = e->volume;
         } else if (e->owner[f] == r->rank) {
-            const rg_element *other = element_at(r, e->neighbour[f]);
-            e->other_volume[f] = other->volume;
-            wrong = agree(e, f, other) || wrong < slot ? wrong : slot;
+            claim c = claim_of(element_at(r, e->neighbour[f]), e->face[f]);
+            if (c.other == 4 * e->id + f) {
+                accept(e, &c);
+            }
         }
     }
-    if (wrong < INT64_MAX) {
-        disagree(r, &r->own->element[wrong / 4], (int)(wrong % 4));
-    }
 }
 
-/* A face as seen from one side, which is 4 * element + face. */
-typedef struct {
-    int64_t side;
-    double volume; /* of the element there */
-    uint64_t key;  /* of the place of the face */
-} message;
-
-/* A face that another rank shares. */
-typedef struct {
-    int64_t lower; /* side: both ranks have the faces in this order */
-    int32_t owner; /* of the other side */
-    rg_lid element;
-    int8_t face;
-} border;
-
-static int64_t own_side(const rg_element *e, int f) {
-    return 4 * e->id + f;
-}
-
-static int64_t other_side(const rg_element *e, int f) {
-    return 4 * e->neighbour[f] + e->face[f];
-}
-
-static int by_owner(const void *a, const void *b) {
-    const border *p = a, *q = b;
-    if (p->owner != q->owner) {
-        return p->owner < q->owner ? -1 : 1;
-    }
-    return (p->lower > q->lower) - (p->lower < q->lower);
-}
-
-/* The faces to other ranks, in the order in which these list them too. */
-static border *list_borders(const reader *r, size_t *count) {
-    size_t room = 0;
-    border *list = NULL;
+/* The claims upon elements of other ranks, by rank: count[ranks] of them. */
+static claim *list_claims(const reader *r, int *count, int *at) {
     const rg_part *own = r->own;
-    *count = 0;
-    for (rg_lid i = 0; i < own->elements; i++) {
-        const rg_element *e = &own->element[i];
-        for (int8_t f = 0; f < 4; f++) {
-            if (e->owner[f] < 0 || e->owner[f] == r->rank) {
-                continue;
-            }
-            if (*count == room) {
-                room = 2 * room + 1024;
-                list = rg_realloc(list, room, sizeof *list);
-            }
-            int64_t here = own_side(e, f), there = other_side(e, f);
-            list[(*count)++] = (border){here < there ? here : there, e->owner[f], i, f};
+    for (int64_t slot = 0; slot < 4 * (int64_t)own->elements; slot++) {
+        int32_t owner = own->element[slot / 4].owner[slot % 4];
+        if (owner >= 0 && owner != r->rank) {
+            count[owner]++;
         }
-    }
-    if (*count > 0) {
-        qsort(list, *count, sizeof *list, by_owner);
-    }
-    return list;
-}
-
-/* Sends each rank the volumes on this side of the faces it shares, and takes those of the other side. */
-static void exchange(const reader *r, const border *list, const int *count, const int *at, const message *out,
-                     message *in) {
-    int *theirs = RG_NEW(int, (size_t)r->ranks);
-    MPI_Alltoall(count, 1, MPI_INT, theirs, 1, MPI_INT, r->comm);
-    for (int k = 0; k < r->ranks; k++) {
-        if (theirs[k] != count[k]) {
-            rg_fatal(RG_USAGE, "%s: neighbour: ranks %d and %d do not agree on the faces between them",
-                     r->path, r->rank, k);
-        }
-    }
-    MPI_Datatype type;
-    MPI_Type_contiguous(sizeof(message), MPI_BYTE, &type);
-    MPI_Type_commit(&type);
-    MPI_Alltoallv(out, count, at, type, in, count, at, type, r->comm);
-    MPI_Type_free(&type);
-    for (int i = 0; i < at[r->ranks]; i++) {
-        rg_element *e = &r->own->element[list[i].element];
-        if (in[i].side != other_side(e, list[i].face) || in[i].key != out[i].key) {
-            disagree(r, e, list[i].face);
-        }
-        e->other_volume[list[i].face] = in[i].volume;
-    }
-    rg_free(theirs);
-}
-
-static void fill_borders(const reader *r) {
-    size_t n;
-    border *list = list_borders(r, &n);
-    message *out = RG_NEW(message, n + 1), *in = RG_NEW(message, n + 1);
-    int *count = RG_NEW(int, (size_t)r->ranks), *at = RG_NEW(int, (size_t)r->ranks + 1);
-    for (size_t i = 0; i < n; i++) {
-        const rg_element *e = &r->own->element[list[i].element];
-        out[i] = (message){own_side(e, list[i].face), e->volume, rg_part_face_key(e, list[i].face)};
-        count[list[i].owner]++;
     }
     for (int k = 0; k < r->ranks; k++) {
         at[k + 1] = at[k] + count[k];
     }
-    exchange(r, list, count, at, out, in);
-    rg_free(count);
-    rg_free(at);
-    rg_free(out);
-    rg_free(in);
-    rg_free(list);
+    claim *list = RG_NEW(claim, (size_t)at[r->ranks] + 1);
+    int *next = RG_NEW(int, (size_t)r->ranks);
+    memcpy(next, at, (size_t)r->ranks * sizeof *next);
+    for (int64_t slot = 0; slot < 4 * (int64_t)own->elements; slot++) {
+        const rg_element *e = &own->element[slot / 4];
+        int f = (int)(slot % 4);
+        if (e->owner[f] >= 0 && e->owner[f] != r->rank) {
+            list[next[e->owner[f]]++] = claim_of(e, f);
+        }
+    }
+    rg_free(next);
+    return list;
 }
 
-/* The tiles were put in order by the graph: it must say of each whether it touches another rank. */
-static void check_graph(const reader *r) {
+/* Sends the claims on their way and takes those of other ranks. */
+static void fill_borders(const reader *r, quarrels *q) {
+    size_t ranks = (size_t)r->ranks;
+    int *count = RG_NEW(int, ranks), *at = RG_NEW(int, ranks + 1);
+    int *theirs = RG_NEW(int, ranks), *from = RG_NEW(int, ranks + 1);
+    claim *out = list_claims(r, count, at);
+    MPI_Alltoall(count, 1, MPI_INT, theirs, 1, MPI_INT, r->comm);
+    for (size_t k = 0; k < ranks; k++) {
+        from[k + 1] = from[k] + theirs[k];
+    }
+    claim *in = RG_NEW(claim, (size_t)from[ranks] + 1);
+    MPI_Datatype type;
+    MPI_Type_contiguous(sizeof(claim), MPI_BYTE, &type);
+    MPI_Type_commit(&type);
+    MPI_Alltoallv(out, count, at, type, in, theirs, from, type, r->comm);
+    MPI_Type_free(&type);
+    for (int i = 0; i < from[ranks]; i++) {
+        rg_gid here = in[i].other / 4, there = in[i].side / 4;
+        if (!accept(element_at(r, here), &in[i]) && here < there) {
+            quarrel(q, here, there);
+        }
+    }
+    rg_free(count);
+    rg_free(at);
+    rg_free(theirs);
+    rg_free(from);
+    rg_free(out);
+    rg_free(in);
+}
+
+static void fill_neighbours(reader *r) {
+    quarrels q = {0};
+    fill_inside(r);
+    fill_borders(r, &q);
+    for (int64_t slot = 0; slot < 4 * (int64_t)r->own->elements; slot++) {
+        const rg_element *e = &r->own->element[slot / 4];
+        int f = (int)(slot % 4);
+        if (!(e->other_volume[f] > 0) && (e->owner[f] == r->rank || e->id < e->neighbour[f])) {
+            quarrel(&q, e->id, e->neighbour[f]);
+        }
+    }
+    tell_quarrels(r, &q);
+}
+
+/* ---- what the file says of the whole ---- */
+
+/* The tiles were put in order by the graph: it must be that of the elements. */
+static void check_graph(reader *r) {
     const rg_element *e = r->own->element;
     for (rg_lid t = 0; t < r->own->tiles; t++) {
-        bool outer = false;
-        for (rg_lid end = rg_tile_size(r->own, r->own->tile_id[t]); end > 0; end--, e++) {
+        int64_t id = r->own->tile_id[t];
+        uint64_t sum = 0;
+        for (rg_lid end = rg_tile_size(r->own, id); end > 0; end--, e++) {
             for (int f = 0; f < 4; f++) {
-                outer = outer || (e->owner[f] >= 0 && e->owner[f] != r->rank);
+                int64_t other = e->neighbour[f] < 0 ? id : e->neighbour[f] / r->own->tile;
+                sum += other != id ? beside(other) : 0;
             }
         }
-        if (outer != (t < r->own->boundary)) {
-            rg_fatal(RG_USAGE, "%s: tile_neighbour: not the neighbours of tile %" PRId64, r->path,
-                     r->own->tile_id[t]);
+        if (sum != r->beside[id]) {
+            rg_faults_add(&r->faults, id, 0,
+                          "tile_neighbour: not the neighbours of tile %" PRId64 ", or not as many faces", id);
+        }
+    }
+}
+
+/* Counts and box of the header; rank 0 tells. */
+static void check_header(reader *r) {
+    const rg_part *own = r->own;
+    double box[6]; /* upper corner and negative lower corner: one maximum */
+    int64_t sides = 0;
+    for (int i = 0; i < 6; i++) {
+        box[i] = -INFINITY;
+    }
+    for (int64_t slot = 0; slot < 4 * (int64_t)own->elements; slot++) {
+        const rg_element *e = &own->element[slot / 4];
+        sides += e->neighbour[slot % 4] >= 0;
+        for (int i = 0; i < 3; i++) {
+            box[i] = fmax(box[i], e->x[slot % 4][i]);
+            box[3 + i] = fmax(box[3 + i], -e->x[slot % 4][i]);
+        }
+    }
+    MPI_Allreduce(MPI_IN_PLACE, &sides, 1, MPI_INT64_T, MPI_SUM, r->comm);
+    MPI_Allreduce(MPI_IN_PLACE, box, 6, MPI_DOUBLE, MPI_MAX, r->comm);
+    if (r->rank == 0 && sides != 2 * own->interfaces) {
+        rg_faults_add(&r->faults, -2, 0, "interfaces: %" PRId64 ", but the elements have %" PRId64,
+                      own->interfaces, sides / 2);
+    }
+    for (int i = 0; i < 3; i++) {
+        if (r->rank == 0 && (own->box[1][i] != box[i] || own->box[0][i] != -box[3 + i])) {
+            rg_faults_add(&r->faults, -1, 0, "box: is not that of the vertices");
+            return;
         }
     }
 }
 
 rg_part *rg_part_read(const char *path, double *weight, MPI_Comm comm) {
-    reader r = {.path = path, .comm = comm, .own = RG_NEW(rg_part, 1)};
+    reader r = {.comm = comm, .faults = {.name = path}, .own = RG_NEW(rg_part, 1)};
     MPI_Comm_rank(comm, &r.rank);
     MPI_Comm_size(comm, &r.ranks);
-    rg_deal *deal =
-        r.rank == 0 ? deal_out(path, weight, r.ranks) : NULL; /* tells what is wrong with the file */
+    rg_deal *deal = r.rank == 0 ? deal_out(&r, weight) : NULL; /* tells what is wrong with the file as such */
     rg_deal_share(deal, r.own, comm);
     share_owners(&r, deal);
     rg_deal_free(deal);
-    r.file = rg_mesh_file_open(path);
+    r.file = rg_mesh_file_open_on_all(path, comm);
     r.head = rg_mesh_file_header(r.file);
     take_header(&r);
     read_tiles(&r);
-    rg_mesh_file_close(r.file);
+    rg_faults_agree(&r.faults, comm);
+    fill_neighbours(&r);
+    rg_faults_agree(&r.faults, comm);
     check_graph(&r);
-    fill_inside(&r);
-    fill_borders(&r);
-    rg_part_check(r.own, path, comm);
+    check_header(&r);
+    rg_faults_agree(&r.faults, comm);
+    rg_part_check(r.own, path, r.file, comm);
+    rg_mesh_file_close(r.file);
     rg_free(r.owner);
+    rg_free(r.beside);
     rg_free(r.place);
     return r.own;
 }

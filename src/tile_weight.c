@@ -79,15 +79,19 @@ double *rg_tile_weights_of_file(const rg_case *c, MPI_Comm comm) {
     int rank, ranks;
     MPI_Comm_rank(comm, &rank);
     MPI_Comm_size(comm, &ranks);
-    rg_mesh_file *f = rg_mesh_file_open(c->mesh.file);
+    rg_faults faults = {.name = c->mesh.file};
+    rg_mesh_file *f = rg_mesh_file_open_on_all(c->mesh.file, comm);
     const rg_mesh_header *h = rg_mesh_file_header(f);
     scale s = {.c = c, .tile = h->tile_elements, .weight = RG_NEW(double, (size_t)h->tiles)};
     int64_t end = h->tiles * (rank + 1) / ranks;
     for (int64_t t = h->tiles * rank / ranks; t < end; t += SLAB) {
-        rg_mesh_slab *slab = rg_mesh_file_slab(f, t, t + SLAB < end ? t + SLAB : end);
-        weigh_slab(&s, slab);
-        rg_mesh_slab_free(slab);
+        rg_mesh_slab *slab = rg_mesh_file_slab(f, t, t + SLAB < end ? t + SLAB : end, &faults);
+        if (slab != NULL) {
+            weigh_slab(&s, slab);
+            rg_mesh_slab_free(slab);
+        }
     }
+    rg_faults_agree(&faults, comm);
     agree(&s, rank, ranks, comm);
     /* One rank has each value, the others have zero: the sum only brings them together. */
     MPI_Reduce(rank == 0 ? MPI_IN_PLACE : s.weight, s.weight, (int)h->tiles, MPI_DOUBLE, MPI_SUM, 0, comm);

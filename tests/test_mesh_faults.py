@@ -1,7 +1,8 @@
 """Mesh files that somebody else wrote, whose checksums are right but whose mesh is not: every fault is refused when a run
-reads the file, on one rank and on two, and names the elements."""
+reads the file, all faults at once and in the same words on any number of ranks, and names the elements."""
 
 import itertools
+import math
 import re
 
 import h5py
@@ -71,51 +72,139 @@ def write(path, points, tets, cut=()):
 A, B, C, UP, DOWN, FAR = (0, 0, 0), (1, 0, 0), (0, 1, 0), (0.2, 0.2, 1), (0.2, 0.3, -1), (0.1, 0.3, 2)
 PAIR = [A, B, C, UP, DOWN]
 TWO = [(0, 1, 2, 3), (0, 1, 2, 4)]
+OWN = [(0, 1, 2, 3), (4, 5, 6, 7)]  # no vertex in common
 NEAR = [(x + 1e-13, y, z) for x, y, z in (A, B, C)]
+ASIDE = [(9, 9, 9), (10, 9, 9), (9, 10, 9), (9, 9, 10)]  # a sound element, so that there is one for each of three ranks
 FAULTS = {
-    "flat": ([A, B, C, UP, (0.2, 0.3, -1e-14)], TWO, (), "element 101 at .* has no volume"),
-    "open": (PAIR, TWO, [(0, 1)], "elements 0 and 1 have a face at the same place, but are not neighbours"),
-    "three": ([*PAIR, FAR], [*TWO, (0, 1, 2, 5)], (), "elements 0, 1 and 2 share a face"),
-    "copies": ([*PAIR, A, B, C], [(0, 1, 2, 3), (4, 5, 6, 7)], (), "elements 0 and 1 have a face at the same place"),
-    "near": ([*PAIR, *NEAR], [(0, 1, 2, 3), (4, 5, 6, 7)], (), "elements [01] and [01] have different vertices at the same place"),
-    "hanging": ([A, B, C, UP, DOWN, (0.3, 0.3, 0), (0.5, 0.4, -1), (0.2, 0.6, -1)], [(0, 1, 2, 3), (4, 5, 6, 7)], (),
-                "a vertex of element 1 at .* lies on a face of element 0"),
+    "flat": ([A, B, C, UP, (0.2, 0.3, -1e-14)], TWO, (), ["element 101 at (0, 0, 0) m has no volume: "]),
+    "open": (PAIR, TWO, [(0, 1)], ["elements 100 and 101 have a face at the same place, but are not neighbours: "]),
+    "three": ([*PAIR, FAR], [*TWO, (0, 1, 2, 5)], (), ["elements 100, 101 and 102 share a face"]),
+    "copies": ([*PAIR, A, B, C], OWN, (), ["elements 100 and 101 have a face at the same place, "]),
+    "near": ([*PAIR, *NEAR], OWN, (), ["elements 100 and 101 have different vertices at the same place "] * 3),
+    "hanging": ([A, B, C, UP, DOWN, (0.3, 0.3, 0), (0.5, 0.4, -1), (0.2, 0.6, -1)], OWN, (),
+                ["a vertex of element 101 at (0.3, 0.3, 0) m lies on a face of element 100 "]),
 }
 
 
-def check(path, cwd, ranks):
+def check(path, cwd, ranks=1):
     sets = {"mesh": {"file": str(path)}, "initial": {}, "boundary": []}
     return launch("check", CASES / "rotation.yaml", *overrides(sets), cwd=cwd, ranks=ranks)
 
 
-@pytest.mark.parametrize("ranks", [1, 2])
+def refused(path, cwd, ranks=(1, 3)):
+    """What is said of the file: the very same, line by line, on so many ranks."""
+    said = []
+    for n in ranks:
+        process = check(path, cwd, n)
+        assert process.returncode == 2, process.stdout
+        said.append([line for line in process.stderr.splitlines() if line.startswith("rhegma: ")])
+    assert all(lines == said[0] for lines in said)
+    assert all(line.startswith(f"rhegma: {path}: ") for line in said[0])
+    return [line.removeprefix(f"rhegma: {path}: ") for line in said[0]]
+
+
+def write_with_one_aside(path, points, tets, cut=()):
+    return write(path, [*points, *ASIDE], [*tets, tuple(range(len(points), len(points) + 4))], cut)
+
+
+def change(path, name, index, value):
+    """A value, and the checksum of its tile with it."""
+    with h5py.File(path, "r+") as file:
+        rows = file[name][:]
+        rows[index] = value
+        file[name][...] = rows
+        tile = index[0] // (4 if name in ("vertex", "x") else 1)
+        step = len(rows) // len(file["checksum/" + name])
+        file["checksum/" + name][tile] = checksum(rows[step * tile:step * (tile + 1)])
+
+
+@pytest.mark.parametrize("ranks", [1, 2, 3])
 def test_good_mesh_is_read(tmp_path, ranks):
-    process = check(write(tmp_path / "good.h5", PAIR, TWO), tmp_path, ranks)
+    process = check(write_with_one_aside(tmp_path / "good.h5", PAIR, TWO), tmp_path, ranks)
     assert process.returncode == 0, process.stderr
-    assert process.stdout.startswith("elements       2 ")
+    assert process.stdout.startswith("elements       3 ")
 
 
-@pytest.mark.parametrize("ranks", [1, 2])
 @pytest.mark.parametrize("fault", FAULTS)
-def test_faulty_mesh_is_refused(tmp_path, fault, ranks):
-    points, tets, cut, message = FAULTS[fault]
-    path = write(tmp_path / "faulty.h5", points, tets, cut)
-    process = check(path, tmp_path, ranks)
-    assert process.returncode == 2, process.stdout
-    lines = [line for line in process.stderr.splitlines() if line.startswith("rhegma: ")]
-    assert len(lines) == 1 and lines[0].startswith(f"rhegma: {path}: ")
-    assert re.search(message, lines[0]), lines[0]
+def test_faulty_mesh_is_refused(tmp_path, fault):
+    points, tets, cut, messages = FAULTS[fault]
+    said = refused(write_with_one_aside(tmp_path / "faulty.h5", points, tets, cut), tmp_path, (1, 2, 3))
+    assert len(said) == len(messages)
+    assert all(line.startswith(message) for line, message in zip(said, messages)), said
 
 
-@pytest.mark.parametrize("ranks", [1, 2])
-def test_neighbours_that_see_their_face_at_two_places(tmp_path, ranks):
-    path = write(tmp_path / "moved.h5", PAIR, TWO)
-    with h5py.File(path, "r+") as file:  # in the tile of element 1 alone, whose first corner is the face's
-        file["x"][4] = (0.01, 0, 0)
-        file["checksum/x"][1] = checksum(file["x"][4:])
-    process = check(path, tmp_path, ranks)
-    assert process.returncode == 2
-    assert ("do not agree that they share a face" in process.stderr) or ("vertex 0 is at two places" in process.stderr)
+def test_neighbours_that_see_their_face_at_two_places(tmp_path):
+    path = write_with_one_aside(tmp_path / "moved.h5", PAIR, TWO)
+    change(path, "x", (4,), (0.01, 0, 0))  # in the tile of element 1 alone, whose first corner is the face's
+    assert refused(path, tmp_path) == ["neighbour: elements 100 and 101 do not agree that they share a face"]
+    process = launch("mesh", "--info", path)
+    assert process.returncode == 2 and process.stderr == f"rhegma: {path}: x: vertex 0 is at two places\n"
+
+
+@pytest.mark.parametrize("name, value", [("neighbour", 2), ("neighbour", 1), ("face", 2)])
+def test_neighbour_that_knows_nothing_of_it(tmp_path, name, value):
+    """Element 1 takes element 2, itself, or another face of element 0 for what is across its face 3."""
+    path = write_with_one_aside(tmp_path / "stranger.h5", PAIR, TWO)
+    change(path, name, (1, 3), value)
+    pairs = {("neighbour", 2): [(100, 101), (101, 102)], ("neighbour", 1): [(100, 101), (101, 101)]}
+    assert refused(path, tmp_path) == [f"neighbour: elements {a} and {b} do not agree that they share a face"
+                                       for a, b in pairs.get((name, value), [(100, 101)])]
+
+
+def strip(count):
+    """So many elements in a row, each of which shares a face with the next."""
+    return [(0.3 * i, math.cos(2.0 * i), math.sin(2.0 * i)) for i in range(count + 3)], [range(i, i + 4) for i in range(count)]
+
+
+def test_all_faults_of_all_ranks_are_told_at_once(tmp_path):
+    path = write(tmp_path / "strip.h5", *strip(9))
+    change(path, "set", (7, 0), 5)
+    change(path, "neighbour", (2, 1), 99)
+    change(path, "face", (2, 2), -2)
+    change(path, "vertex", (19,), 8)
+    with h5py.File(path, "r+") as file:
+        file["x"][23, 0] += 1
+        file["corner"][0, 3] += 1
+        file["original"][0] = 7
+    assert refused(path, tmp_path, (1, 2, 3)) == [
+        "corner: the checksum of tile 0 is wrong; the file is damaged",
+        "original: the checksum of tile 0 is wrong; the file is damaged",
+        "neighbour: value 99 of element 102 is not between -1 and 8",
+        "face: value -2 of element 102 is not between -1 and 3",
+        "vertex: tile 4 does not list vertex 7 of element 104",
+        "x: the checksum of tile 5 is wrong; the file is damaged",
+        "set: value 5 of element 107 is not between -1 and -1"]
+
+
+def test_faults_beyond_the_tenth_are_counted(tmp_path):
+    path = write(tmp_path / "strip.h5", *strip(14))
+    for e in range(1, 14):
+        change(path, "face", (e, 1), 7)
+    said = refused(path, tmp_path, (1, 2, 3))
+    assert said == [*(f"face: value 7 of element {100 + e} is not between -1 and 3" for e in range(1, 11)), "and 3 more"]
+
+
+def test_header_and_graph_that_are_not_those_of_the_elements(tmp_path):
+    path = write(tmp_path / "strip.h5", *strip(5))
+    with h5py.File(path, "r+") as file:
+        file.attrs.modify("interfaces", np.int64(5))
+        file.attrs["box"] = file.attrs["box"] * 1.01
+        file["tile_faces"][0] = 2
+        file["tile_neighbour"][2] = 3
+        for name in ("tile_faces", "tile_neighbour"):
+            file["checksum/" + name][0] = checksum(file[name][:])
+    assert refused(path, tmp_path) == [
+        "interfaces: 5, but the elements have 4", "box: is not that of the vertices",
+        "tile_neighbour: not the neighbours of tile 0, or not as many faces",
+        "tile_neighbour: not the neighbours of tile 1, or not as many faces"]
+
+
+def test_dataset_that_is_not_there(tmp_path):
+    path = write(tmp_path / "strip.h5", *strip(5))
+    with h5py.File(path, "r+") as file:
+        del file["checksum/set"]
+    said = refused(path, tmp_path)
+    assert len(said) == 1 and said[0].startswith("checksum/set: cannot be read: ")
 
 
 def test_orientation_of_an_input_is_told_and_does_no_harm(tmp_path):
