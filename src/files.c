@@ -5,15 +5,18 @@
 #include <fcntl.h>
 #include <inttypes.h>
 #include <string.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include "error.h"
 #include "mem.h"
 
+enum { PATH_BYTES = 4096 }; /* more no system takes */
+
 struct rg_csv {
     FILE *file; /* NULL on ranks that write nothing */
-    char path[1024];
+    char path[PATH_BYTES];
 };
 
 /* Creates `path`, on the way to `whole`. */
@@ -49,6 +52,17 @@ void rg_make_directory(const char *path, MPI_Comm comm) {
     MPI_Barrier(comm);
 }
 
+FILE *rg_open_input(const char *path) {
+    struct stat found;
+    FILE *f = fopen(path, "rb");
+    if (f != NULL && fstat(fileno(f), &found) == 0 && S_ISDIR(found.st_mode)) {
+        fclose(f);
+        errno = EISDIR;
+        return NULL;
+    }
+    return f;
+}
+
 static void join(char *out, size_t size, const char *dir, const char *name) {
     if ((size_t)snprintf(out, size, "%s/%s", dir, name) >= size) {
         rg_fatal(RG_USAGE, "%s/%s: the path is too long", dir, name);
@@ -56,7 +70,7 @@ static void join(char *out, size_t size, const char *dir, const char *name) {
 }
 
 static void remove_in(const char *dir, const char *name) {
-    char path[1024];
+    char path[PATH_BYTES];
     join(path, sizeof path, dir, name);
     if (remove(path) != 0 && errno != ENOENT) {
         rg_fatal(RG_FAILURE, "%s: an earlier result cannot be removed: %s", path, strerror(errno));
@@ -65,7 +79,7 @@ static void remove_in(const char *dir, const char *name) {
 
 /* The files of fields/ that a writer made, whole or not. */
 void rg_remove_frames(const char *dir, int rank) {
-    char path[1024];
+    char path[PATH_BYTES];
     join(path, sizeof path, dir, "fields");
     DIR *folder = rank == 0 ? opendir(path) : NULL;
     for (struct dirent *e = folder == NULL ? NULL : readdir(folder); e != NULL; e = readdir(folder)) {
@@ -113,7 +127,7 @@ int64_t rg_settle(FILE *file, const char *name) {
 }
 
 FILE *rg_reopen_in(const char *dir, const char *name, int64_t length) {
-    char path[1024];
+    char path[PATH_BYTES];
     join(path, sizeof path, dir, name);
     struct stat found;
     if (stat(path, &found) != 0) {
@@ -132,7 +146,7 @@ FILE *rg_reopen_in(const char *dir, const char *name, int64_t length) {
 }
 
 FILE *rg_open_in(const char *dir, const char *name) {
-    char path[1024];
+    char path[PATH_BYTES];
     join(path, sizeof path, dir, name);
     FILE *f = fopen(path, "w");
     if (f == NULL) {
@@ -145,7 +159,7 @@ void rg_echo_case(const rg_case *c, int rank) {
     if (rank != 0) {
         return;
     }
-    char part[1024], path[1024];
+    char part[PATH_BYTES], path[PATH_BYTES];
     join(part, sizeof part, c->output.dir, "case.yaml.part"); /* a restart may come from it */
     join(path, sizeof path, c->output.dir, "case.yaml");
     FILE *f = rg_open_in(c->output.dir, "case.yaml.part");
@@ -168,6 +182,29 @@ rg_csv *rg_csv_reopen(const char *dir, const char *name, int rank, int64_t lengt
     join(t->path, sizeof t->path, dir, name);
     t->file = rank == 0 ? rg_reopen_in(dir, name, length) : NULL;
     return t;
+}
+
+static void take_lock(int file, const char *path) {
+    if (flock(file, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+        rg_fatal(RG_USAGE, "%s: another run is writing to it; wait for its end, or take another directory",
+                 path);
+    }
+}
+
+void rg_csv_hold(const rg_csv *t) {
+    if (t->file != NULL) {
+        take_lock(fileno(t->file), t->path);
+    }
+}
+
+void rg_refuse_busy(const char *dir, const char *name) {
+    char path[PATH_BYTES];
+    join(path, sizeof path, dir, name);
+    int file = open(path, O_RDWR);
+    if (file >= 0) {
+        take_lock(file, path);
+        close(file);
+    }
 }
 
 int64_t rg_csv_settle(rg_csv *t) {

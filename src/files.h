@@ -10,6 +10,9 @@
  */
 void rg_make_directory(const char *path, MPI_Comm comm);
 
+/* Opens a file for reading; NULL, with errno set, where there is none or it is a directory. */
+FILE *rg_open_input(const char *path);
+
 /* Brings a file or directory to the disk; false, with errno set, where that fails. */
 bool rg_sync(const char *path);
 
@@ -42,6 +45,12 @@ typedef struct rg_csv rg_csv;
 rg_csv *rg_csv_open(const char *dir, const char *name, int rank);
 /* The same, going on with a table behind its first `length` bytes. */
 rg_csv *rg_csv_reopen(const char *dir, const char *name, int rank, int64_t length);
+
+/* Holds an open table of the output directory until it is closed, however the run ends: by a lock of the
+ * system, where the file system has such. rg_refuse_busy ends the run with a message (RG_USAGE) where another
+ * one holds dir/name, before anything there is touched. Rank 0. */
+void rg_csv_hold(const rg_csv *t);
+void rg_refuse_busy(const char *dir, const char *name);
 
 /* Brings the table to the disk; its length (rank 0; 0 elsewhere). */
 int64_t rg_csv_settle(rg_csv *t);

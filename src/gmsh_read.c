@@ -9,6 +9,7 @@
 
 #include "error.h"
 #include "gmsh_sets.h"
+#include "files.h"
 #include "import.h"
 #include "mem.h"
 
@@ -51,7 +52,7 @@ static bool has_volume_elements(const char *path) {
 
 static void open_model(const char *path) {
     int error;
-    FILE *f = fopen(path, "rb");
+    FILE *f = rg_open_input(path);
     if (f == NULL) {
         rg_fatal(RG_USAGE, "%s: cannot be read: %s", path, strerror(errno));
     }

@@ -1,10 +1,16 @@
 #include "h5_reason.h"
 
 #include <stdio.h>
+#include <string.h>
 
+/* Of a call of the system HDF5 tells the time, the address of the buffer and more; its message says it. */
 static herr_t copy_description(unsigned n, const H5E_error2_t *error, void *reason) {
+    static const char mark[] = "error message = '";
     (void)n;
-    snprintf(reason, RG_H5_REASON, "%s", error->desc);
+    const char *message = strstr(error->desc, mark);
+    const char *text = message != NULL ? message + strlen(mark) : error->desc;
+    int length = message != NULL ? (int)strcspn(text, "'") : RG_H5_REASON;
+    snprintf(reason, RG_H5_REASON, "%.*s", length, text);
     return 1; /* enough: the innermost entry of the error stack is the cause */
 }
 

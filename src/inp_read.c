@@ -11,6 +11,7 @@
 #include <strings.h>
 
 #include "error.h"
+#include "files.h"
 #include "import.h"
 #include "mem.h"
 #include "mesh_rows.h"
@@ -380,7 +381,7 @@ static void read_data(reader *r, char *line) {
 }
 
 static void read_lines(reader *r) {
-    FILE *f = fopen(r->path, "r");
+    FILE *f = rg_open_input(r->path);
     char *line = NULL;
     size_t size = 0;
     if (f == NULL) {

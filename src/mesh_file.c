@@ -11,6 +11,7 @@
 
 #include "error.h"
 #include "../kernels/layout.h"
+#include "files.h"
 #include "h5_reason.h"
 #include "mem.h"
 #include "mesh_check.h"
@@ -263,7 +264,7 @@ static rg_mesh_file *open_file(const char *path, rg_faults *faults) {
     rg_mesh_file *f = RG_NEW(rg_mesh_file, 1);
     f->path = RG_NEW(char, strlen(path) + 1);
     strcpy(f->path, path);
-    FILE *probe = fopen(path, "rb"); /* for the reason, which HDF5 does not tell */
+    FILE *probe = rg_open_input(path); /* for the reason, which HDF5 does not tell */
     if (probe == NULL) {
         rg_faults_add(faults, 0, 0, "cannot be read: %s", strerror(errno));
         return f;

@@ -4,10 +4,12 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "error.h"
 #include "../kernels/layout.h"
+#include "files.h"
 #include "h5_reason.h"
 #include "mem.h"
 #include "mesh_file.h"
@@ -233,7 +235,16 @@ static void put_partition(const target *w, const rg_tile_partition *p) {
 /* ---- file ---- */
 
 /* An empty file with the temporary name. */
+/* What has the name is replaced: that must not be a directory, or a device. */
+static void check_target(const target *w) {
+    struct stat found;
+    if (stat(w->path, &found) == 0 && !S_ISREG(found.st_mode)) {
+        rg_fatal(RG_FAILURE, "%s: cannot be written: not a file", w->path);
+    }
+}
+
 static FILE *open_temporary(target *w) {
+    check_target(w);
     w->temporary = RG_NEW(char, strlen(w->path) + 8);
     sprintf(w->temporary, "%s.part", w->path);
     FILE *f = fopen(w->temporary, "wb"); /* for the reason, which HDF5 does not tell */
@@ -262,7 +273,7 @@ static void create(target *w) {
 
 static void copy(target *w) {
     enum { CHUNK = 1 << 20 };
-    FILE *from = fopen(w->path, "rb");
+    FILE *from = rg_open_input(w->path);
     if (from == NULL) {
         rg_fatal(RG_USAGE, "%s: cannot be read: %s", w->path, strerror(errno));
     }

@@ -254,6 +254,9 @@ static void refuse_overwriting(const run *r) {
 
 static void open_outputs(run *r) {
     const rg_case *c = r->input;
+    if (r->solver->rank == 0) {
+        rg_refuse_busy(c->output.dir, "energy.csv");
+    }
     refuse_overwriting(r);
     rg_make_directory(c->output.dir, r->solver->comm);
     if (r->solver->rank == 0) {
@@ -263,6 +266,7 @@ static void open_outputs(run *r) {
     rg_remove_results(c->output.dir, r->solver->rank);
     rg_echo_case(c, r->solver->rank);
     r->energy = rg_csv_open(c->output.dir, "energy.csv", r->solver->rank);
+    rg_csv_hold(r->energy);
     rg_csv_energy_header(r->energy);
     rg_probes_open(r->probes, r->solver);
     r->snapshots = rg_snapshots_open(r->solver, &r->slab);
@@ -273,7 +277,11 @@ static void open_outputs(run *r) {
 static void reopen_outputs(run *r) {
     const rg_case *c = r->input;
     int rank = r->solver->rank;
+    if (rank == 0) {
+        rg_refuse_busy(c->output.dir, "energy.csv");
+    }
     r->energy = rg_csv_reopen(c->output.dir, "energy.csv", rank, r->keep.energy_bytes);
+    rg_csv_hold(r->energy);
     rg_probes_reopen(r->probes, r->solver, r->keep.history_bytes);
     r->fragments = rg_fragment_table_reopen(r->solver, &r->keep.fragments);
     if (r->keep.fields.frames > 0) {

@@ -8,6 +8,7 @@ import pathlib
 import re
 import resource
 import shutil
+import signal
 import subprocess
 import sys
 import time
@@ -95,6 +96,35 @@ def test_full_disk(run, tmp_path, small_disk, ranks):
     assert list((small_disk / "out" / "checkpoints").glob("step-*.h5"))
     shutil.copytree(small_disk / "out", tmp_path / "out")
     restart_ends_as(tmp_path / "out", reference)
+
+
+def test_mesh_file_that_finds_no_room(small_disk):
+    process = launch("mesh", FRAGMENTS, "-o", small_disk / "box.h5", "--set", "mesh.cells=[20, 20, 20]")
+    assert process.returncode == 1
+    assert re.fullmatch(r"rhegma: .*box.h5: cannot write [a-z_ ]*: No space left on device\n", process.stderr), process.stderr
+    assert list(small_disk.iterdir()) == []
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_directory_in_which_another_run_is_at_work(tmp_path, ranks):
+    out, sets = tmp_path / "out", {**GROWING, "time.end": 1e-3}
+    process = start("run", FRAGMENTS, "-q", "-o", out, *overrides(sets), ranks=ranks)
+    begin = time.monotonic()
+    while not list(out.glob("checkpoints/step-*.h5")):
+        assert process.poll() is None and time.monotonic() - begin < 120
+        time.sleep(0.01)
+    for words in ([FRAGMENTS, "-o", out], [FRAGMENTS, "-o", out, "--overwrite"], ["--restart", out]):
+        other = launch("run", "-q", *words, ranks=ranks)
+        assert other.returncode == 2 and other.stderr.count("rhegma: ") == 1
+        assert f"{out}/energy.csv: another run is writing to it" in other.stderr
+    process.send_signal(signal.SIGUSR2)
+    process.communicate(timeout=120)
+    assert process.returncode == 3
+    step = max(out.glob("checkpoints/step-*.h5")).stem.removeprefix("step-")
+    again = launch("run", "--restart", out, "-q", *overrides({"time.steps": int(step) + 10}), ranks=ranks)
+    assert again.returncode == 0, again.stderr
+    rows = [int(line.split(",")[0]) for line in (out / "energy.csv").read_text().splitlines()[1:]]
+    assert rows == sorted(set(rows)) and rows[-1] == int(step) + 10
 
 
 @pytest.mark.parametrize("sets", [{"output.fields": ["crack"], "checkpoint.steps": 0},

@@ -3,6 +3,7 @@ reads the file, all faults at once and in the same words on any number of ranks,
 
 import itertools
 import math
+import os
 import re
 
 import h5py
@@ -205,6 +206,22 @@ def test_dataset_that_is_not_there(tmp_path):
         del file["checksum/set"]
     said = refused(path, tmp_path)
     assert len(said) == 1 and said[0].startswith("checksum/set: cannot be read: ")
+
+
+@pytest.mark.parametrize("words", [["--info", "folder.h5"], ["--partition", "2", "folder.h5"], ["folder.inp", "-o", "out.h5"]])
+def test_directory_in_place_of_a_file(tmp_path, words):
+    for name in ("folder.h5", "folder.inp"):
+        (tmp_path / name).mkdir()
+    process = launch("mesh", *words, cwd=tmp_path)
+    assert process.returncode == 2 and not (tmp_path / "out.h5").exists()
+    assert re.fullmatch(r"rhegma: folder.(h5|inp): cannot be read: Is a directory\n", process.stderr)
+
+
+def test_what_is_not_a_file_is_not_replaced_by_one(tmp_path):
+    os.mkfifo(tmp_path / "pipe")
+    process = launch("mesh", CASES / "rotation.yaml", "-o", "pipe", cwd=tmp_path)
+    assert process.returncode == 1 and process.stderr == "rhegma: pipe: cannot be written: not a file\n"
+    assert (tmp_path / "pipe").is_fifo() and len(list(tmp_path.iterdir())) == 1
 
 
 def test_orientation_of_an_input_is_told_and_does_no_harm(tmp_path):

@@ -72,7 +72,7 @@ def assert_same_results(one, other):
     for key in ("steps", "energy_error_rel", "energy_largest_J", "first_fracture_time_s", "dt_first", "dt_last",
                 "dt_critical", "limiting_element", "limiting_state", "dissipated_J"):
         assert one.summary[key] == other.summary[key], key
-    for name in ("energy.csv", "history.csv", "fields.xdmf"):
+    for name in ("energy.csv", "history.csv", "fragments.csv", "fields.xdmf"):
         assert (one.dir / name).read_bytes() == (other.dir / name).read_bytes(), name
     frames, others = one.frames(), other.frames()
     assert len(frames) == len(others) > 20
@@ -93,6 +93,18 @@ def test_restart_on_any_layout(whole, stopped, tmp_path, written, to):
     again = go_on(copy(before, tmp_path / "out"), "--set", "time.steps=100000", ranks=to[0], threads=to[1])
     assert again.summary["restarted_from_step"] == 150
     assert_same_results(again, whole)
+
+
+def test_restart_of_less_output_on_other_ranks(run, tmp_path):
+    sets = {**CASE, "output": {**{key.split(".")[1]: value for key, value in CASE.items() if key.startswith("output.")},
+                               "region": "abs(z) < 0.8e-3", "precision": "single", "compression": 4}}
+    sets = {key: value for key, value in sets.items() if not key.startswith("output.")}
+    stopped = run(FRAGMENTS, ranks=2, sets={**sets, "time.steps": STOP})
+    (stopped.dir / "checkpoints" / f"step-{STOP:012d}.h5").unlink()
+    again = go_on(copy(stopped, tmp_path / "out"), "--set", "time.steps=100000", ranks=3)
+    assert again.summary["restarted_from_step"] == 150
+    assert len(again.frames()[0]["displacement"]) < 10 * again.summary["elements"]
+    assert_same_results(again, run(FRAGMENTS, sets=sets))
 
 
 VARIANTS = {
