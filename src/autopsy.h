@@ -4,7 +4,7 @@
 
 #include "solver.h"
 
-enum { RG_FAILURE_WORDS = 600 };
+enum { RG_FAILURE_WORDS = 1000 };
 
 /* Continues words[RG_FAILURE_WORDS], the reason, with step, time (s), the element and what limited the step,
  * and writes all that to autopsy.json in the output directory. The element is the first one whose state is

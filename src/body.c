@@ -7,6 +7,7 @@
 #include "element.h"
 #include "error.h"
 #include "mem.h"
+#include "spot.h"
 #include "quadrature.h"
 #include "state.h"
 #include "vector.h"
@@ -25,11 +26,12 @@ static void unit(const double v[3], double out[3]) {
     }
 }
 
-static double velocity_at(const rg_body *b, int c, double time) {
+static double velocity_at(const rg_body *b, int c, double time, MPI_Comm comm) {
     static const double nowhere[3] = {0, 0, 0};
     const rg_expr *e = b->input->velocity[c];
     double v = e == NULL ? 0 : rg_expr_value(e, nowhere, time);
-    if (!isfinite(v)) {
+    if (!isfinite(v)) { /* on all ranks */
+        rg_speak(comm);
         rg_fatal(RG_USAGE, "bodies: velocity.%c of %s: %s is not finite at t = %g s", "xyz"[c],
                  b -> input -> name, rg_expr_text(e), time);
     }
@@ -41,13 +43,13 @@ static double mass_of(const rg_body_input *in) {
     return in->motion == RG_MOTION_PRESCRIBED ? INFINITY : in->density > 0 ? in->density * volume : in->mass;
 }
 
-static void make_body(rg_body *b, const rg_body_input *in) {
+static void make_body(rg_body *b, const rg_body_input *in, MPI_Comm comm) {
     b->input = in;
     b->mass = mass_of(in);
     unit(in->shape == RG_SHAPE_PLANE ? in->normal : in->axis, b->direction);
     memcpy(b->x, in->at, sizeof b->x);
     for (int c = 0; c < 3; c++) {
-        b->v[c] = velocity_at(b, c, 0);
+        b->v[c] = velocity_at(b, c, 0, comm);
     }
     memcpy(b->seen.x, b->x, sizeof b->x);
     memcpy(b->seen.v, b->v, sizeof b->v);
@@ -72,11 +74,12 @@ static void make_rule(rg_face_rule *rule) {
 
 /* The sets that may touch body i, as bits by set number; all bits, and that of faces in no set, where none is
  * named. */
-static uint64_t touching_sets(const rg_case *c, const rg_part *part, int i) {
+static uint64_t touching_sets(const rg_case *c, const rg_part *part, int i, MPI_Comm comm) {
     uint64_t bits = c->body[i].sets == 0 ? UINT64_MAX : 0;
     for (int k = 0; k < c->body[i].sets; k++) {
         int set = rg_part_set(part, c->body[i].set[k]);
         if (set < 0) {
+            rg_speak(comm);
             rg_fatal(RG_USAGE, "%s: bodies[%d].faces[%d]: the mesh has no set named '%s'", c->path, i, k,
                      c->body[i].set[k]);
         }
@@ -136,7 +139,7 @@ static size_t list_faces(rg_bodies *b, const uint64_t *sets, size_t tile, double
 static void find_faces(rg_bodies *b, const rg_case *c, const rg_part *part, double modulus) {
     uint64_t *sets = RG_NEW(uint64_t, (size_t)b->count);
     for (int i = 0; i < b->count; i++) {
-        sets[i] = touching_sets(c, part, i);
+        sets[i] = touching_sets(c, part, i, b->comm);
     }
     for (size_t t = 0; t < b->domain->tiles; t++) {
         b->tile_begin[t + 1] = b->tile_begin[t] + list_faces(b, sets, t, modulus, NULL);
@@ -297,7 +300,7 @@ rg_bodies *rg_bodies_make(const rg_case *c, const rg_domain *d, const rg_part *p
     }
     b->body = RG_NEW(rg_body, (size_t)b->count);
     for (int i = 0; i < b->count; i++) {
-        make_body(&b->body[i], &c->body[i]);
+        make_body(&b->body[i], &c->body[i], comm);
     }
     b->sum = RG_NEW(rg_exact_sum, (size_t)(3 * b->count * threads));
     b->total = RG_NEW(rg_exact_sum, (size_t)(3 * b->count));
@@ -322,13 +325,13 @@ void rg_bodies_sum(rg_bodies *b) {
     rg_exact_start_allreduce(b->total, sums, b->comm, &b->request);
 }
 
-static void kick(rg_body *b, double time, double dt_last, double dt_next) {
+static void kick(rg_body *b, double time, double dt_last, double dt_next, MPI_Comm comm) {
     bool prescribed = b->input->motion == RG_MOTION_PRESCRIBED;
     b->seen.work = b->work;
     for (int c = 0; c < 3; c++) {
         double force = b->seen.force[c], before = b->v[c];
-        b->seen.v[c] = prescribed ? velocity_at(b, c, time) : before + 0.5 * dt_last * force / b->mass;
-        b->v[c] = prescribed ? velocity_at(b, c, time + 0.5 * dt_next)
+        b->seen.v[c] = prescribed ? velocity_at(b, c, time, comm) : before + 0.5 * dt_last * force / b->mass;
+        b->v[c] = prescribed ? velocity_at(b, c, time + 0.5 * dt_next, comm)
                              : before + 0.5 * (dt_last + dt_next) * force / b->mass;
         if (prescribed) {
             b->seen.work -= 0.5 * dt_last * before * force;
@@ -344,7 +347,7 @@ void rg_bodies_kick(rg_bodies *b, double time, double dt_last, double dt_next) {
         for (int c = 0; c < 3; c++) {
             b->body[i].seen.force[c] = rg_exact_value(&b->total[3 * i + c]);
         }
-        kick(&b->body[i], time, dt_last, dt_next);
+        kick(&b->body[i], time, dt_last, dt_next, b->comm);
     }
 }
 

@@ -13,6 +13,7 @@
 #include "files.h"
 #include "hash.h"
 #include "mem.h"
+#include "spot.h"
 #include "revision.h"
 #include "seal.h"
 #include "state_table.h"
@@ -254,9 +255,7 @@ static bool get_identity(hid_t file, identity *id) {
 
 /* Ends the run with the lines of `what`; collective, all ranks know. */
 static _Noreturn void refuse(const rg_solver *s, const char *path, const char *what) {
-    if (s->rank > 0) {
-        MPI_Barrier(s->comm); /* rank 0 speaks and ends the job */
-    }
+    rg_speak(s->comm);
     rg_fatal(RG_USAGE, "%s: %s", path, what);
 }
 

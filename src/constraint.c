@@ -1,6 +1,8 @@
 #include "constraint.h"
 
+#include <inttypes.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -8,6 +10,7 @@
 #include "error.h"
 #include "layout.h"
 #include "mem.h"
+#include "spot.h"
 #include "state.h"
 
 /* What depends only on which nodes are constrained: c of them, then the free ones. For the mass M / (rho V):
@@ -51,6 +54,7 @@ struct rg_constraints {
     pattern *patterns[1 << RG_NODES];
     bool lumped, varies; /* varies: some value depends on time or is a displacement */
     bool moving;         /* at the start the velocities are the initial ones */
+    rg_spot bad;         /* where a value was not finite first, and when */
 };
 
 /* ---- Patterns ---- */
@@ -176,7 +180,8 @@ static void add_entry(rg_constraints *k, size_t slot, int c, unsigned mask, cons
 rg_constraints *rg_constraints_make(const rg_case *c, const rg_domain *d, const rg_part *part,
                                     rg_assembly *nodes) {
     rg_constraints *k = RG_NEW(rg_constraints, 1);
-    *k = (rg_constraints){.input = c, .domain = d, .lumped = c->mass == RG_MASS_LUMPED};
+    *k = (rg_constraints){
+        .input = c, .domain = d, .lumped = c->mass == RG_MASS_LUMPED, .bad = {.which = RG_NOWHERE}};
     int *set = RG_NEW(int, (size_t)c->boundaries + 1);
     for (int b = 0; b < c->boundaries; b++) {
         set[b] = set_number(part, c->boundary[b].set);
@@ -219,8 +224,29 @@ static double velocity_at(const rg_constraints *k, const entry *e, int i, double
     return dt > 0 ? (value_at(k, e, i, time + half) - value_at(k, e, i, time - half)) / dt : 0;
 }
 
-void rg_constraints_start(rg_constraints *k, const rg_real *u, const rg_real *velocity) {
-    size_t jumps = 0;
+/* Notes that constrained node i of an entry was told something that is not finite at `time`. */
+static void note(rg_constraints *k, const entry *e, int i, double time) {
+    double x[3];
+    if (k->bad.which == RG_NOWHERE || k->bad.value == time) { /* what comes later only follows */
+        rg_node_position(k->domain->corner + 12 * (size_t)e->slot, e->pattern->node[i], x);
+        rg_spot_note(&k->bad, e->boundary[i], x, time);
+    }
+}
+
+bool rg_constraints_told(const rg_constraints *k, char *words, size_t size, MPI_Comm comm) {
+    rg_spot bad = k->bad;
+    bool found = rg_spot_lowest(&bad, comm);
+    if (found) {
+        const rg_boundary *b = &k->input->boundary[bad.which];
+        snprintf(words, size, "boundary[%d].%s: %s is not finite at (%g, %g, %g), t = %g s", (int)bad.which,
+                 b->is_displacement ? "displacement" : "velocity", rg_expr_text(b->value), bad.x[0], bad.x[1],
+                 bad.x[2], bad.value);
+    }
+    return found;
+}
+
+void rg_constraints_start(rg_constraints *k, const rg_real *u, const rg_real *velocity, MPI_Comm comm) {
+    int64_t jumps = 0;
     for (size_t n = 0; n < k->entries; n++) {
         entry *e = &k->entry[n];
         for (int i = 0; i < e->pattern->constrained; i++) {
@@ -229,12 +255,24 @@ void rg_constraints_start(rg_constraints *k, const rg_real *u, const rg_real *ve
             e->is.place[i] = u[at];
             e->is.target[i] = e->is.present[i] = velocity_at(k, e, i, 0, 0);
             bool placed = k->input->boundary[e->boundary[i]].is_displacement;
-            jumps += placed &&
-                     fabs(value_at(k, e, i, 0) - u[at]) > JUMP * cbrt(e->mass / k->input->material.density);
+            double first = value_at(k, e, i, 0);
+            if (!isfinite(first)) {
+                note(k, e, i, 0);
+            }
+            jumps += placed && fabs(first - u[at]) > JUMP * cbrt(e->mass / k->input->material.density);
         }
     }
-    if (jumps > 0) {
-        rg_warn("boundary: %zu prescribed displacements differ from the initial ones at t = 0; the first "
+    char words[400];
+    if (rg_constraints_told(k, words, sizeof words, comm)) {
+        rg_speak(comm);
+        rg_fatal(RG_USAGE, "%s: %s", k->input->path, words);
+    }
+    int rank;
+    MPI_Comm_rank(comm, &rank);
+    MPI_Allreduce(MPI_IN_PLACE, &jumps, 1, MPI_INT64_T, MPI_SUM, comm);
+    if (rank == 0 && jumps > 0) {
+        rg_warn("boundary: %" PRId64
+                " prescribed displacements differ from the initial ones at t = 0; the first "
                 "step imposes them",
                 jumps);
     }
@@ -253,6 +291,9 @@ void rg_constraints_set(rg_constraints *k, double time, double dt, bool moving) 
                 e->is.target[i] = value_at(k, e, i, time + 0.5 * dt);
             }
             e->is.present[i] = velocity_at(k, e, i, time, dt);
+            if (!isfinite(e->is.target[i] + e->is.present[i])) {
+                note(k, e, i, time);
+            }
         }
     }
 }

@@ -13,6 +13,7 @@
 #include "case.h"
 #include "domain.h"
 #include "exact_sum.h"
+#include "spot.h"
 
 typedef struct rg_constraints rg_constraints;
 typedef struct rg_state rg_state; /* state.h */
@@ -23,8 +24,13 @@ typedef struct rg_state rg_state; /* state.h */
 rg_constraints *rg_constraints_make(const rg_case *c, const rg_domain *d, const rg_part *part,
                                     rg_assembly *nodes);
 
-/* Takes the fields at t = 0 as what the constrained nodes come from. */
-void rg_constraints_start(rg_constraints *k, const rg_real *u, const rg_real *velocity);
+/* Takes the fields at t = 0 as what the constrained nodes come from. Collective; ends the run with a message
+ * (RG_USAGE) if a value is not finite then. */
+void rg_constraints_start(rg_constraints *k, const rg_real *u, const rg_real *velocity, MPI_Comm comm);
+
+/* Collective: whether a value was not finite in any step so far; then words[size] says which, where and when
+ * first. */
+bool rg_constraints_told(const rg_constraints *k, char *words, size_t size, MPI_Comm comm);
 
 /* Evaluates what is prescribed for a step `dt` (> 0) from `time`: velocities in its middle, displacements at
  * its end, and, `moving`, velocities at `time` itself (at the start they are the initial ones). One thread.

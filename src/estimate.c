@@ -7,6 +7,7 @@
 #include "material.h"
 #include "mem.h"
 #include "mesh_info.h"
+#include "spot.h"
 #include "snapshot.h"
 
 #define MOST_STEPS 1e15
@@ -84,6 +85,7 @@ rg_estimate rg_estimate_run(const rg_solver *s) {
         steps = fmin(steps, (double)c->time.steps);
     }
     if (!(steps <= MOST_STEPS)) {
+        rg_speak(s->comm);
         rg_fatal(RG_USAGE, "time.end: %g s are %g steps of %g s, more than a run can count", c->time.end,
                  steps, e.dt);
     }

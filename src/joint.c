@@ -7,12 +7,13 @@
 #include "gid_map.h"
 #include "layout.h"
 #include "mem.h"
+#include "spot.h"
 
 /* ---- Which faces ---- */
 
 /* Whether interface.faces selects face f: by its middle and unit normal, as both sides compute them from the
  * same corners in the same order. */
-static bool selected(const rg_expr *faces, const rg_element *e, int f) {
+static bool selected(const rg_expr *faces, const rg_element *e, int f, rg_spot *bad) {
     const double *x[RG_FCORNERS];
     double middle[3], normal[3], square = 0;
     for (int k = 0; k < RG_FCORNERS; k++) {
@@ -30,16 +31,16 @@ static bool selected(const rg_expr *faces, const rg_element *e, int f) {
     double here = rg_expr_face_value(faces, middle, normal);
     if (!isfinite(here)) {
 #pragma omp critical
-        rg_fatal(RG_USAGE, "interface.faces: %s is not finite at (%g, %g, %g)", rg_expr_text(faces),
-                 middle[0], middle[1], middle[2]);
+        rg_spot_note(bad, 0, middle, here);
     }
     return here != 0;
 }
 
-uint8_t *rg_joined_faces(const rg_case *c, const rg_part *part) {
+uint8_t *rg_joined_faces(const rg_case *c, const rg_part *part, MPI_Comm comm) {
     if (c->interface.form != RG_FORM_CONTINUOUS) {
         return NULL;
     }
+    rg_spot bad = {.which = RG_NOWHERE};
     uint8_t *joined = RG_NEW(uint8_t, (size_t)part->elements + 1);
 #pragma omp parallel
     {
@@ -48,11 +49,16 @@ uint8_t *rg_joined_faces(const rg_case *c, const rg_part *part) {
         for (rg_lid i = 0; i < part->elements; i++) {
             const rg_element *e = &part->element[i];
             for (int f = 0; f < RG_FACES; f++) {
-                bool joint = e->neighbour[f] >= 0 && (faces == NULL || !selected(faces, e, f));
+                bool joint = e->neighbour[f] >= 0 && (faces == NULL || !selected(faces, e, f, &bad));
                 joined[i] |= (uint8_t)(joint << f);
             }
         }
         rg_expr_free(faces);
+    }
+    if (rg_spot_lowest(&bad, comm)) {
+        rg_speak(comm);
+        rg_fatal(RG_USAGE, "%s: interface.faces: %s is not finite at (%g, %g, %g)", c->path,
+                 rg_expr_text(c->interface.faces), bad.x[0], bad.x[1], bad.x[2]);
     }
     return joined;
 }

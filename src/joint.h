@@ -34,8 +34,9 @@ typedef struct {
 
 /* Bits of the faces of each element of a part that are joints: in form `continuous` all faces inside that
  * interface.faces does not select, whose expression both sides evaluate at the same numbers. NULL in other
- * forms. Ends the run with a message (RG_USAGE) where the expression is not finite. Free with rg_free. */
-uint8_t *rg_joined_faces(const rg_case *c, const rg_part *part);
+ * forms. Ends the run with a message (RG_USAGE) where the expression is not finite. Collective; free with
+ * rg_free. */
+uint8_t *rg_joined_faces(const rg_case *c, const rg_part *part, MPI_Comm comm);
 
 /* The joints of a domain made with these bits, from its part. Free with rg_joints_free. */
 rg_joints *rg_joints_make(const rg_domain *d, const rg_part *part, const uint8_t *joined, int rank);

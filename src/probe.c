@@ -10,6 +10,7 @@
 #include "error.h"
 #include "files.h"
 #include "mem.h"
+#include "spot.h"
 #include "quadrature.h"
 #include "tile.h"
 
@@ -50,10 +51,8 @@ static rg_lid locate(const rg_solver *s, int i, double at[4]) {
     }
     int64_t id = found >= 0 ? s->domain->id[found] : INT64_MAX, first;
     MPI_Allreduce(&id, &first, 1, MPI_INT64_T, MPI_MIN, s->comm);
-    if (first == INT64_MAX && s->rank > 0) {
-        MPI_Barrier(s->comm); /* rank 0 speaks and ends the job */
-    }
     if (first == INT64_MAX) {
+        rg_speak(s->comm);
         const char *file = s->input->mesh.file;
         rg_fatal(RG_USAGE, "%s: output.probes[%d].at: [%g, %g, %g]: no element of %s contains it",
                  s->input->path, i, x[0], x[1], x[2], file != NULL ? file : "the mesh");

@@ -135,8 +135,11 @@ static void output(run *r, bool fields) {
 /* A state that no step can leave: not finite, or such that the step collapses. `dt` is the step tried. */
 static void examine(run *r, int64_t step, double time, double dt) {
     const rg_solver *s = r->solver;
+    char why[200];
     if (!isfinite(s->stiffening_anywhere)) {
-        snprintf(r->failure, sizeof r->failure, "the state is not finite (or an element is inside out)");
+        bool told = rg_constraints_told(s->constraints, why, sizeof why, s->comm);
+        snprintf(r->failure, sizeof r->failure, "the state is not finite%s%s%s",
+                 told ? " (" : " (or an element is inside out)", told ? why : "", told ? ")" : "");
     } else if (collapsed(r, s->stiffening_anywhere)) {
         snprintf(r->failure, sizeof r->failure,
                  "the time step collapsed: %.3g s, below %.3g (time.collapse) of the %.3g s at rest", dt,

@@ -8,6 +8,7 @@
 #include "element.h"
 #include "error.h"
 #include "mem.h"
+#include "spot.h"
 #include "principal.h"
 #include "tile.h"
 
@@ -34,12 +35,12 @@ static const int *output_order(const double *corner) {
 
 /* ---- region ---- */
 
-static bool in_region(const rg_expr *region, const double *points, int count) {
-    double x[3] = {0, 0, 0};
+static double region_at(const rg_expr *region, const double *points, int count, double x[3]) {
+    x[0] = x[1] = x[2] = 0;
     for (int i = 0; i < 3 * count; i++) {
         x[i % 3] += points[i] / count;
     }
-    return region == NULL || rg_expr_value(region, x, 0) != 0;
+    return region == NULL ? 1 : rg_expr_value(region, x, 0);
 }
 
 /* ---- windows ---- */
@@ -123,16 +124,27 @@ static void find_region(rg_snapshots *w, const rg_solver *s) {
     rg_cell_source cells = cells_of(&x);
     double *record = RG_NEW(double, cells.cells *NODAL + 1);
     size_t *row = RG_NEW(size_t, w->slab->count + 1);
+    rg_spot bad = {.which = RG_NOWHERE};
     for (size_t k = 0; k < cells.windows; k++) {
         size_t n = cells.get(&x, k, record);
         for (size_t i = 0; i < n; i++) {
-            if (in_region(s->input->output.region, record + i * NODAL, 4)) { /* corners: at the centroid */
+            double centre[3]; /* of the corners */
+            double here = region_at(s->input->output.region, record + i * NODAL, 4, centre);
+            if (!isfinite(here)) {
+                rg_spot_note(&bad, 0, centre, here);
+            }
+            if (here != 0) {
                 row[w->written++] = k * x.rows + i;
             }
         }
     }
     w->row = row;
     rg_free(record);
+    if (rg_spot_lowest(&bad, s->comm)) {
+        rg_speak(s->comm);
+        rg_fatal(RG_USAGE, "%s: output.region: %s is not finite at (%g, %g, %g)", s->input->path,
+                 rg_expr_text(s->input->output.region), bad.x[0], bad.x[1], bad.x[2]);
+    }
 }
 
 /* Which elements are written, and their numbers among all that are. */
@@ -146,10 +158,8 @@ static void choose(rg_snapshots *w, const rg_solver *s) {
     MPI_Scan(&count, &w->first, 1, MPI_INT64_T, MPI_SUM, s->comm);
     w->first -= count;
     MPI_Allreduce(&count, &w->total, 1, MPI_INT64_T, MPI_SUM, s->comm);
-    if (w->total == 0 && s->rank > 0) {
-        MPI_Barrier(s->comm); /* rank 0 speaks and ends the job */
-    }
     if (w->total == 0) {
+        rg_speak(s->comm);
         rg_fatal(RG_USAGE, "%s: output.region: %s: no element is in it", s->input->path,
                  rg_expr_text(s->input->output.region));
     }
@@ -372,7 +382,8 @@ static void get_fragment(const void *of, size_t i, void *out) {
 static size_t keep_faces(const rg_expr *region, size_t count, rg_crack_face *face) {
     size_t kept = 0;
     for (size_t i = 0; i < count; i++) {
-        if (in_region(region, &face[i].x[0][0], 3)) {
+        double centre[3];
+        if (region_at(region, &face[i].x[0][0], 3, centre) != 0) {
             face[kept++] = face[i];
         }
     }

@@ -12,6 +12,7 @@
 #include "mem.h"
 #include "mesh_case.h"
 #include "pace.h"
+#include "spot.h"
 #include "patch.h"
 #include "strength.h"
 #include "tile.h"
@@ -89,10 +90,8 @@ static void place_fields(rg_solver *s) {
 
 static void select_kernels(rg_solver *s) {
     s->kernels = rg_kernels_select();
-    if (s->kernels == NULL && s->rank > 0) {
-        MPI_Barrier(s->comm); /* rank 0 speaks and ends the job */
-    }
     if (s->kernels == NULL) {
+        rg_speak(s->comm);
         rg_fatal(RG_USAGE, "RHEGMA_ISA names an instruction set that this machine does not have; there are "
                            "x86-64-v2, -v3, -v4");
     }
@@ -100,7 +99,7 @@ static void select_kernels(rg_solver *s) {
 
 /* The domain, and what joins its elements; the part's list of them is needed no more. */
 static void build_domain(rg_solver *s, const rg_interface_material *m) {
-    uint8_t *joined = rg_joined_faces(s->input, s->part);
+    uint8_t *joined = rg_joined_faces(s->input, s->part, s->comm);
     s->domain = rg_domain_build(s->part, joined, s->rank, m);
     if (joined != NULL) {
         s->joints = rg_joints_make(s->domain, s->part, joined, s->rank);
@@ -475,17 +474,29 @@ void rg_solver_impulse(rg_solver *s, rg_real *velocity, double dt) {
 /* ---- Time ---- */
 
 /* Value of an initial expression, 0 where there is none. */
-static double initial_value(const rg_expr *e, const char *key, int component, const double x[3]) {
+static double initial_value(const rg_expr *e, int which, const double x[3], rg_spot *bad) {
     double value = e == NULL ? 0 : rg_expr_value(e, x, 0);
     if (!isfinite(value)) {
 #pragma omp critical
-        rg_fatal(RG_USAGE, "initial.%s.%c: %s is not finite at (%g, %g, %g)", key, "xyz"[component],
-                 rg_expr_text(e), x[0], x[1], x[2]);
+        rg_spot_note(bad, which, x, value);
     }
     return value;
 }
 
+static void refuse_initial(const rg_solver *s, rg_spot *bad) {
+    if (rg_spot_lowest(bad, s->comm)) {
+        int k = (int)bad->which % 3;
+        bool moves = bad->which >= 3;
+        rg_speak(s->comm);
+        rg_fatal(RG_USAGE, "%s: initial.%s.%c: %s is not finite at (%g, %g, %g)", s->input->path,
+                 moves ? "velocity" : "displacement", "xyz"[k],
+                 rg_expr_text((moves ? s->input->initial.velocity : s->input->initial.displacement)[k]),
+                 bad -> x[0], bad -> x[1], bad -> x[2]);
+    }
+}
+
 static void set_initial(rg_solver *s) {
+    rg_spot bad = {.which = RG_NOWHERE};
 #pragma omp parallel
     {
         rg_expr *u[3], *velocity[3]; /* this thread's own */
@@ -499,9 +510,9 @@ static void set_initial(rg_solver *s) {
                 double x[3];
                 rg_node_position(s->domain->corner + 12 * slot, n, x);
                 for (int k = 0; k < 3; k++) {
-                    s->u[rg_node_index(slot, n, k)] = (rg_real)initial_value(u[k], "displacement", k, x);
+                    s->u[rg_node_index(slot, n, k)] = (rg_real)initial_value(u[k], k, x, &bad);
                     s->velocity[rg_node_index(slot, n, k)] =
-                        (rg_real)initial_value(velocity[k], "velocity", k, x);
+                        (rg_real)initial_value(velocity[k], 3 + k, x, &bad);
                 }
             }
         }
@@ -510,6 +521,7 @@ static void set_initial(rg_solver *s) {
             rg_expr_free(velocity[k]);
         }
     }
+    refuse_initial(s, &bad);
 }
 
 /* The stiffening of the initial state, with faces that cannot break yet. */
@@ -524,7 +536,7 @@ static void measure(rg_solver *s) {
 
 void rg_solver_start(rg_solver *s) {
     set_initial(s);
-    rg_constraints_start(s->constraints, s->u, s->velocity);
+    rg_constraints_start(s->constraints, s->u, s->velocity, s->comm);
     measure(s);
 }
 

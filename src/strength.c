@@ -6,6 +6,7 @@
 #include "error.h"
 #include "hash.h"
 #include "mem.h"
+#include "spot.h"
 
 /* Strength and critical opening of a face over those of the law. */
 typedef struct {
@@ -35,7 +36,8 @@ static double face_uniform(int64_t seed, const double *x[RG_FCORNERS]) {
 }
 
 /* The last set whose expression is not 0 here. */
-static void apply_sets(const rg_solver *s, const double *x[RG_FCORNERS], const double normal[3], factors *f) {
+static void apply_sets(const rg_solver *s, const double *x[RG_FCORNERS], const double normal[3], factors *f,
+                       rg_spot *bad) {
     const rg_case *c = s->input;
     double work = rg_law_facts_of(s->law.law, s->law.shape, s->law.beta).work, middle[3];
     for (int k = 0; k < 3; k++) {
@@ -45,8 +47,7 @@ static void apply_sets(const rg_solver *s, const double *x[RG_FCORNERS], const d
         const rg_face_set *set = &c->interface.set[i];
         double here = rg_expr_face_value(set->where, middle, normal);
         if (!isfinite(here)) {
-            rg_fatal(RG_USAGE, "interface.sets[%d].where: %s is not finite at (%g, %g, %g)", i,
-                     rg_expr_text(set->where), middle[0], middle[1], middle[2]);
+            rg_spot_note(bad, i, middle, here);
         }
         if (here != 0) {
             double strength = set->strength > 0 ? set->strength : c->interface.strength;
@@ -66,7 +67,7 @@ static void apply_weibull(const rg_case *c, const double *x[RG_FCORNERS], double
     f->opening /= c->interface.weibull.keep == RG_KEEP_ENERGY ? w : 1;
 }
 
-static factors factors_of(const rg_solver *s, const rg_tile *t, size_t i) {
+static factors factors_of(const rg_solver *s, const rg_tile *t, size_t i, rg_spot *bad) {
     factors f = {1, 1};
     double normal[3], area = rg_interface_area(s->domain, i, normal);
     if (area > 0) { /* not in padding */
@@ -75,7 +76,7 @@ static factors factors_of(const rg_solver *s, const rg_tile *t, size_t i) {
         for (int c = 0; c < 3; c++) {
             normal[c] /= area;
         }
-        apply_sets(s, x, normal, &f);
+        apply_sets(s, x, normal, &f, bad);
         if (s->input->interface.weibull.modulus > 0) {
             apply_weibull(s->input, x, area, &f);
         }
@@ -91,14 +92,21 @@ void rg_strength_make(rg_solver *s) {
         return;
     }
     double stiffest = 0;
+    rg_spot bad = {.which = RG_NOWHERE};
     s->scale = RG_NEW(rg_real, d->iblocks * 2 * RG_LANES);
     for (size_t t = 0; t < d->tiles; t++) { /* expressions are not for threads */
         for (size_t i = d->tile[t].ibegin * RG_LANES; i < d->tile[t].iend * RG_LANES; i++) {
-            factors f = factors_of(s, &d->tile[t], i);
+            factors f = factors_of(s, &d->tile[t], i, &bad);
             s->scale[i / RG_LANES * 2 * RG_LANES + i % RG_LANES] = (rg_real)f.strength;
             s->scale[(i / RG_LANES * 2 + 1) * RG_LANES + i % RG_LANES] = (rg_real)f.opening;
             stiffest = fmax(stiffest, f.strength / f.opening);
         }
+    }
+    if (rg_spot_lowest(&bad, s->comm)) {
+        rg_speak(s->comm);
+        rg_fatal(RG_USAGE, "%s: interface.sets[%d].where: %s is not finite at (%g, %g, %g)", c->path,
+                 (int)bad.which, rg_expr_text(c->interface.set[bad.which].where), bad.x[0], bad.x[1],
+                 bad.x[2]);
     }
     MPI_Allreduce(&stiffest, &s->stiffest, 1, MPI_DOUBLE, MPI_MAX, s->comm);
 }

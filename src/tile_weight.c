@@ -1,12 +1,11 @@
 #include "tile_weight.h"
 
 #include <float.h>
-#include <stdbool.h>
-#include <string.h>
 
 #include "error.h"
 #include "mem.h"
 #include "mesh_file.h"
+#include "spot.h"
 
 enum { SLAB = 256 }; /* tiles of a file at once */
 
@@ -14,8 +13,7 @@ typedef struct {
     const rg_case *c;
     int64_t tile;
     double *weight; /* [tiles] */
-    bool bad;
-    double x[3], value; /* where it was not positive and finite first */
+    rg_spot bad;    /* where it is not positive and finite */
 } scale;
 
 /* Adds mesh.weight at the centroid of an element with these corners to that of its tile. */
@@ -26,20 +24,21 @@ static void weigh(scale *s, rg_gid element, const double *const corner[4]) {
     }
     double value = rg_expr_value(s->c->mesh.weight, x, 0);
     s->weight[element / s->tile] += value;
-    if (!s->bad && !(value >= DBL_MIN && value <= DBL_MAX)) {
-        s->bad = true;
-        s->value = value;
-        memcpy(s->x, x, sizeof x);
+    if (!(value >= DBL_MIN && value <= DBL_MAX)) {
+        rg_spot_note(&s->bad, 0, x, value);
     }
 }
 
 static _Noreturn void refuse(const scale *s) {
     rg_fatal(RG_USAGE, "%s: mesh.weight: %s is %g at (%g, %g, %g); allowed: numbers > 0", s->c->path,
-             rg_expr_text(s->c->mesh.weight), s->value, s->x[0], s->x[1], s->x[2]);
+             rg_expr_text(s->c->mesh.weight), s->bad.value, s->bad.x[0], s->bad.x[1], s->bad.x[2]);
 }
 
 double *rg_tile_weights_of_mesh(const rg_case *c, const rg_mesh *mesh, int tile) {
-    scale s = {.c = c, .tile = tile, .weight = RG_NEW(double, (size_t)((mesh->elements + tile - 1) / tile))};
+    scale s = {.c = c,
+               .tile = tile,
+               .weight = RG_NEW(double, (size_t)((mesh->elements + tile - 1) / tile)),
+               .bad = {.which = RG_NOWHERE}};
     for (rg_gid e = 0; e < mesh->elements; e++) {
         const double *corner[4];
         for (int i = 0; i < 4; i++) {
@@ -47,7 +46,7 @@ double *rg_tile_weights_of_mesh(const rg_case *c, const rg_mesh *mesh, int tile)
         }
         weigh(&s, e, corner);
     }
-    if (s.bad) {
+    if (s.bad.which != RG_NOWHERE) {
         refuse(&s);
     }
     return s.weight;
@@ -63,18 +62,6 @@ static void weigh_slab(scale *s, const rg_mesh_slab *slab) {
     }
 }
 
-/* The first rank that has something to complain of does so. */
-static void agree(const scale *s, int rank, int ranks, MPI_Comm comm) {
-    int here = s->bad ? rank : ranks, first;
-    MPI_Allreduce(&here, &first, 1, MPI_INT, MPI_MIN, comm);
-    if (first < ranks && first != rank) {
-        MPI_Barrier(comm);
-    }
-    if (first < ranks) {
-        refuse(s);
-    }
-}
-
 double *rg_tile_weights_of_file(const rg_case *c, MPI_Comm comm) {
     int rank, ranks;
     MPI_Comm_rank(comm, &rank);
@@ -82,7 +69,10 @@ double *rg_tile_weights_of_file(const rg_case *c, MPI_Comm comm) {
     rg_faults faults = {.name = c->mesh.file};
     rg_mesh_file *f = rg_mesh_file_open_on_all(c->mesh.file, comm);
     const rg_mesh_header *h = rg_mesh_file_header(f);
-    scale s = {.c = c, .tile = h->tile_elements, .weight = RG_NEW(double, (size_t)h->tiles)};
+    scale s = {.c = c,
+               .tile = h->tile_elements,
+               .weight = RG_NEW(double, (size_t)h->tiles),
+               .bad = {.which = RG_NOWHERE}};
     int64_t end = h->tiles * (rank + 1) / ranks;
     for (int64_t t = h->tiles * rank / ranks; t < end; t += SLAB) {
         rg_mesh_slab *slab = rg_mesh_file_slab(f, t, t + SLAB < end ? t + SLAB : end, &faults);
@@ -92,7 +82,10 @@ double *rg_tile_weights_of_file(const rg_case *c, MPI_Comm comm) {
         }
     }
     rg_faults_agree(&faults, comm);
-    agree(&s, rank, ranks, comm);
+    if (rg_spot_lowest(&s.bad, comm)) {
+        rg_speak(comm);
+        refuse(&s);
+    }
     /* One rank has each value, the others have zero: the sum only brings them together. */
     MPI_Reduce(rank == 0 ? MPI_IN_PLACE : s.weight, s.weight, (int)h->tiles, MPI_DOUBLE, MPI_SUM, 0, comm);
     rg_mesh_file_close(f);

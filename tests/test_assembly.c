@@ -156,7 +156,7 @@ static share make_share(const subject *s, const rg_mesh *mesh, MPI_Comm comm) {
     c.interface.faces = s->faces == NULL ? NULL : rg_expr_new(s->faces, &message);
     MPI_Comm_rank(comm, &here);
     share a = {.part = rg_part_distribute(here == 0 ? mesh : NULL, TILE, comm)};
-    uint8_t *joined = rg_joined_faces(&c, a.part);
+    uint8_t *joined = rg_joined_faces(&c, a.part, comm);
     a.domain = rg_domain_build(a.part, joined, here, &no_matter);
     a.joints = rg_joints_make(a.domain, a.part, joined, here);
     a.assembly = rg_assembly_make(a.domain, a.joints, comm);

@@ -250,13 +250,13 @@ def test_energy_limit_stops_the_run(attempt, ranks):
     assert summary["energy_error_rel"] > 1e-9
 
 
-NOT_FINITE = r"^rhegma: stopped: (.*not finite.* at step (\d+), time .*: element \d+ at \(.*, (.*)\) m; .*)$"
+NOT_FINITE = r"^rhegma: stopped: (.*not finite \(%s.*\) at step (\d+), time .*: element \d+ at \(.*, (.*)\) m; .*)$"
 
 
-def stops_as_not_finite(attempt, sets, ranks):
+def stops_as_not_finite(attempt, sets, ranks, why="or an element is inside out"):
     """Step, and height of the element, that the run names."""
     out, said = attempt(FRAGMENTS, {"output.interval": 10, **sets}, expect=1, ranks=ranks)
-    message = re.search(NOT_FINITE, said, re.M)
+    message = re.search(NOT_FINITE % why, said, re.M)
     assert message, said
     assert summary_of(out)["status"] == message[1]
     return int(message[2]), float(message[3])
@@ -283,14 +283,44 @@ def test_blow_up_between_two_outputs_is_found(attempt, interval, ranks):
 @pytest.mark.parametrize("kind, value", [("velocity", "sqrt(1e-8 - t)"), ("displacement", "1e-9*log(1e-8 - t)")])
 def test_expression_that_ceases_to_be_finite_stops_the_run(attempt, kind, value, ranks):
     sets = {"boundary": [{"set": "z+", "component": "z", kind: value}], "output.energy_limit": 1e300}
-    step, _ = stops_as_not_finite(attempt, sets, ranks)
+    step, _ = stops_as_not_finite(attempt, sets, ranks, re.escape(f"boundary[0].{kind}: {value} is not finite at "))
     assert step > 1
 
 
+NOWHERE_FINITE = {
+    "initial.displacement.x: sqrt(z)*1e-9": {"initial": {"displacement": {"x": "sqrt(z)*1e-9"}}},
+    "initial.velocity.y: 1/(x - x)": {"initial": {"velocity": {"y": "1/(x - x)"}}},
+    "boundary[0].velocity: 1/t": {"boundary": [{"set": "z+", "component": "z", "velocity": "1/t"}]},
+    "interface.sets[1].where: log(z)": {"interface.sets": [{"where": 0, "energy": 1}, {"where": "log(z)", "energy": 1}]},
+    "interface.faces: z/0": {"interface.form": "continuous", "interface.faces": "z/0"},
+    "output.region: z/0": {"output.region": "z/0", "output.fields": ["displacement"]},
+    "bodies: velocity.z of wall: 1/t": {"bodies": [{"name": "wall", "shape": "plane", "motion": "prescribed", "at": [0, 0, -1],
+                                                    "normal": [0, 0, 1], "velocity": {"z": "1/t"}}]},
+}
+
+
+@pytest.mark.parametrize("what", NOWHERE_FINITE)
+def test_expression_that_is_not_finite_is_told_once(tmp_path, what):
+    """By one of the ranks, in words that do not depend on their number."""
+    said = []
+    for ranks in (1, 3):
+        sets = {"time.steps": 2, "output.fields": [], **NOWHERE_FINITE[what]}
+        process = launch("run", FRAGMENTS, "-q", "-o", tmp_path / "out", *overrides(sets), ranks=ranks)
+        assert process.returncode == 2
+        said.append([line for line in process.stderr.splitlines() if line.startswith("rhegma: ")])
+    assert said[0] == said[1] and len(said[0]) == 1
+    assert f"{what} is not finite at " in said[0][0]
+
+
 @pytest.mark.parametrize("ranks", [1, 2])
-@pytest.mark.parametrize("kind", ["displacement", "velocity"])
-def test_initial_expression_that_is_not_finite_is_reported(tmp_path, kind, ranks):
-    sets = {**SHORT, "initial": {kind: {"x": "sqrt(z)*1e-9"}}}
-    process = launch("run", FRAGMENTS, "-q", "-o", tmp_path / "out", *overrides(sets), ranks=ranks)
-    assert process.returncode in (1, 2)
-    assert re.search("^rhegma: .*not finite", process.stderr, re.M), process.stderr
+def test_long_paths(tmp_path, ranks):
+    """What the system takes is taken, what it does not is refused once."""
+    sets = {**SHORT, "checkpoint.steps": 20}
+    fits, beyond = ["/".join(["d" * 250] * n) for n in (10, 17)]
+    out = tmp_path / fits
+    assert launch("run", FRAGMENTS, "-q", "-o", out, *overrides(sets), ranks=ranks).returncode == 0
+    assert launch("run", "--restart", out, "-q", *overrides({"time.steps": 60}), ranks=ranks).returncode == 0
+    assert json.loads((out / "summary.json").read_text())["steps"] == 60
+    process = launch("run", FRAGMENTS, "-q", "-o", beyond, *overrides(sets), ranks=ranks, cwd=tmp_path)
+    assert process.returncode == 2 and process.stderr.count("rhegma: ") == 1
+    assert f"{beyond}/energy.csv: the path is too long" in process.stderr
