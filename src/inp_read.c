@@ -389,6 +389,9 @@ static void read_lines(reader *r) {
     }
     while (getline(&line, &size, f) >= 0) {
         r->line++;
+        if (r->line == 1 && strncmp(line, "\xef\xbb\xbf", 3) == 0) { /* how some editors mark UTF-8 */
+            memmove(line, line + 3, strlen(line + 3) + 1);
+        }
         line[strcspn(line, "\r\n")] = '\0';
         bool blank = line[strspn(line, " \t")] == '\0', comment = strncmp(line, "**", 2) == 0;
         if (line[0] == '*' && !comment) {

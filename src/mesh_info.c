@@ -290,10 +290,11 @@ void rg_quality_print(const rg_partition_quality *q, rg_gid interfaces, FILE *ou
     if (q->cost_imbalance < q->imbalance || q->cost_imbalance > q->imbalance) {
         fprintf(out, " (%.3f of the cost)", q->cost_imbalance);
     }
-    fprintf(
-        out,
-        ", %" PRId64 " faces between ranks (%.3g %% of all), neighbours of a rank: at most %d, mean %.3g\n",
-        q->cut_faces, 100 * (double)q->cut_faces / (double)interfaces, q->neighbours_max, q->neighbours_mean);
+    double share = interfaces > 0 ? 100 * (double)q->cut_faces / (double)interfaces : 0;
+    fprintf(out,
+            ", %" PRId64
+            " faces between ranks (%.3g %% of all), neighbours of a rank: at most %d, mean %.3g\n",
+            q->cut_faces, share, q->neighbours_max, q->neighbours_mean);
 }
 
 void rg_mesh_info_partitions(rg_mesh_file *f, FILE *out) {

@@ -224,6 +224,18 @@ def test_what_is_not_a_file_is_not_replaced_by_one(tmp_path):
     assert (tmp_path / "pipe").is_fifo() and len(list(tmp_path.iterdir())) == 1
 
 
+def test_elements_that_share_no_face(tmp_path):
+    """No tile has a neighbour then. The input begins with the mark of UTF-8 and has lines of Windows."""
+    nodes = "\r\n".join(f"{n}, {x + 3 * (n > 4)}, {y}, {z}" for n, (x, y, z) in enumerate(2 * [A, B, C, UP], 1))
+    text = f"*NODE\r\n{nodes}\r\n*ELEMENT, TYPE=C3D4\r\n1, 1, 2, 3, 4\r\n2, 5, 6, 7, 8\r\n"
+    (tmp_path / "two.inp").write_bytes(b"\xef\xbb\xbf" + text.encode())
+    path = tmp_path / "two.h5"
+    assert "the mesh has 2 parts that share no face" in launch("mesh", tmp_path / "two.inp", "-o", path).stderr
+    assert re.search(r"^parts +2 that share no face: 1 1 elements$", launch("mesh", "--info", path).stdout, re.M)
+    process = check(path, tmp_path, ranks=2)
+    assert process.returncode == 0 and "0 faces between ranks (0 % of all)" in process.stdout, process.stderr
+
+
 def test_orientation_of_an_input_is_told_and_does_no_harm(tmp_path):
     source = tmp_path / "turned.inp"
     nodes = "\n".join(f"{n}, {x}, {y}, {z}" for n, (x, y, z) in enumerate(PAIR, 1))
