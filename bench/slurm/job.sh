@@ -19,7 +19,6 @@ shift 2
 program=${RHEGMA:-rhegma}
 launch=${LAUNCH:-mpirun -n ${SLURM_NTASKS:-1}}
 export OMP_NUM_THREADS=${SLURM_CPUS_PER_TASK:-1}
-export PMIX_MCA_gds=hash # mpirun of Open MPI 4.1 else may outlive a killed rank: openpmix#1233
 
 # Go on if there is something to go on from; the first time, and after a loss before the first checkpoint, begin.
 where=(-o "$out")
