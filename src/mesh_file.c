@@ -229,6 +229,9 @@ static void check_format(const rg_mesh_file *f) {
 /* A dataset that is not there, or has another shape, is told here once and not for each tile. */
 static void check_datasets(const rg_mesh_file *f) {
     int64_t vertices = count_rows(f, &rg_rows_vertex);
+    if (f->head.vertices > vertices) { /* before anybody makes room for so many */
+        refuse(f, "vertices", "%" PRId64 ", but the tiles list %" PRId64, f->head.vertices, vertices);
+    }
     for (int k = 0; k < PARTS; k++) {
         char name[80];
         int64_t rows = k == VERTEX_START       ? f->head.tiles + 1
