@@ -1,5 +1,6 @@
 #include "checkpoint.h"
 
+#include <dirent.h>
 #include <errno.h>
 #include <inttypes.h>
 #include <stdio.h>
@@ -444,11 +445,15 @@ void rg_checkpoint_load(rg_checkpoints *k) {
     }
     MPI_Bcast(steps, count, MPI_INT64_T, 0, s->comm);
     if (count == 0) {
-        refuse(s, k->folder, "no checkpoint to restart from");
+        DIR *folder = opendir(k->folder);
+        char what[200];
+        snprintf(what, sizeof what, "no checkpoint to restart from%s%s", folder == NULL ? ": " : "",
+                 folder == NULL ? strerror(errno) : "");
+        refuse(s, k->folder, what);
     }
     int good = load_newest(k, count, steps);
     if (good == count) {
-        refuse(s, k->folder, "no checkpoint to restart from: all are damaged");
+        refuse(s, k->folder, "no checkpoint to restart from: all are damaged or cannot be read");
     }
     for (int i = 0; s->rank == 0 && i < good; i++) {
         char *path = rg_folder_path(k->folder, steps[i]);

@@ -275,6 +275,16 @@ static void prepare(rg_h5_file *f, const char *path, MPI_Comm comm) {
     rg_h5_listen(f->reason);
 }
 
+/* Why the file could not be created, in the system's words, which MPI-IO keeps to itself. */
+static void tell_reason(rg_h5_file *f) {
+    int disk = open(f->part, O_RDWR | O_CREAT, 0666);
+    if (disk < 0) {
+        snprintf(f->reason, sizeof f->reason, "%s", strerror(errno));
+    } else {
+        close(disk);
+    }
+}
+
 void rg_h5_create(rg_h5_file *f, const char *path, hsize_t room, MPI_Comm comm) {
     prepare(f, path, comm);
     f->part = rg_realloc(NULL, strlen(path) + 6, 1);
@@ -287,6 +297,9 @@ void rg_h5_create(rg_h5_file *f, const char *path, hsize_t room, MPI_Comm comm) 
     f->file = access < 0 ? -1 : H5Fcreate(f->part, H5F_ACC_TRUNC, plan, access);
     H5Pclose(plan);
     H5Pclose(access);
+    if (f->file < 0) {
+        tell_reason(f);
+    }
     rg_h5_agree_on(f, f->file >= 0, f->shown, "create the file", f->reason);
     f->disk = open(f->part, O_RDWR);
     rg_h5_agree_on(f, f->disk >= 0, f->shown, "open the file", strerror(errno));

@@ -369,8 +369,12 @@ def test_truncated_checkpoint(victim, size, ranks):
 def test_no_checkpoint(victim, ranks):
     directory, path, good = victim
     path.unlink()
-    assert "checkpoints: no checkpoint to restart from" in refused(directory, ranks)
+    assert "checkpoints: no checkpoint to restart from\n" in refused(directory, ranks)
+    path.parent.rename(directory / "elsewhere")
+    said = refused(directory, ranks)
+    (directory / "elsewhere").rename(path.parent)
     path.write_bytes(good)
+    assert "checkpoints: no checkpoint to restart from: No such file or directory\n" in said
 
 
 @pytest.mark.parametrize("name, words", [("energy.csv", "energy.csv: cannot go on with it: it has 10 bytes"),
