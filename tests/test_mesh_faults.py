@@ -200,6 +200,14 @@ def test_header_and_graph_that_are_not_those_of_the_elements(tmp_path):
         "tile_neighbour: not the neighbours of tile 1, or not as many faces"]
 
 
+def test_header_that_claims_more_than_memory(tmp_path):
+    path = write(tmp_path / "strip.h5", *strip(5))
+    with h5py.File(path, "r+") as file:
+        listed = len(file["vertex"])
+        file.attrs.modify("vertices", np.int64(1 << 40))
+    assert refused(path, tmp_path) == [f"vertices: {1 << 40}, but the tiles list {listed}"]
+
+
 def test_dataset_that_is_not_there(tmp_path):
     path = write(tmp_path / "strip.h5", *strip(5))
     with h5py.File(path, "r+") as file:
