@@ -89,6 +89,7 @@ static rg_bulk_args bulk_args(const job *j) {
                           .cracked = p->cracked,
                           .unlinked = p->unlinked,
                           .history = p->history,
+                          .history_stride = rg_history_block(rg_material_history(j->what->flags.model)),
                           .advance = true,
                           .force = p->force,
                           .traction = p->traction,

@@ -65,7 +65,7 @@ static size_t longest_history(void) {
         int here = rg_material_history(k);
         most = here > most ? here : most;
     }
-    return RG_LANES * rg_history_rows(most);
+    return rg_history_block(most);
 }
 
 static void allocate(bench_problem *p) {
@@ -155,7 +155,8 @@ static rg_material make_material(rg_material_model model) {
 }
 
 bench_problem *bench_problem_make(bench_size size, bool quick) {
-    const rg_interface_material m = {LAMBDA, MU, 4, RG_PENALTY_ELASTIC};
+    const rg_material alumina = make_material(RG_MATERIAL_NEO_HOOKEAN);
+    const rg_interface_material m = {1, &alumina, 4, RG_PENALTY_ELASTIC};
     bench_problem *p = RG_NEW(bench_problem, 1);
     p->density = DENSITY;
     for (rg_material_model k = 0; k < RG_MATERIAL_MODELS; k++) {
@@ -279,7 +280,7 @@ static void crush(bench_problem *p, size_t begin, size_t end) {
 void bench_problem_restore(bench_problem *p, rg_material_model model, bench_state state, size_t begin,
                            size_t end) {
     if (model == RG_MATERIAL_J2) {
-        size_t block = RG_LANES * rg_history_rows(RG_J2_HISTORY);
+        size_t block = rg_history_block(RG_J2_HISTORY);
         memset(p->history + begin * block, 0, (end - begin) * block * sizeof *p->history);
     } else if (state == BENCH_CRUSHED) {
         crush(p, begin, end);

@@ -36,7 +36,7 @@ RG_INLINE void store_traction(vec3 q[4][RG_GAUSS], vec3 Q[4], rg_real *traction)
 enum { HISTORY_ROWS = RG_HISTORY == 0 ? 0 : RG_GAUSS * RG_HISTORY + RG_RELEASED };
 
 RG_INLINE rg_real *history_of(const rg_bulk_args *args, size_t block, int lane) {
-    return HISTORY_ROWS == 0 ? NULL : args->history + block * HISTORY_ROWS * RG_LANES + lane;
+    return HISTORY_ROWS == 0 ? NULL : args->history + block * args->history_stride + lane;
 }
 
 RG_INLINE void load_history(const rg_real *from, int g, rg_vec history[]) {

@@ -38,6 +38,8 @@ typedef struct {
     const uint8_t *cracked;   /* [block]: not 0 where some face of the block has an unlinked point */
     const uint8_t *unlinked;  /* [interface]: bit q set where point q has left the lift */
     rg_real *history;         /* of the material, in/out; NULL if it has none */
+    size_t history_stride;    /* values from one block's history to the next: its own, or more where other
+                                 blocks are of a material with a longer one */
     bool advance;             /* history goes on by the step that ends here; else it stays as it is */
     rg_real *force;           /* out: internal nodal force of the bulk, -dW/du (N) */
     rg_real *traction;        /* out: area-weighted corner tractions area_f P N_outward (N) */

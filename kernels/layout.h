@@ -15,7 +15,8 @@
  *   element geometry                [element block][RG_GEOM][lane]
  *   face traction (area-weighted)   [element][4 faces][3 corners][3]
  *   links                           [element block][4 faces][lane]
- *   history of the material         [element block][4 points x values, RG_RELEASED][lane]
+ *   history of the material         [element block][4 points x values, RG_RELEASED][lane]; blocks as long as
+ *                                   the longest history needs
  *   interface geometry              [interface block][RG_IGEOM][lane]
  *   interface nodal force           [interface block][6 nodes][3][lane]
  *   crack state                     [interface block]: [6 points][RG_CRACK][lane], then
@@ -155,14 +156,18 @@ static inline size_t rg_friction_index(size_t i, int q, int k, size_t stride) {
            i % RG_LANES;
 }
 
-/* Rows of the history of an element with n values per point (none for n = 0), and the index of one of them.
- */
+/* Rows of the history of an element with n values per point (none for n = 0), values of a block of them, and
+ * the index of a row where blocks are `stride` values apart. */
 static inline size_t rg_history_rows(int n) {
     return n == 0 ? 0 : (size_t)(RG_GAUSS * n + RG_RELEASED);
 }
 
-static inline size_t rg_history_index(size_t e, int n, size_t row) {
-    return (e / RG_LANES * rg_history_rows(n) + row) * RG_LANES + e % RG_LANES;
+static inline size_t rg_history_block(int n) {
+    return rg_history_rows(n) * RG_LANES;
+}
+
+static inline size_t rg_history_index(size_t e, size_t stride, size_t row) {
+    return e / RG_LANES * stride + row * RG_LANES + e % RG_LANES;
 }
 
 /* Links are 32-bit numbers with a small code in the low bits.

@@ -48,15 +48,14 @@ typedef enum { RG_MATERIALS(RG_MATERIAL_ENUM) RG_MATERIAL_MODELS } rg_material_m
 #define RG_MATERIAL_BIT(name, NAME, word, history, inside) RG_MATERIAL_BIT_##NAME = 1 << RG_MATERIAL_##NAME,
 enum { RG_MATERIALS(RG_MATERIAL_BIT) };
 
-/* Parameters besides density, elastic constants and those of the ceramic alone: name of the enum, key of a
- * case file, unit, whether it is needed (then > 0, else >= 0, and 0 where it is not given), models that use
- * it. */
+/* Parameters besides density, elastic constants and those of the ceramic alone: name of the enum, key in the
+ * block of a material, unit, whether it is needed (then > 0, else >= 0, and 0 where it is not given), models
+ * that use it. */
 #define RG_MATERIAL_PARAMETERS(X)                                                                            \
-    X(YIELD_STRESS, "material.yield_stress", "Pa", true,                                                     \
-      RG_MATERIAL_BIT_J2 | RG_MATERIAL_BIT_DESHPANDE_EVANS)                                                  \
-    X(HARDENING, "material.hardening", "Pa", false, RG_MATERIAL_BIT_J2)                                      \
-    X(SATURATION_STRESS, "material.saturation_stress", "Pa", false, RG_MATERIAL_BIT_J2)                      \
-    X(SATURATION_RATE, "material.saturation_rate", NULL, false, RG_MATERIAL_BIT_J2)
+    X(YIELD_STRESS, "yield_stress", "Pa", true, RG_MATERIAL_BIT_J2 | RG_MATERIAL_BIT_DESHPANDE_EVANS)        \
+    X(HARDENING, "hardening", "Pa", false, RG_MATERIAL_BIT_J2)                                               \
+    X(SATURATION_STRESS, "saturation_stress", "Pa", false, RG_MATERIAL_BIT_J2)                               \
+    X(SATURATION_RATE, "saturation_rate", NULL, false, RG_MATERIAL_BIT_J2)
 
 #define RG_PARAMETER_ENUM(NAME, key, unit, needed, models) RG_PARAMETER_##NAME,
 enum { RG_MATERIAL_PARAMETERS(RG_PARAMETER_ENUM) RG_PARAMETERS };

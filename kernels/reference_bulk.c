@@ -148,6 +148,11 @@ static rg_reference_law *law_of(const rg_material *m) {
     return laws[m->model];
 }
 
+/* Row `row` of the history of element e. */
+static rg_real *past(const rg_bulk_args *args, size_t e, size_t row) {
+    return &args->history[rg_history_index(e, args->history_stride, row)];
+}
+
 /* The material at point g of element e, at its history. */
 static rg_reference_point material(const rg_bulk_args *args, bool advance, size_t e, int g, double f[3][3],
                                    double p[3][3]) {
@@ -155,18 +160,17 @@ static rg_reference_point material(const rg_bulk_args *args, bool advance, size_
     double history[MOST_HISTORY];
     rg_reference_point point = {0};
     for (int k = 0; k < n; k++)
-        history[k] = args->history[rg_history_index(e, n, (size_t)(g * n + k))];
+        history[k] = *past(args, e, (size_t)(g * n + k));
     law_of (&args->material)(&args->material, advance, f, history, p, &point);
     for (int k = 0; advance && k < n; k++)
-        args->history[rg_history_index(e, n, (size_t)(g * n + k))] = (rg_real)history[k];
+        *past(args, e, (size_t)(g * n + k)) = (rg_real)history[k];
     return point;
 }
 
 static void release(const rg_bulk_args *args, size_t e, double volume, const rg_reference_point *point) {
     int n = rg_material_history(args->material.model);
     for (int k = 0; n > 0 && args->advance && k < RG_RELEASED; k++)
-        args->history[rg_history_index(e, n, (size_t)(RG_GAUSS * n + k))] +=
-            (rg_real)(volume / 4 * point->released[k]);
+        *past(args, e, (size_t)(RG_GAUSS * n + k)) += (rg_real)(volume / 4 * point->released[k]);
 }
 
 static void bulk_element(const rg_bulk_args *args, size_t e) {

@@ -111,16 +111,17 @@ void rg_assembly_spread(rg_assembly *a, uint16_t *mask) {
     rg_free(field);
 }
 
-/* Mass of a copy of a tile, over the density. */
-static double mass_of(const rg_domain *d, size_t tile, int32_t at) {
+/* Mass of a copy of a tile, over the density of the first material. */
+static double mass_of(const rg_domain *d, const rg_material *material, size_t tile, int32_t at) {
     int node = at % RG_NODE_BLOCK / (3 * RG_LANES);
     size_t slot = (d->tile[tile].begin + (size_t)(at / RG_NODE_BLOCK)) * RG_LANES + (size_t)(at % RG_LANES);
-    return rg_mass_entry(true, node, node) * d->geom[rg_geom_index(slot, RG_GEOM_VOLUME)];
+    double density = material[d->material[slot / RG_LANES]].density / material->density;
+    return density * rg_mass_entry(true, node, node) * d->geom[rg_geom_index(slot, RG_GEOM_VOLUME)];
 }
 
 /* The masses of copies over those of their nodes. First the masses are the shares themselves, so that what
  * is summed of ones are the nodes' masses. */
-static void weigh(rg_assembly *a) {
+static void weigh(rg_assembly *a, const rg_material *material) {
     const rg_domain *d = a->domain;
     const rg_assembly_plan *p = a->plan;
     size_t values = d->blocks * RG_NODE_BLOCK;
@@ -132,7 +133,7 @@ static void weigh(rg_assembly *a) {
         for (size_t t = 0; t < d->tiles; t++) {
             for (size_t k = p->first_copy[p->tile[t].first]; k < p->first_copy[p->tile[t].end]; k++) {
                 double all = pass == 0 ? 1 : of_tile(a, t, mass)[p->copy[k]];
-                a->share[k] = mass_of(d, t, p->copy[k]) / all;
+                a->share[k] = mass_of(d, material, t, p->copy[k]) / all;
             }
         }
         if (pass == 0) {
@@ -142,13 +143,14 @@ static void weigh(rg_assembly *a) {
     rg_free(mass);
 }
 
-rg_assembly *rg_assembly_make(const rg_domain *d, const rg_joints *j, MPI_Comm comm) {
+rg_assembly *rg_assembly_make(const rg_domain *d, const rg_joints *j, const rg_material *material,
+                              MPI_Comm comm) {
     rg_assembly *a = RG_NEW(rg_assembly, 1);
     *a = (rg_assembly){.domain = d, .plan = rg_assembly_plan_make(d, j, comm)};
     a->share = RG_NEW(double, a->plan->copies + 1);
     a->rows = RG_NEW(rg_real, 3 * (a->plan->halo.own + a->plan->halo.receives) + 1);
     a->halo = rg_halo_plan_make(&a->plan->halo, 3, a->rows, TAG, comm);
-    weigh(a);
+    weigh(a, material);
     return a;
 }
 

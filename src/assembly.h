@@ -15,12 +15,14 @@
 
 #include "halo.h"
 #include "joint.h"
+#include "materials.h"
 
 typedef struct rg_assembly rg_assembly;
 
-/* For the HRZ mass of the elements (kernels/update.c). Keeps a reference to `d`. Collective; free with
- * rg_assembly_free. */
-rg_assembly *rg_assembly_make(const rg_domain *d, const rg_joints *j, MPI_Comm comm);
+/* For the HRZ mass of the elements (kernels/update.c), of materials material[]. Keeps a reference to `d`.
+ * Collective; free with rg_assembly_free. */
+rg_assembly *rg_assembly_make(const rg_domain *d, const rg_joints *j, const rg_material *material,
+                              MPI_Comm comm);
 
 /* The mean over the copies, in place, of `field` (laid out as the velocity): first for each tile `sum`, which
  * settles the nodes that it alone holds; then the exchange of rows; then for each tile `gather`, for the

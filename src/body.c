@@ -112,8 +112,7 @@ static bool is_outer(const rg_domain *d, size_t slot, int face) {
 
 /* Visits the faces of a tile that may touch a body, in an order that follows from the mesh: counts them and,
  * with room for them, lists them. */
-static size_t list_faces(rg_bodies *b, const uint64_t *sets, size_t tile, double modulus,
-                         rg_contact_face *out) {
+static size_t list_faces(rg_bodies *b, const uint64_t *sets, size_t tile, rg_contact_face *out) {
     const rg_domain *d = b->domain;
     size_t count = 0;
     for (size_t slot = d->tile[tile].begin * RG_LANES; slot < d->tile[tile].end * RG_LANES; slot++) {
@@ -124,6 +123,8 @@ static size_t list_faces(rg_bodies *b, const uint64_t *sets, size_t tile, double
                 continue;
             }
             if (out != NULL) {
+                const rg_material *m = &b->material[d->material[slot / RG_LANES]];
+                double modulus = m->lambda + 2 * m->mu;
                 double kappa = b->body[body].input->penalty * modulus / height_over(d, slot, face);
                 out[count] = (rg_contact_face){.slot = (rg_lid)slot,
                                                .face = (int8_t)face,
@@ -136,17 +137,17 @@ static size_t list_faces(rg_bodies *b, const uint64_t *sets, size_t tile, double
     return count;
 }
 
-static void find_faces(rg_bodies *b, const rg_case *c, const rg_part *part, double modulus) {
+static void find_faces(rg_bodies *b, const rg_case *c, const rg_part *part) {
     uint64_t *sets = RG_NEW(uint64_t, (size_t)b->count);
     for (int i = 0; i < b->count; i++) {
         sets[i] = touching_sets(c, part, i, b->comm);
     }
     for (size_t t = 0; t < b->domain->tiles; t++) {
-        b->tile_begin[t + 1] = b->tile_begin[t] + list_faces(b, sets, t, modulus, NULL);
+        b->tile_begin[t + 1] = b->tile_begin[t] + list_faces(b, sets, t, NULL);
     }
     b->face = RG_NEW(rg_contact_face, b->tile_begin[b->domain->tiles] + 1);
     for (size_t t = 0; t < b->domain->tiles; t++) {
-        list_faces(b, sets, t, modulus, b->face + b->tile_begin[t]);
+        list_faces(b, sets, t, b->face + b->tile_begin[t]);
     }
     rg_free(sets);
 }
@@ -192,8 +193,7 @@ static double element_omega2(const rg_bodies *b) {
     size_t faces = b->tile_begin[b->domain->tiles];
     for (size_t i = 0; i < faces; i++) {
         bool same = i > 0 && b->face[i].slot == b->face[i - 1].slot;
-        double volume = b->domain->geom[rg_geom_index((size_t)b->face[i].slot, RG_GEOM_VOLUME)];
-        sum = (same ? sum : 0) + eigenvalue * b->face[i].stiffness / (b->density * volume);
+        sum = (same ? sum : 0) + eigenvalue * b->face[i].stiffness / rg_contact_mass(b, &b->face[i]);
         largest = fmax(largest, sum);
     }
     return largest;
@@ -287,7 +287,7 @@ rg_bodies *rg_bodies_make(const rg_case *c, const rg_domain *d, const rg_part *p
                      .threads = threads,
                      .comm = comm,
                      .domain = d,
-                     .density = m->density,
+                     .material = m,
                      .request = MPI_REQUEST_NULL};
     b->tile_begin = RG_NEW(size_t, d->tiles + 1);
     if (c->bodies == 0) {
@@ -304,7 +304,7 @@ rg_bodies *rg_bodies_make(const rg_case *c, const rg_domain *d, const rg_part *p
     }
     b->sum = RG_NEW(rg_exact_sum, (size_t)(3 * b->count * threads));
     b->total = RG_NEW(rg_exact_sum, (size_t)(3 * b->count));
-    find_faces(b, c, part, m->lambda + 2 * m->mu);
+    find_faces(b, c, part);
     refuse_overlap(b, c);
     b->omega2 = contact_omega2(b);
     return b;

@@ -61,8 +61,9 @@ typedef struct {
     MPI_Comm comm;
     const rg_domain *domain;
     rg_face_rule rule;
-    double density, inverse_mass[RG_NODES][RG_NODES]; /* of the solid; (M / (rho V))^-1 */
-    size_t *tile_begin;                               /* faces of tile t: from tile_begin[t] on */
+    const rg_material *material;             /* of the solid, by number */
+    double inverse_mass[RG_NODES][RG_NODES]; /* (M / (rho V))^-1 */
+    size_t *tile_begin;                      /* faces of tile t: from tile_begin[t] on */
     rg_contact_face *face;
     double omega2;       /* what contact adds to the largest squared frequency, at most (1/s^2) */
     rg_exact_sum *sum;   /* [threads][count][3] force on each body (N) */
@@ -71,8 +72,8 @@ typedef struct {
 } rg_bodies;
 
 /* The bodies of a case, with the faces of this rank that may touch them. Ends the run with a message if a set
- * is unknown or a body overlaps the solid at the start. Keeps references to `c` and `d`. Collective. Free
- * with rg_bodies_free. */
+ * is unknown or a body overlaps the solid at the start. Keeps references to `c`, `d` and `m`, the materials.
+ * Collective. Free with rg_bodies_free. */
 rg_bodies *rg_bodies_make(const rg_case *c, const rg_domain *d, const rg_part *part, const rg_material *m,
                           int threads, MPI_Comm comm);
 
@@ -82,6 +83,9 @@ typedef struct {
     rg_real *velocity; /* whole fields (layout.h) */
     rg_real *now;      /* or NULL */
 } rg_contact_kick;
+
+/* Mass of the element of face f (kg). */
+double rg_contact_mass(const rg_bodies *b, const rg_contact_face *f);
 
 /* Depth of point x below the surface of a body (m), negative outside; `normal` points out of the body. */
 double rg_body_depth(const rg_body *b, const double x[3], double normal[3]);

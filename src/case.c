@@ -79,6 +79,24 @@ static rg_case *read_text(const char *path, const char *text, size_t size, int o
     return c;
 }
 
+const rg_material_input *rg_case_material(const rg_case *c, int i) {
+    return i == 0 ? &c->material : &c->other[i - 1].is;
+}
+
+const char *rg_case_material_name(const rg_case *c, int i) {
+    const char *name = rg_case_material(c, i)->name;
+    return name != NULL ? name : "material";
+}
+
+int rg_case_find_material(const rg_case *c, const char *name) {
+    for (int i = 0; i <= c->others; i++) {
+        if (strcmp(rg_case_material_name(c, i), name) == 0) {
+            return i;
+        }
+    }
+    return -1;
+}
+
 rg_case *rg_case_read(const char *path, int overrides, const char *const override[], FILE *errors) {
     size_t size = 0;
     char *text = read_file(path, &size);

@@ -38,6 +38,7 @@ enum {
     RG_FIELD_TRIAXIALITY = 512, /* mean over von Mises stress, of the mean Cauchy stress */
     RG_FIELD_RANK = 1024,       /* rank that owns the element, and that speaks for the cracked face */
     RG_FIELD_FRAGMENT = 2048,   /* id of the fragment */
+    RG_FIELD_MATERIAL = 4096,   /* number of the material: 0 that of `material`, then those of `materials` */
     RG_FIELDS_COMMON = 63 | RG_FIELD_FRAGMENT, /* what every run puts out by default */
 };
 
@@ -49,8 +50,30 @@ typedef struct {
 } rg_boundary;
 
 typedef struct {
-    rg_expr *where; /* faces for which this is not 0: by their middle x, y, z (m), unit normal nx, ny, nz */
-    double strength, energy; /* of these (Pa, J/m^2) */
+    rg_material_model model;
+    double young, poisson, density;
+    double parameter[RG_PARAMETERS];    /* materials.h */
+    rg_deshpande_evans deshpande_evans; /* but for poisson, density, yield_stress and single_pi */
+    rg_interaction interaction;         /* c3 of the ceramic: as printed, or as one derives it */
+    char *name;                         /* NULL: "material", of the one without which no case is */
+} rg_material_input;
+
+/* A material besides `material`, and where it is: one of `set` and `where`. */
+typedef struct {
+    rg_material_input is;
+    char *set;      /* volume set of the mesh file */
+    rg_expr *where; /* elements at whose centroid this is not 0 (m) */
+} rg_other_material;
+
+/* Most materials in a case, `material` included. */
+enum { RG_MAX_MATERIALS = 32 };
+
+/* Faces with properties of their own: those that `where` and `between` (NULL: no such condition) select. */
+typedef struct {
+    rg_expr *where; /* not 0: by their middle x, y, z (m), unit normal nx, ny, nz */
+    int names;
+    char **between;          /* names of the materials on both sides */
+    double strength, energy; /* of these (Pa, J/m^2); 0: the interface's */
 } rg_face_set;
 
 typedef struct {
@@ -87,13 +110,9 @@ typedef struct {
         rg_expr *weight;  /* cost of an element at x, y, z over that of others; NULL: all the same */
         double rebalance; /* most over mean work of ranks from which tiles are dealt anew; 0: never */
     } mesh;
-    struct {
-        rg_material_model model;
-        double young, poisson, density;
-        double parameter[RG_PARAMETERS];    /* materials.h */
-        rg_deshpande_evans deshpande_evans; /* but for poisson, density, yield_stress and single_pi */
-        rg_interaction interaction;         /* c3 of the ceramic: as printed, or as one derives it */
-    } material;
+    rg_material_input material; /* of all elements that no other one claims */
+    int others;
+    rg_other_material *other; /* the last one that claims an element has it */
     struct {
         rg_form form;
         rg_expr *faces; /* form continuous: those that carry an interface, as in rg_face_set; NULL: none */
@@ -164,6 +183,13 @@ rg_case *rg_case_read(const char *path, int overrides, const char *const overrid
 /* The same of a case that is in memory: YAML text[0..size), called `name` in messages. */
 rg_case *rg_case_read_text(const char *name, const char *text, size_t size, int overrides,
                            const char *const override[], FILE *errors);
+
+/* Input of material i (0: `material`, then the others), and its name. */
+const rg_material_input *rg_case_material(const rg_case *c, int i);
+const char *rg_case_material_name(const rg_case *c, int i);
+
+/* Number of the material of that name; -1 if there is none. */
+int rg_case_find_material(const rg_case *c, const char *name);
 
 /* Writes the full set of values used, defaults included, as a YAML case file that reads back to the same
  * case. */

@@ -128,6 +128,9 @@ static void check_entry(rg_check *ck, const rg_key *key, const rg_node *list, co
     char *dotted = rg_text_format("%s.", item);
     const rg_node *node = &list->child[i];
     bool good = false;
+    if (key->entry == &rg_material_table) {
+        ck->material = (rg_material_check){.path = dotted, .of = &ck->c->other[i].is, .flaws = true};
+    }
     if (node->kind == RG_NODE_MAPPING) {
         good = check_table(ck, key->entry, node, dotted, entries + (size_t)i * key->entry->size);
     } else {
@@ -139,6 +142,10 @@ static void check_entry(rg_check *ck, const rg_key *key, const rg_node *list, co
         rg_body_rule(ck, list, i, item, good);
     } else if (key->entry == &rg_probe_table) {
         rg_probe_rule(ck, list, i, item, good);
+    } else if (key->entry == &rg_material_table) {
+        rg_material_rule(ck, list, i, item);
+    } else if (key->entry == &rg_face_set_table) {
+        rg_face_set_rule(ck, list, i, item, good);
     }
     rg_free(dotted);
     rg_free(item);
@@ -171,10 +178,10 @@ static const char *why_unused(const scan *s, const rg_key *key, char *text, size
         return text;
     }
     char words[160];
-    const rg_key *model = rg_key_find(s->table, "material.model");
+    const rg_material_check *m = &s->ck->material;
     rg_models_words(key, words, sizeof words);
-    snprintf(text, size, "not used, because material.model is %s; it belongs to %s",
-             model->choice[s->ck->c->material.model], words);
+    snprintf(text, size, "not used, because %smodel is %s; it belongs to %s", m->path,
+             rg_material_word(m->of->model), words);
     return text;
 }
 
@@ -189,10 +196,10 @@ static rg_usage usage_of(const rg_check *ck, const rg_key *key) {
     if (key->models == 0) {
         return ck->usage[key->group];
     }
-    if (!ck->model) {
+    if (!ck->material.model) {
         return RG_UNSURE;
     }
-    return (key->models >> ck->c->material.model & 1U) != 0 ? RG_USED : RG_UNUSED;
+    return (key->models >> ck->material.of->model & 1U) != 0 ? RG_USED : RG_UNUSED;
 }
 
 static bool check_key(const scan *s, const rg_key *key, const rg_node *node, const char *path, void *base) {
@@ -216,26 +223,28 @@ static bool check_key(const scan *s, const rg_key *key, const rg_node *node, con
                                     : rg_value_read(s->ck, key, node, path, base);
 }
 
-/* What the value of a key of the material says about others. */
+/* What the value of a key of a material says about others. */
 static void learn_material(rg_check *ck, const rg_key *key, const rg_node *node, bool good) {
-    size_t at = key->offset;
-    if (at == offsetof(rg_case, material.model)) {
-        ck->model = good;
+    size_t at = key->offset - key->input;
+    rg_material_check *m = &ck->material;
+    if (at == offsetof(rg_material_input, model)) {
+        m->model = good;
+        ck->models = ck->models && good;
         if (good) {
             rg_model_rule(ck, node);
         }
-    } else if (at == offsetof(rg_case, material.parameter[RG_PARAMETER_SATURATION_STRESS])) {
-        ck->saturation = good ? node : NULL;
-        ck->saturates = good;
-    } else if (at == offsetof(rg_case, material.parameter[RG_PARAMETER_SATURATION_RATE]) && good) {
+    } else if (at == offsetof(rg_material_input, parameter[RG_PARAMETER_SATURATION_STRESS])) {
+        m->saturation = good ? node : NULL;
+        m->saturates = good;
+    } else if (at == offsetof(rg_material_input, parameter[RG_PARAMETER_SATURATION_RATE]) && good) {
         rg_saturation_rule(ck, node);
-    } else if (at == offsetof(rg_case, material.deshpande_evans.flaw_density)) {
-        ck->flaws = ck->flaws && good;
-        ck->density = node;
-    } else if (at == offsetof(rg_case, material.deshpande_evans.flaw_radius) ||
-               at == offsetof(rg_case, material.deshpande_evans.alpha)) {
-        ck->flaws = ck->flaws && good;
-    } else if (at == offsetof(rg_case, material.deshpande_evans.damage_max) && ck->flaws && good) {
+    } else if (at == offsetof(rg_material_input, deshpande_evans.flaw_density)) {
+        m->flaws = m->flaws && good;
+        m->density = node;
+    } else if (at == offsetof(rg_material_input, deshpande_evans.flaw_radius) ||
+               at == offsetof(rg_material_input, deshpande_evans.alpha)) {
+        m->flaws = m->flaws && good;
+    } else if (at == offsetof(rg_material_input, deshpande_evans.damage_max) && m->flaws && good) {
         rg_flaw_rule(ck);
     }
 }
@@ -247,8 +256,9 @@ static rg_usage usage_if(bool good, rg_key_group group, const rg_case *c) {
 
 /* What the value of a key of the case says about others. */
 static void learn(rg_check *ck, const rg_key *key, const rg_node *node, bool good) {
-    learn_material(ck, key, node, good);
-    if (key->offset == offsetof(rg_case, interface.form)) {
+    if (key->offset == offsetof(rg_case, material.name) && node != NULL && good) {
+        rg_material_name_rule(ck, node);
+    } else if (key->offset == offsetof(rg_case, interface.form)) {
         ck->form = good;
         ck->usage[RG_GROUP_FACES] = usage_if(good, RG_GROUP_FACES, ck->c);
     } else if (key->offset == offsetof(rg_case, interface.faces)) {
@@ -277,7 +287,7 @@ static void learn(rg_check *ck, const rg_key *key, const rg_node *node, bool goo
         rg_times_rule(ck, node);
     } else if (key->offset == offsetof(rg_case, mesh.size) || key->offset == offsetof(rg_case, mesh.origin)) {
         ck->box = ck->box && good;
-    } else if (key->offset == offsetof(rg_case, output.fields) && good && ck->model) {
+    } else if (key->offset == offsetof(rg_case, output.fields) && good && ck->models) {
         rg_fields_rule(ck, key, node);
     }
 }
@@ -292,7 +302,9 @@ static bool check_table(rg_check *ck, const rg_key_table *table, const rg_node *
         char *name = rg_text_format("%s%s", path, table->key[i].name);
         bool good = check_key(&s, &table->key[i], s.found[i], name, base);
         all = all && good;
-        if (table == &rg_case_table) {
+        if (table->key[i].of_material) {
+            learn_material(ck, &table->key[i], s.found[i], good);
+        } else if (table == &rg_case_table) {
             learn(ck, &table->key[i], s.found[i], good);
         }
         rg_free(name);
@@ -301,7 +313,8 @@ static bool check_table(rg_check *ck, const rg_key_table *table, const rg_node *
 }
 
 void rg_case_check(rg_check *ck, const rg_node *root) {
-    ck->box = ck->flaws = true;
+    ck->box = ck->models = true;
+    ck->material = (rg_material_check){.path = "material.", .of = &ck->c->material, .flaws = true};
     if (root->kind == RG_NODE_MAPPING) {
         check_table(ck, &rg_case_table, root, "", ck->c);
     } else if (root->kind != RG_NODE_BAD) {

@@ -7,17 +7,25 @@
 
 typedef enum { RG_USED, RG_UNUSED, RG_UNSURE /* what decides is itself wrong */ } rg_usage;
 
+/* The block of a material that is being checked. */
+typedef struct {
+    const char *path; /* "material." or that of an entry of materials with a dot behind it */
+    rg_material_input *of;
+    bool model;                /* its model is good */
+    bool flaws;                /* what the initial damage follows from is good */
+    const rg_node *density;    /* its flaw_density; NULL: not there */
+    bool saturates;            /* its saturation_stress is good */
+    const rg_node *saturation; /* its saturation_stress; NULL: not there */
+} rg_material_check;
+
 typedef struct {
     rg_problems *problems;
     rg_case *c;
     rg_usage usage[RG_GROUPS];
-    bool box;                  /* mesh.origin and mesh.size are good */
-    bool form;                 /* interface.form and .faces are good */
-    bool model;                /* material.model is good */
-    bool flaws;                /* what the initial damage follows from is good */
-    const rg_node *density;    /* material.flaw_density; NULL: not there */
-    bool saturates;            /* material.saturation_stress is good */
-    const rg_node *saturation; /* material.saturation_stress; NULL: not there */
+    bool box;    /* mesh.origin and mesh.size are good */
+    bool form;   /* interface.form and .faces are good */
+    bool models; /* those of all materials are good */
+    rg_material_check material;
 } rg_check;
 
 /* Fills ck->c, a zeroed case, from the tree and reports every problem. */
@@ -35,13 +43,15 @@ void rg_value_wrong(rg_check *ck, const rg_key *key, const rg_node *node, const 
  * read. */
 void rg_mesh_file_rule(rg_check *ck, const rg_node *node);
 
-/* Rules of the material (case_material.c): a model that this build does not have; hardening that saturates,
- * which needs a stress, not below the yield stress, and a rate (at `node`); an initial damage that leaves
- * nothing to grow, reported at ck->density; output fields that the model has not, or, without `node`, those
- * that it puts out by default. */
+/* Rules of the materials (case_material.c), but for the last two of the block in ck->material: a model that
+ * this build does not have; hardening that saturates, which needs a stress, not below the yield stress, and a
+ * rate (at `node`); an initial damage that leaves nothing to grow, reported at its flaw_density; what the
+ * name is made of (at `node`); output fields that no material has, or, without `node`, those that they put
+ * out by default. */
 void rg_model_rule(rg_check *ck, const rg_node *node);
 void rg_saturation_rule(rg_check *ck, const rg_node *node);
 void rg_flaw_rule(rg_check *ck);
+void rg_material_name_rule(rg_check *ck, const rg_node *node);
 void rg_fields_rule(rg_check *ck, const rg_key *key, const rg_node *node);
 /* Reports output times after the end of the run. */
 void rg_times_rule(rg_check *ck, const rg_node *node);
@@ -72,6 +82,11 @@ const char *rg_why_unused(rg_key_group group, const rg_case *c);
 void rg_boundary_rule(rg_check *ck, const rg_node *list, int i, const char *path, bool good);
 void rg_body_rule(rg_check *ck, const rg_node *list, int i, const char *path, bool good);
 void rg_probe_rule(rg_check *ck, const rg_node *list, int i, const char *path, bool good);
+void rg_material_rule(rg_check *ck, const rg_node *list, int i, const char *path);
+void rg_face_set_rule(rg_check *ck, const rg_node *list, int i, const char *path, bool good);
+
+/* Letters, digits, _ and - alone. */
+bool rg_is_name(const char *text);
 
 /* Checks the name of a list's entry, which becomes part of column headings: of what letters it is, and that
  * no body or probe before it has it. */

@@ -26,7 +26,6 @@
 #define GROUP(name)    .group = RG_GROUP_##name
 #define ELASTIC        .models = 0 RG_MATERIALS(TAKES_YOUNG)
 #define CERAMIC        .models = RG_MATERIAL_BIT_DESHPANDE_EVANS
-#define FLAWS(member)  CERAMIC, CASE(material.deshpande_evans.member)
 #define MAY_CHANGE     .may_change = true /* on a restart */
 
 #define TAKES_YOUNG(name, NAME, word, history, inside)                                                       \
@@ -53,8 +52,8 @@ static const char *const motions[] = {"free", "prescribed", NULL};
 static const char *const components[] = {"x", "y", "z", NULL};
 static const char *const box_sets[] = {"x-", "x+", "y-", "y+", "z-", "z+", NULL};
 static const char *const fields[] = {
-    "displacement", "velocity",       "stress",      "mean_stress", "principal_stress", "crack", "damage",
-    "regime",       "plastic_strain", "triaxiality", "rank",        "fragment",         NULL};
+    "displacement", "velocity",       "stress",      "mean_stress", "principal_stress", "crack",    "damage",
+    "regime",       "plastic_strain", "triaxiality", "rank",        "fragment",         "material", NULL};
 static const char *const fragments[] = {"each", "last", "none", NULL};
 
 #define INITIAL(name_, unit_, member)                                                                        \
@@ -71,34 +70,12 @@ static const rg_key case_keys[] = {
     {.name = "mesh.weight", .type = RG_KEY_EXPR, OPTIONAL, .no_time = true, MAY_CHANGE, CASE(mesh.weight)},
     {.name = "mesh.rebalance", REAL, FROM(0), DEFAULT(0), MAY_CHANGE, CASE(mesh.rebalance)},
 
-    {.name = "material.model", CHOICE(models), REQUIRED, CASE(material.model)},
-    {.name = "material.young", .unit = "Pa", REAL, ABOVE(0), REQUIRED, ELASTIC, CASE(material.young)},
-    {.name = "material.shear", .unit = "Pa", REAL, ABOVE(0), REQUIRED, FLAWS(shear)},
-    {.name = "material.poisson", REAL, FROM_TO(0, 0.5), .high_open = true, REQUIRED, CASE(material.poisson)},
-    {.name = "material.density", .unit = "kg/m3", REAL, ABOVE(0), REQUIRED, CASE(material.density)},
-    {.name = "material.flaw_radius", .unit = "m", REAL, ABOVE(0), REQUIRED, FLAWS(flaw_radius)},
-    {.name = "material.flaw_density", .unit = "1/m3", REAL, ABOVE(0), REQUIRED, FLAWS(flaw_density)},
-    {.name = "material.alpha", REAL, FROM_TO(0, 1), .low_open = true, DEFAULT(0.70710678118654752), FLAWS(alpha)},
-    {.name = "material.beta", REAL, ABOVE(0), DEFAULT(0.1), FLAWS(beta)},
-    {.name = "material.gamma", REAL, ABOVE(0), DEFAULT(2), FLAWS(gamma)},
-    {.name = "material.friction", REAL, FROM(0), DEFAULT(0.75), FLAWS(friction)},
-    {.name = "material.toughness", .unit = "Pa sqrt(m)", REAL, ABOVE(0), REQUIRED, FLAWS(toughness)},
-    {.name = "material.growth_speed", .unit = "m/s", REAL, ABOVE(0), DEFAULT(100e-6), FLAWS(growth_speed)},
-    {.name = "material.growth_exponent", REAL, ABOVE(0), DEFAULT(10), FLAWS(growth_exponent)},
-    {.name = "material.interaction", CHOICE(interactions), DEFAULT(RG_INTERACTION_THESIS), CERAMIC,
-     CASE(material.interaction)},
-    {.name = "material.damage_max", REAL, FROM_TO(0, 1), .low_open = true, .high_open = true, DEFAULT(0.999),
-     FLAWS(damage_max)},
-#define PARAMETER(NAME, key, unit_, needed, models_)                                                          \
-    {.name = (key), .unit = (unit_), REAL, .low = 0, .low_open = (needed), .high = INFINITY,                  \
-     .need = (needed) ? RG_NEED_REQUIRED : RG_NEED_OPTIONAL, .models = (models_),                             \
-     CASE(material.parameter[RG_PARAMETER_##NAME])},
-    RG_MATERIAL_PARAMETERS(PARAMETER)
-    {.name = "material.yield_strain", REAL, ABOVE(0), DEFAULT(0.002), FLAWS(yield_strain)},
-    {.name = "material.hardening_exponent", REAL, FROM_TO(0, 1), DEFAULT(0.1), FLAWS(hardening_exponent)},
-    {.name = "material.plastic_rate", .unit = "1/s", REAL, ABOVE(0), DEFAULT(0.002), FLAWS(plastic_rate)},
-    {.name = "material.transition_rate", .unit = "1/s", REAL, ABOVE(0), DEFAULT(1e6), FLAWS(transition_rate)},
-    {.name = "material.rate_exponent", REAL, FROM(1), DEFAULT(10), FLAWS(rate_exponent)},
+    {.name = "material.name", .type = RG_KEY_TEXT, OPTIONAL, CASE(material.name)},
+#define KEY(word) "material." word
+#define INPUT     offsetof(rg_case, material)
+#include "case_material_keys.h"
+    {.name = "materials", .type = RG_KEY_LIST, OPTIONAL, CASE(other), .entry = &rg_material_table,
+     .offset_count = offsetof(rg_case, others)},
 
     {.name = "interface.form", CHOICE(forms), DEFAULT(RG_FORM_VARIATIONAL), CASE(interface.form)},
     {.name = "interface.faces", .type = RG_KEY_EXPR, OPTIONAL, .no_time = true, .normal = true, GROUP(FACES),
@@ -178,10 +155,21 @@ static const rg_key case_keys[] = {
 };
 
 static const rg_key face_set_keys[] = {
-    {.name = "where", .type = RG_KEY_EXPR, REQUIRED, .no_time = true, .normal = true,
+    {.name = "where", .type = RG_KEY_EXPR, OPTIONAL, .no_time = true, .normal = true,
      .offset = offsetof(rg_face_set, where)},
+    {.name = "between", .type = RG_KEY_TEXTS, OPTIONAL, .offset = offsetof(rg_face_set, between),
+     .offset_count = offsetof(rg_face_set, names)},
     {.name = "strength", .unit = "Pa", REAL, ABOVE(0), OPTIONAL, .offset = offsetof(rg_face_set, strength)},
     {.name = "energy", .unit = "J/m2", REAL, ABOVE(0), OPTIONAL, .offset = offsetof(rg_face_set, energy)},
+};
+
+static const rg_key other_material_keys[] = {
+    {.name = "name", .type = RG_KEY_TEXT, REQUIRED, .offset = offsetof(rg_other_material, is.name)},
+    {.name = "set", .type = RG_KEY_TEXT, OPTIONAL, .offset = offsetof(rg_other_material, set)},
+    {.name = "where", .type = RG_KEY_EXPR, OPTIONAL, .no_time = true, .offset = offsetof(rg_other_material, where)},
+#define KEY(word) word
+#define INPUT     offsetof(rg_other_material, is)
+#include "case_material_keys.h"
 };
 
 static const rg_key boundary_keys[] = {
@@ -225,6 +213,7 @@ static const rg_key probe_keys[] = {
     { .key = (list), .keys = sizeof(list) / sizeof(list)[0], .size = sizeof(type) }
 
 const rg_key_table rg_case_table = TABLE(case_keys, rg_case);
+const rg_key_table rg_material_table = TABLE(other_material_keys, rg_other_material);
 const rg_key_table rg_face_set_table = TABLE(face_set_keys, rg_face_set);
 const rg_key_table rg_boundary_table = TABLE(boundary_keys, rg_boundary);
 const rg_key_table rg_body_table = TABLE(body_keys, rg_body_input);
@@ -264,6 +253,10 @@ static int list_words(const rg_key_table *entry, char *text, size_t size) {
     int used = snprintf(text, size, "list of {");
     for (int i = 0; i < entry->keys && (size_t)used < size; i++) {
         const char *join = i == 0 ? "" : entry->key[i].group == RG_GROUP_DISPLACEMENT ? " or " : ", ";
+        if (entry->key[i].of_material) {
+            used += snprintf(text + used, size - (size_t)used, "%sand the keys of material", join);
+            break;
+        }
         used += snprintf(text + used, size - (size_t)used, "%s%s", join, entry->key[i].name);
     }
     return used + ((size_t)used < size ? snprintf(text + used, size - (size_t)used, "}") : 0);
@@ -281,7 +274,7 @@ static int type_words(const rg_key *key, char *text, size_t size) {
     case RG_KEY_TEXT:
         return key->choice != NULL ? choice_words(key, text, size) : snprintf(text, size, "text");
     case RG_KEY_TEXTS:
-        return choice_words(key, text, size);
+        return key->choice != NULL ? choice_words(key, text, size) : snprintf(text, size, "list of texts");
     case RG_KEY_EXPR:
         return snprintf(text, size, "number or expression in %s%s%s", key->no_place ? "" : "x, y, z",
                         key->no_time    ? ""
@@ -341,8 +334,12 @@ bool rg_group_used(rg_key_group group, const rg_case *c) {
     }
 }
 
+const rg_material_input *rg_key_material(const rg_key *key, const void *base) {
+    return (const rg_material_input *)(const void *)((const char *)base + key->input);
+}
+
 bool rg_key_used(const rg_key *key, const void *base) {
-    if (key->models != 0 && (key->models >> ((const rg_case *)base)->material.model & 1U) == 0) {
+    if (key->models != 0 && (key->models >> rg_key_material(key, base)->model & 1U) == 0) {
         return false;
     }
     switch (key->group) {

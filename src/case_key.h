@@ -61,6 +61,8 @@ typedef struct {
     rg_key_type type;
     rg_key_need need;
     rg_key_group group;
+    bool of_material;          /* in the block of a material */
+    size_t input;              /* of one that is: offset of its rg_material_input in the structure */
     unsigned models;           /* materials.h: bits of the models that use it; 0: all */
     int count;                 /* numbers: 1 or 3 */
     double low, high;          /* numbers: range */
@@ -85,13 +87,17 @@ typedef struct rg_key_table {
 enum { RG_MAX_KEYS = 128 }; /* at most, in a table */
 
 /* A key comes after the keys that decide whether its group is used. */
-extern const rg_key_table rg_case_table, rg_boundary_table, rg_body_table, rg_probe_table, rg_face_set_table;
+extern const rg_key_table rg_case_table, rg_material_table, rg_boundary_table, rg_body_table, rg_probe_table,
+    rg_face_set_table;
 
 /* What a value of the key must be, in words. Returns `text`. */
 const char *rg_key_allowed(const rg_key *key, char *text, size_t size);
 
 /* The models that use the key, in words. */
 void rg_models_words(const rg_key *key, char *text, size_t size);
+
+/* The material in the structure `base` whose block has the key. */
+const rg_material_input *rg_key_material(const rg_key *key, const void *base);
 
 /* Whether the key is used in the filled structure `base`. */
 bool rg_key_used(const rg_key *key, const void *base);

@@ -286,12 +286,16 @@ static bool is_taken(const rg_case *c, const char *name) {
     return false;
 }
 
-void rg_name_rule(rg_check *ck, const rg_node *item, const char *path, const char *name) {
+bool rg_is_name(const char *text) {
     static const char allowed[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
+    return strspn(text, allowed) == strlen(text);
+}
+
+void rg_name_rule(rg_check *ck, const rg_node *item, const char *path, const char *name) {
     const rg_node *node = rg_node_find(item, "name", strlen("name"));
-    const char *wrong = strspn(name, allowed) != strlen(name) ? "not a name"
-                        : is_taken(ck->c, name)               ? "the name of an earlier body or probe"
-                                                              : NULL;
+    const char *wrong = !rg_is_name(name)       ? "not a name"
+                        : is_taken(ck->c, name) ? "the name of an earlier body or probe"
+                                                : NULL;
     if (wrong != NULL && node != NULL) {
         char *key = rg_text_format("%s.name", path);
         rg_subject subject = {.key = key,

@@ -170,7 +170,8 @@ static void add_entry(rg_constraints *k, size_t slot, int c, unsigned mask, cons
     }
     entry *e = &k->entry[k->entries++];
     *e = (entry){.slot = (rg_lid)slot, .component = (int8_t)c, .pattern = pattern_of(k, mask)};
-    e->mass = k->input->material.density * k->domain->geom[rg_geom_index(slot, RG_GEOM_VOLUME)];
+    e->mass = rg_case_material(k->input, k->domain->material[slot / RG_LANES])->density *
+              k->domain->geom[rg_geom_index(slot, RG_GEOM_VOLUME)];
     for (int i = 0; i < e->pattern->constrained; i++) {
         e->boundary[i] = which[e->pattern->node[i]];
         e->varies = e->varies || boundary_varies(&k->input->boundary[e->boundary[i]]);
@@ -259,7 +260,8 @@ void rg_constraints_start(rg_constraints *k, const rg_real *u, const rg_real *ve
             if (!isfinite(first)) {
                 note(k, e, i, 0);
             }
-            jumps += placed && fabs(first - u[at]) > JUMP * cbrt(e->mass / k->input->material.density);
+            double volume = k->domain->geom[rg_geom_index((size_t)e->slot, RG_GEOM_VOLUME)];
+            jumps += placed && fabs(first - u[at]) > JUMP * cbrt(volume);
         }
     }
     char words[400];

@@ -2,7 +2,8 @@
  * links and geometry. Knows the mesh, no physics and no messages.
  *
  * Tiles are the mesh's; those that touch another rank come first. Each has its elements, the interfaces
- * inside it and its seams, padded to whole blocks. A seam has a row by which the other side finds its trace
+ * inside it and its seams, padded to whole blocks. Its elements lie by material, each of them padded, and of
+ * each by number: every block is of one material. A seam has a row by which the other side finds its trace
  * and its tractions; the rows of other ranks' seams come behind the own ones, in the order in which they
  * arrive. */
 #ifndef RG_DOMAIN_H
@@ -36,6 +37,8 @@ typedef struct {
     rg_gid *id;           /* [slots]: global element number; -1 in padding */
     double *corner;       /* [slots][4][3]: m */
     int8_t *set;          /* [slots][4]: surface set, -1 for none */
+    uint8_t *material;    /* [blocks]: number of its material */
+    uint16_t *place;      /* [tiles][tile_elements]: slot in its tile, by number in it; NULL: the number */
     rg_real *geom;        /* kernels/layout.h */
     int32_t *neighbour;   /* links */
     int32_t *interface;   /* links */
@@ -46,15 +49,18 @@ typedef struct {
 
     int32_t *side[2]; /* links of the interfaces */
     rg_real *igeom;
+    uint8_t (*beside)[2]; /* [interface]: materials of both sides, the lower first; NULL: there is but one */
     uint8_t *counted; /* [interface]: 1 where this copy speaks for the face (owns the lower-numbered side) */
     size_t own_rows;  /* of the seams, padding included; `shared` more come behind */
     size_t shared;
     rg_shared_face *shared_face; /* sorted by rank, tiles and key: the order in which rows are exchanged */
 } rg_domain;
 
-/* Material and penalty that enter the interface geometry. */
+/* Materials and penalty that enter the interface geometry. */
 typedef struct {
-    double lambda, mu, beta_s;
+    int materials;
+    const rg_material *material; /* [materials] */
+    double beta_s;
     rg_penalty penalty;
 } rg_interface_material;
 
@@ -65,8 +71,23 @@ rg_domain *rg_domain_build(const rg_part *part, const uint8_t *joined, int rank,
                            const rg_interface_material *m);
 
 /* Tile that holds an element slot. */
-static inline const rg_tile *rg_tile_of(const rg_domain *d, size_t slot) {
-    return &d->tile[slot / RG_LANES / d->tile_blocks];
+const rg_tile *rg_tile_of(const rg_domain *d, size_t slot);
+
+/* Slot, in its tile t, of element `id`. */
+static inline size_t rg_slot_in(const rg_domain *d, const rg_tile *t, rg_gid id) {
+    size_t number = (size_t)(id - t->first);
+    return d->place == NULL ? number : d->place[(size_t)(t - d->tile) * (size_t)d->tile_elements + number];
+}
+
+/* Where the blocks of tile t that are of one material with its block `begin` end; both count from the tile's
+ * first block. */
+static inline size_t rg_run_end(const rg_domain *d, const rg_tile *t, size_t begin) {
+    const uint8_t *of = d->material + t->begin;
+    size_t end = begin + 1;
+    while (end < t->end - t->begin && of[end] == of[begin]) {
+        end++;
+    }
+    return end;
 }
 
 /* The area vector of an interface (m^2), and its length. */

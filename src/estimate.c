@@ -14,11 +14,15 @@
 
 /* Length of the cohesive zone of mode I, plane strain: (9 pi/32) E/(1 - nu^2) G_c/sigma_c^2 (thesis 2; Rice
  * 1968). */
-static double cohesive_zone(const rg_case *c, const rg_material *m) {
+static double cohesive_zone(const rg_case *c, const rg_solver *s) {
     if (c->interface.law == RG_LAW_NONE) {
         return INFINITY;
     }
-    double modulus = 4 * m->mu * (m->lambda + m->mu) / (m->lambda + 2 * m->mu); /* E/(1 - nu^2) */
+    double modulus = INFINITY; /* E/(1 - nu^2) of the softest material, in which it is shortest */
+    for (int i = 0; i < s->materials; i++) {
+        const rg_material *m = &s->material[i];
+        modulus = fmin(modulus, 4 * m->mu * (m->lambda + m->mu) / (m->lambda + 2 * m->mu));
+    }
     return 9 * 3.14159265358979324 / 32 * modulus * c->interface.energy /
            (c->interface.strength * c->interface.strength);
 }
@@ -69,15 +73,12 @@ static void count_all(const rg_solver *s, int64_t count[2]) {
 
 rg_estimate rg_estimate_run(const rg_solver *s) {
     const rg_case *c = s->input;
-    const rg_material *m = &s->material;
     double xi = s->damping * c->viscosity.linear; /* of the stiffest mode, by bulk viscosity */
     int64_t count[2];
     count_all(s, count);
     rg_estimate e = {.elements = s->part->total,
                      .interfaces = count[0],
                      .dofs = 3 * count[1],
-                     .c_dilatational = rg_material_dilatational(m),
-                     .c_shear = rg_material_shear(m),
                      .dt_critical = 2 / sqrt(s->omega2) * (sqrt(1 + xi * xi) - xi)};
     e.dt = c->time.safety * e.dt_critical;
     double steps = ceil(c->time.end / e.dt * (1 - 1e-12));
@@ -93,9 +94,22 @@ rg_estimate rg_estimate_run(const rg_solver *s) {
     e.bytes_per_element = bytes_per_element(s, false);
     e.peak_bytes_per_element = bytes_per_element(s, true);
     e.seconds = 1.3 * s->pass_seconds * (double)e.steps; /* a step is a pass, the update and some output */
-    e.cohesive_zone = cohesive_zone(c, m);
+    e.cohesive_zone = cohesive_zone(c, s);
     e.largest_edge = largest_edge(s);
     return e;
+}
+
+static void print_material(const rg_solver *s, int i, FILE *out) {
+    const rg_material *m = &s->material[i];
+    double limit, speed;
+    fprintf(out, "material       %s%s%s%s\n", s->materials > 1 ? rg_case_material_name(s->input, i) : "",
+            s->materials > 1 ? ": " : "", rg_material_word(m->model),
+            m->model == RG_MATERIAL_LINEAR_ELASTIC ? ": for small strains and rotations alone" : "");
+    fprintf(out, "wave speeds    dilatational %.1f m/s, shear %.1f m/s\n", rg_material_dilatational(m),
+            rg_material_shear(m));
+    if (rg_material_plastic_wave(m, &limit, &speed)) {
+        fprintf(out, "plastic waves  %.1f m/s, beyond %.4g Pa in uniaxial strain\n", speed, limit);
+    }
 }
 
 void rg_estimate_print(const rg_solver *s, const rg_estimate *e, FILE *out) {
@@ -106,12 +120,8 @@ void rg_estimate_print(const rg_solver *s, const rg_estimate *e, FILE *out) {
         fprintf(out, "partition      ");
         rg_quality_print(&s->part->quality, s->part->interfaces, out);
     }
-    fprintf(out, "material       %s%s\n", rg_material_word(s->material.model),
-            s->material.model == RG_MATERIAL_LINEAR_ELASTIC ? ": for small strains and rotations alone" : "");
-    fprintf(out, "wave speeds    dilatational %.1f m/s, shear %.1f m/s\n", e->c_dilatational, e->c_shear);
-    double limit, speed;
-    if (rg_material_plastic_wave(&s->material, &limit, &speed)) {
-        fprintf(out, "plastic waves  %.1f m/s, beyond %.4g Pa in uniaxial strain\n", speed, limit);
+    for (int i = 0; i < s->materials; i++) {
+        print_material(s, i, out);
     }
     fprintf(out,
             "time step      %.4g s = %.3g of the critical %.4g s, set by element %" PRId64

@@ -9,8 +9,7 @@
 
 typedef struct {
     int64_t elements, interfaces, dofs;
-    double c_dilatational, c_shear; /* wave speeds (m/s) */
-    double dt_critical, dt;         /* 2/omega, and times safety (s) */
+    double dt_critical, dt; /* 2/omega, and times safety (s) */
     int64_t steps;
     double bytes_per_element, peak_bytes_per_element; /* fields; and with output and cracks everywhere */
     double seconds;       /* estimate for the time loop on these ranks and threads */

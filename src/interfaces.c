@@ -55,19 +55,28 @@ static bool is_minus(const rg_element *e, int f, double edge[2][3], double *area
 }
 
 /* Edges and penalties of interface i, from the corners of an element at its face f: both sides see the same
- * corners in the same order, so they get the same bits. Returns whether the element is on the minus side. */
+ * corners in the same order, so they get the same bits. The penalty takes the mean of both sides' moduli over
+ * the smaller height, which is no less than the mean of each side's over its own. Returns whether the element
+ * is on the minus side. */
 static bool set_geometry(const builder *b, size_t i, const rg_element *e, int f) {
     const rg_interface_material *m = b->material;
     double edge[2][3], area;
     bool minus = is_minus(e, f, edge, &area);
     double h = 3 * fmin(e->volume, e->other_volume[f]) / area;
-    double normal = m->lambda + 2 * m->mu, shear = m->penalty == RG_PENALTY_ELASTIC ? m->mu : normal;
+    const rg_material *own = &m->material[e->material], *other = &m->material[e->beside[f]];
+    double lambda = 0.5 * (own->lambda + other->lambda), mu = 0.5 * (own->mu + other->mu);
+    double normal = lambda + 2 * mu, shear = m->penalty == RG_PENALTY_ELASTIC ? mu : normal;
     rg_real *g = b->domain->igeom;
     for (int k = 0; k < 6; k++) {
         g[rg_igeom_index(i, RG_IGEOM_EDGE + k)] = (rg_real)edge[k / 3][k % 3];
     }
     g[rg_igeom_index(i, RG_IGEOM_PEN_ISO)] = (rg_real)(m->beta_s / h * shear * area);
     g[rg_igeom_index(i, RG_IGEOM_PEN_NORM)] = (rg_real)(m->beta_s / h * (normal - shear) / area);
+    if (b->domain->beside != NULL) {
+        bool ordered = e->material < e->beside[f];
+        b->domain->beside[i][0] = ordered ? e->material : e->beside[f];
+        b->domain->beside[i][1] = ordered ? e->beside[f] : e->material;
+    }
     return minus;
 }
 
@@ -101,8 +110,9 @@ static void place_tiles(builder *b) {
     }
 }
 
-static void allocate(rg_domain *d) {
+static void allocate(rg_domain *d, bool mixed) {
     size_t slots = d->iblocks * RG_LANES;
+    d->beside = mixed ? rg_alloc(slots, sizeof *d->beside) : NULL;
     for (int k = 0; k < 2; k++) {
         d->side[k] = RG_NEW(int32_t, slots);
     }
@@ -115,15 +125,16 @@ static void add_inside(const builder *b, size_t t, size_t i, int f, size_t at) {
     rg_domain *d = b->domain;
     const rg_tile *tile = &d->tile[t];
     const rg_element *e = &b->element[t][i];
-    size_t first = tile->begin * RG_LANES, other = (size_t)(e->neighbour[f] - tile->first);
+    size_t first = tile->begin * RG_LANES, own = rg_slot_in(d, tile, e->id);
+    size_t other = rg_slot_in(d, tile, e->neighbour[f]);
     int plus = !set_geometry(b, at, e, f), face = e->face[f];
     size_t number = at - tile->ibegin * RG_LANES;
-    d->side[plus][at] = rg_side_link(i, f);
+    d->side[plus][at] = rg_side_link(own, f);
     d->side[!plus][at] = rg_side_link(other, face);
     d->counted[at] = 1;
-    d->neighbour[rg_link_index(first + i, f)] = rg_neighbour_link(other, face);
-    d->neighbour[rg_link_index(first + other, face)] = rg_neighbour_link(i, f);
-    d->interface[rg_link_index(first + i, f)] = rg_link(number, plus, 4);
+    d->neighbour[rg_link_index(first + own, f)] = rg_neighbour_link(other, face);
+    d->neighbour[rg_link_index(first + other, face)] = rg_neighbour_link(own, f);
+    d->interface[rg_link_index(first + own, f)] = rg_link(number, plus, 4);
     d->interface[rg_link_index(first + other, face)] = rg_link(number, !plus, 4);
 }
 
@@ -132,9 +143,9 @@ static void add_seam(const builder *b, size_t t, size_t i, int f, size_t at) {
     rg_domain *d = b->domain;
     const rg_tile *tile = &d->tile[t];
     const rg_element *e = &b->element[t][i];
-    size_t slot = tile->begin * RG_LANES + i;
+    size_t own = rg_slot_in(d, tile, e->id), slot = tile->begin * RG_LANES + own;
     int plus = !set_geometry(b, at, e, f);
-    d->side[0][at] = rg_side_link(i, f);
+    d->side[0][at] = rg_side_link(own, f);
     d->side[1][at] = plus;
     d->counted[at] = e->id < e->neighbour[f];
     d->neighbour[rg_link_index(slot, f)] = rg_neighbour_link(at - tile->sbegin * RG_LANES, RG_GHOST);
@@ -210,12 +221,14 @@ static size_t row_of(const rg_tile *tile, size_t i) {
 
 /* Row of the seam at face f of element e, in an own tile. */
 static size_t find_row(const rg_domain *d, const rg_tile *tile, rg_gid e, int f) {
-    size_t slot = tile->begin * RG_LANES + (size_t)(e - tile->first);
+    size_t slot = tile->begin * RG_LANES + rg_slot_in(d, tile, e);
     return tile->row + (size_t)d->neighbour[rg_link_index(slot, f)] / 8;
 }
 
 static const rg_element *seam_element(const builder *b, size_t t, size_t i) {
-    return &b->element[t][b->domain->side[0][i] / RG_FACES];
+    const rg_tile *tile = &b->domain->tile[t];
+    rg_gid id = b->domain->id[tile->begin * RG_LANES + (size_t)b->domain->side[0][i] / RG_FACES];
+    return &b->element[t][id - tile->first];
 }
 
 static void join_tile(const builder *b, size_t t, const rg_gid_map *number) {
@@ -319,7 +332,7 @@ void rg_interfaces_build(rg_domain *d, const rg_element *const element[], const 
         count(&b, t);
     }
     place_tiles(&b);
-    allocate(d);
+    allocate(d, m->materials > 1);
     fill_tiles(&b);
     join_own(&b);
     join_shared(&b);

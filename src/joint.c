@@ -76,7 +76,7 @@ typedef struct {
 
 static rg_lid slot_of(const builder *b, rg_gid id) {
     const rg_tile *t = &b->d->tile[rg_gid_map_get(&b->tile, id / b->d->tile_elements)];
-    return (rg_lid)(t->begin * RG_LANES) + (rg_lid)(id - t->first);
+    return (rg_lid)(t->begin * RG_LANES + rg_slot_in(b->d, t, id));
 }
 
 /* Visits the joints of element i: counts them and, with room for them, lists them. */

@@ -36,8 +36,7 @@ static void add_all(rg_exact_sum *sum, const double *x, size_t count) {
  * nodes. */
 static void add_momentum(rg_exact_sum *sum, const rg_solver *s, size_t slot) {
     double mv[RG_NODES][3], p[3] = {0, 0, 0}, l[3] = {0, 0, 0};
-    double mass = s->material.density * s->domain->geom[rg_geom_index(slot, RG_GEOM_VOLUME)];
-    rg_mass_times(s->lumped, mass, s->now, slot, mv);
+    rg_mass_times(s->lumped, rg_element_mass(s, slot), s->now, slot, mv);
     for (int n = 0; n < RG_NODES; n++) {
         double x[3];
         rg_node_position(s->domain->corner + 12 * slot, n, x);
@@ -56,23 +55,35 @@ static void add_momentum(rg_exact_sum *sum, const rg_solver *s, size_t slot) {
     }
 }
 
+static void add_released(rg_exact_sum *sum, const rg_solver *s, size_t slot) {
+    int history = rg_material_history(rg_material_of(s, slot)->model);
+    for (size_t k = 0; history > 0 && k < RG_RELEASED; k++) {
+        rg_exact_add(&sum[RELEASED + k], rg_history_value(s, slot, (size_t)(RG_GAUSS * history) + k));
+    }
+}
+
+static void kinetic_energies(const rg_solver *s, const rg_tile *t, double *energy) {
+    rg_kinetic_args kinetic = {.lumped = s->lumped,
+                               .geom = s->domain->geom + t->begin * RG_GEOM_BLOCK,
+                               .velocity = s->now + t->begin * RG_NODE_BLOCK};
+    for (size_t begin = 0, end; begin < rg_tile_eblocks(t); begin = end) {
+        end = rg_run_end(s->domain, t, begin);
+        kinetic.density = rg_block_material(s, t, begin)->density;
+        kinetic.energy = energy + begin * RG_LANES;
+        s->kernels->kinetic(&kinetic, begin, end);
+    }
+}
+
 static void element_energies(rg_solver *s, const rg_tile *t, const rg_workspace *w, double *energy,
                              rg_exact_sum sum[SUMS]) {
     size_t blocks = rg_tile_eblocks(t);
-    rg_bulk_args bulk = rg_tile_bulk(s, t, w);
-    rg_bulk_state_args state = {.bulk = &bulk, .energy = energy};
-    s->kernels->bulk_state(&state, 0, blocks);
+    rg_tile_state(s, t, w, energy, NULL, NULL);
     add_all(&sum[BULK], energy, blocks * RG_LANES);
-    rg_kinetic_args kinetic = {s->material.density, s->lumped, s->domain->geom + t->begin * RG_GEOM_BLOCK,
-                               s->now + t->begin * RG_NODE_BLOCK, energy};
-    s->kernels->kinetic(&kinetic, 0, blocks);
+    kinetic_energies(s, t, energy);
     add_all(&sum[KINETIC], energy, blocks * RG_LANES);
     for (size_t slot = t->begin * RG_LANES; slot < t->end * RG_LANES; slot++) {
         if (s->domain->id[slot] >= 0) {
-            for (size_t k = 0; s->histories > 0 && k < RG_RELEASED; k++) {
-                size_t row = (size_t)(RG_GAUSS * s->histories) + k;
-                rg_exact_add(&sum[RELEASED + k], s->history[rg_history_index(slot, s->histories, row)]);
-            }
+            add_released(sum, s, slot);
             if (s->heat != NULL) {
                 rg_exact_add(&sum[VISCOUS], s->heat[slot]);
             }
@@ -187,7 +198,11 @@ const rg_energy *rg_ledger_take(rg_ledger *l, rg_solver *s) {
     if (!l->begun) {
         *l = (rg_ledger){.begun = true, .start = e->total, .last = *e};
     }
-    l->largest = fmax(fmax(l->largest, fabs(stored)), 1e3 * DBL_EPSILON * s->material.mu * v[VOLUME]);
+    double mu = 0;
+    for (int m = 0; m < s->materials; m++) {
+        mu = fmax(mu, s->material[m].mu);
+    }
+    l->largest = fmax(fmax(l->largest, fabs(stored)), 1e3 * DBL_EPSILON * mu * v[VOLUME]);
     e->error = e->total == l->start ? 0 : (e->total - l->start) / l->largest;
     l->worst = isnan(e->error) ? INFINITY : fmax(l->worst, fabs(e->error));
     return e;

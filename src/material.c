@@ -3,32 +3,42 @@
 #include <math.h>
 #include <string.h>
 
+#include "mem.h"
+
 static void set_young(rg_material *m, double young, double nu) {
     m->lambda = young * nu / ((1 + nu) * (1 - 2 * nu));
     m->mu = young / (2 * (1 + nu));
 }
 
-static void set_ceramic(rg_material *m, const rg_case *c) {
+static void set_ceramic(rg_material *m, const rg_material_input *in) {
     rg_deshpande_evans *p = &m->of.deshpande_evans.parameters;
-    *p = c->material.deshpande_evans;
-    p->poisson = c->material.poisson;
-    p->density = c->material.density;
-    p->yield_stress = c->material.parameter[RG_PARAMETER_YIELD_STRESS];
-    p->single_pi = c->material.interaction == RG_INTERACTION_DERIVED;
+    *p = in->deshpande_evans;
+    p->poisson = in->poisson;
+    p->density = in->density;
+    p->yield_stress = in->parameter[RG_PARAMETER_YIELD_STRESS];
+    p->single_pi = in->interaction == RG_INTERACTION_DERIVED;
     m->mu = p->shear;
     m->lambda = 2 * p->shear * p->poisson / (1 - 2 * p->poisson);
 }
 
-rg_material rg_material_of_case(const rg_case *c) {
-    rg_material m = {.model = c->material.model, .density = c->material.density};
+rg_material rg_material_make(const rg_material_input *in) {
+    rg_material m = {.model = in->model, .density = in->density};
     if ((rg_material_inside(m.model) & RG_TAKES_YOUNG) != 0) {
-        set_young(&m, c->material.young, c->material.poisson);
-        memcpy(m.of.parameter, c->material.parameter, sizeof m.of.parameter);
+        set_young(&m, in->young, in->poisson);
+        memcpy(m.of.parameter, in->parameter, sizeof m.of.parameter);
     } else {
-        set_ceramic(&m, c);
+        set_ceramic(&m, in);
     }
     rg_material_prepare(&m, 1); /* no step has been taken; at rest its size does not matter */
     return m;
+}
+
+rg_material *rg_materials_of_case(const rg_case *c) {
+    rg_material *all = RG_NEW(rg_material, (size_t)c->others + 1);
+    for (int i = 0; i <= c->others; i++) {
+        all[i] = rg_material_make(rg_case_material(c, i));
+    }
+    return all;
 }
 
 double rg_material_dilatational(const rg_material *m) {
@@ -52,17 +62,22 @@ bool rg_material_plastic_wave(const rg_material *m, double *limit, double *speed
     return true;
 }
 
-static unsigned internal_fields(rg_material_model model) {
-    unsigned inside = rg_material_inside(model);
+/* Of all materials. */
+static unsigned internal_fields(const rg_case *c) {
+    unsigned inside = 0;
+    for (int i = 0; i <= c->others; i++) {
+        inside |= rg_material_inside(rg_case_material(c, i)->model);
+    }
     return (inside & RG_HAS_DAMAGE ? RG_FIELD_DAMAGE : 0U) | (inside & RG_HAS_REGIME ? RG_FIELD_REGIME : 0U) |
            (inside & RG_HAS_PLASTIC ? RG_FIELD_PLASTIC : 0U);
 }
 
-unsigned rg_material_default_fields(rg_material_model model) {
-    unsigned internal = internal_fields(model);
-    return RG_FIELDS_COMMON | internal | (internal != 0 ? RG_FIELD_TRIAXIALITY : 0U);
+unsigned rg_case_default_fields(const rg_case *c) {
+    unsigned internal = internal_fields(c);
+    return RG_FIELDS_COMMON | internal | (internal != 0 ? RG_FIELD_TRIAXIALITY : 0U) |
+           (c->others > 0 ? RG_FIELD_MATERIAL : 0U);
 }
 
-unsigned rg_material_possible_fields(rg_material_model model) {
-    return RG_FIELDS_COMMON | RG_FIELD_RANK | RG_FIELD_TRIAXIALITY | internal_fields(model);
+unsigned rg_case_possible_fields(const rg_case *c) {
+    return RG_FIELDS_COMMON | RG_FIELD_RANK | RG_FIELD_TRIAXIALITY | RG_FIELD_MATERIAL | internal_fields(c);
 }

@@ -1,4 +1,4 @@
-/* The material of a case, as the kernels take it. */
+/* The materials of a case, as the kernels take them. */
 #ifndef RG_MATERIAL_H
 #define RG_MATERIAL_H
 
@@ -6,7 +6,10 @@
 #include "kernels.h"
 
 /* Elastic constants, density, and what else the model needs, ready for use at rest. */
-rg_material rg_material_of_case(const rg_case *c);
+rg_material rg_material_make(const rg_material_input *in);
+
+/* Those of a case, [1 + c->others], from rg_alloc: caller frees. */
+rg_material *rg_materials_of_case(const rg_case *c);
 
 /* Speed of dilatational and of shear waves in the undamaged solid (m/s). */
 double rg_material_dilatational(const rg_material *m);
@@ -17,9 +20,9 @@ double rg_material_shear(const rg_material *m);
  * of the yield curve at its start. False, and nothing set, of a model without such a limit. */
 bool rg_material_plastic_wave(const rg_material *m, double *limit, double *speed);
 
-/* Fields (case.h) that a run of the model puts out where the case asks for none in particular, and all that
- * it can put out. */
-unsigned rg_material_default_fields(rg_material_model model);
-unsigned rg_material_possible_fields(rg_material_model model);
+/* Fields (case.h) that a run puts out where the case asks for none in particular, and all that its materials
+ * let it put out. */
+unsigned rg_case_default_fields(const rg_case *c);
+unsigned rg_case_possible_fields(const rg_case *c);
 
 #endif

@@ -74,6 +74,9 @@ typedef struct {
     int32_t owner[4];       /* rank of the neighbour; -1 on the surface */
     int8_t face[4];         /* the neighbour's local face; -1 on the surface */
     int8_t set[4];          /* surface set, -1 for none */
+    int8_t region;          /* volume set, -1 for none */
+    uint8_t material;       /* which of the case's, once rg_materials_assign has run; until then 0 */
+    uint8_t beside[4];      /* the neighbour's; its own on the surface */
 } rg_element;
 
 /* How good a partition is. */
@@ -101,6 +104,8 @@ typedef struct {
         *original; /* [elements]: numbers in the mesh that this one was cut from; NULL if it is the whole */
     int sets;
     char *set_name[RG_MAX_SETS];
+    int regions;
+    char *region_name[RG_MAX_SETS];
     rg_partition_quality quality; /* of the partition of the whole mesh */
 } rg_part;
 
@@ -127,8 +132,9 @@ rg_part *rg_part_distribute_weighted(const rg_mesh *mesh, int tile, double *weig
  * depend on the number of ranks (faults.h). The caller owns the result. */
 rg_part *rg_part_read(const char *path, double *weight, MPI_Comm comm);
 
-/* Number of the surface set of that name; -1 if the mesh has none. */
+/* Number of the surface set or volume set of that name; -1 if the mesh has none. */
 int rg_part_set(const rg_part *part, const char *name);
+int rg_part_region(const rg_part *part, const char *name);
 
 void rg_part_free(rg_part *part);
 

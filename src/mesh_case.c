@@ -6,6 +6,7 @@
 
 #include "case_problem.h"
 #include "error.h"
+#include "material_map.h"
 #include "mesh_file.h"
 #include "tile_weight.h"
 
@@ -80,6 +81,8 @@ rg_part *rg_part_of_case(const rg_case *c, double *cost, MPI_Comm comm) {
     int rank, known = cost != NULL;
     MPI_Comm_rank(comm, &rank);
     MPI_Bcast(&known, 1, MPI_INT, 0, comm);
-    return c->mesh.file != NULL ? part_of_file(c, cost, known, rank, comm)
-                                : part_of_box(c, cost, known, rank, comm);
+    rg_part *part = c->mesh.file != NULL ? part_of_file(c, cost, known, rank, comm)
+                                         : part_of_box(c, cost, known, rank, comm);
+    rg_materials_assign(c, part, comm);
+    return part;
 }

@@ -208,8 +208,12 @@ static int show(const rg_mesh_arguments *a) {
         if (c == NULL) {
             return RG_USAGE;
         }
-        rg_material m = rg_material_of_case(c);
-        speed = rg_material_dilatational(&m);
+        rg_material *material = rg_materials_of_case(c);
+        speed = 0;
+        for (int m = 0; m <= c->others; m++) {
+            speed = fmax(speed, rg_material_dilatational(&material[m]));
+        }
+        rg_free(material);
         rg_case_free(c);
     }
     rg_mesh *mesh = rg_mesh_file_read(a->input);

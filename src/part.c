@@ -53,6 +53,7 @@ static void pack_element(const struct source *s, rg_gid e, rg_element *out) {
         out->face[f] = s->mesh->face[4 * e + f];
         out->set[f] = s->mesh->set[4 * e + f];
     }
+    out->region = s->mesh->region != NULL ? s->mesh->region[e] : -1;
 }
 
 /* Packs tile t to `out`; returns its number of elements. */
@@ -92,16 +93,17 @@ static void pack_own(const struct source *s, rg_part *own) {
     }
 }
 
-static void share_names(const rg_mesh *mesh, rg_part *own, int rank, MPI_Comm comm) {
-    MPI_Bcast(&own->sets, 1, MPI_INT, 0, comm);
-    for (int s = 0; s < own->sets; s++) {
-        int length = rank == 0 ? (int)strlen(mesh->set_name[s]) : 0;
+/* Names that rank 0 has in `from` to all. */
+static void share_names(char *const from[], int *count, char *name[], int rank, MPI_Comm comm) {
+    MPI_Bcast(count, 1, MPI_INT, 0, comm);
+    for (int s = 0; s < *count; s++) {
+        int length = rank == 0 ? (int)strlen(from[s]) : 0;
         MPI_Bcast(&length, 1, MPI_INT, 0, comm);
-        own->set_name[s] = RG_NEW(char, (size_t)length + 1);
+        name[s] = RG_NEW(char, (size_t)length + 1);
         if (rank == 0) {
-            memcpy(own->set_name[s], mesh->set_name[s], (size_t)length);
+            memcpy(name[s], from[s], (size_t)length);
         }
-        MPI_Bcast(own->set_name[s], length, MPI_CHAR, 0, comm);
+        MPI_Bcast(name[s], length, MPI_CHAR, 0, comm);
     }
 }
 
@@ -132,13 +134,15 @@ rg_part *rg_part_distribute_weighted(const rg_mesh *mesh, int tile, double *weig
     if (rank == 0) {
         own->interfaces = count_interfaces(mesh);
         own->sets = mesh->sets;
+        own->regions = mesh->regions;
         rg_mesh_box_around(mesh, own->box);
         deal = deal_mesh(mesh, tile, weight, ranks);
     }
     rg_deal_share(deal, own, comm);
     MPI_Bcast(&own->interfaces, 1, MPI_INT64_T, 0, comm);
     MPI_Bcast(own->box, 6, MPI_DOUBLE, 0, comm);
-    share_names(mesh, own, rank, comm);
+    share_names(rank == 0 ? mesh->set_name : NULL, &own->sets, own->set_name, rank, comm);
+    share_names(rank == 0 ? mesh->region_name : NULL, &own->regions, own->region_name, rank, comm);
     if (rank == 0) {
         hand_out(mesh, deal, own, comm);
         rg_deal_free(deal);
@@ -152,13 +156,21 @@ rg_part *rg_part_distribute(const rg_mesh *mesh, int tile, MPI_Comm comm) {
     return rg_part_distribute_weighted(mesh, tile, NULL, comm);
 }
 
-int rg_part_set(const rg_part *part, const char *name) {
-    for (int i = 0; i < part->sets; i++) {
-        if (strcmp(part->set_name[i], name) == 0) {
+static int find_name(char *const list[], int count, const char *name) {
+    for (int i = 0; i < count; i++) {
+        if (strcmp(list[i], name) == 0) {
             return i;
         }
     }
     return -1;
+}
+
+int rg_part_set(const rg_part *part, const char *name) {
+    return find_name(part->set_name, part->sets, name);
+}
+
+int rg_part_region(const rg_part *part, const char *name) {
+    return find_name(part->region_name, part->regions, name);
 }
 
 void rg_part_free(rg_part *part) {
@@ -167,6 +179,9 @@ void rg_part_free(rg_part *part) {
     }
     for (int s = 0; s < part->sets; s++) {
         rg_free(part->set_name[s]);
+    }
+    for (int r = 0; r < part->regions; r++) {
+        rg_free(part->region_name[r]);
     }
     rg_free(part->tile_id);
     rg_free(part->original);

@@ -83,21 +83,28 @@ static void share_owners(reader *r, const rg_deal *deal) {
     }
 }
 
+static void take_names(char *const from[], int count, char *name[]) {
+    for (int s = 0; s < count; s++) {
+        name[s] = RG_NEW(char, strlen(from[s]) + 1);
+        strcpy(name[s], from[s]);
+    }
+}
+
 static void take_header(reader *r) {
     const rg_mesh_header *h = r->head;
     r->own->interfaces = h->interfaces;
     memcpy(r->own->box, h->box, sizeof h->box);
     r->own->sets = h->sets;
-    for (int s = 0; s < h->sets; s++) {
-        r->own->set_name[s] = RG_NEW(char, strlen(h->set_name[s]) + 1);
-        strcpy(r->own->set_name[s], h->set_name[s]);
-    }
+    r->own->regions = h->regions;
+    take_names(h->set_name, h->sets, r->own->set_name);
+    take_names(h->region_name, h->regions, r->own->region_name);
 }
 
 /* ---- elements ---- */
 
 static void unpack(const reader *r, const rg_mesh_slab *s, rg_gid i, rg_element *e) {
     e->id = s->first + i;
+    e->region = s->region[i];
     for (int f = 0; f < 4; f++) {
         rg_gid other = s->neighbour[4 * i + f];
         memcpy(e->x[f], s->x + 3 * s->at[4 * i + f], sizeof e->x[f]);

@@ -39,12 +39,23 @@ static double face_area_squared(const rg_element *e, int f) {
     return square;
 }
 
-double rg_patch_rank(const rg_element *e) {
-    double sum = 0;
+/* Modulus and density of material `m` over those of the first one: exactly 1 where there is but one. */
+static double modulus(const rg_material *material, int m) {
+    return (material[m].lambda + 2 * material[m].mu) / (material->lambda + 2 * material->mu);
+}
+
+static double density(const rg_material *material, int m) {
+    return material[m].density / material->density;
+}
+
+double rg_patch_rank(const rg_element *e, const rg_material *material) {
+    double sum = 0, stiff = modulus(material, e->material), heavy = density(material, e->material);
     for (int f = 0; f < 4; f++) {
         if (e->neighbour[f] >= 0) {
             double v = e->volume, other = e->other_volume[f];
-            sum += face_area_squared(e, f) / fmin(v, other) * (1 / v + 1 / other);
+            double mean = 0.5 * (stiff + modulus(material, e->beside[f]));
+            double mass = heavy * v, other_mass = density(material, e->beside[f]) * other;
+            sum += face_area_squared(e, f) / fmin(v, other) * mean * (1 / mass + 1 / other_mass);
         }
     }
     return sum;
@@ -71,7 +82,7 @@ static void merge(candidates *all, const candidates *more) {
     }
 }
 
-static candidates worst_elements(const rg_part *part, MPI_Comm comm) {
+static candidates worst_elements(const rg_part *part, const rg_material *material, MPI_Comm comm) {
     candidates here = {0}, all = {0};
 #pragma omp parallel
     {
@@ -79,7 +90,7 @@ static candidates worst_elements(const rg_part *part, MPI_Comm comm) {
 #pragma omp for schedule(static)
         for (rg_lid i = 0; i < part->elements; i++) {
             const rg_element *e = &part->element[i];
-            offer(&mine, (candidate){rg_patch_rank(e), e->id});
+            offer(&mine, (candidate){rg_patch_rank(e, material), e->id});
         }
 #pragma omp critical
         merge(&here, &mine);
@@ -176,8 +187,8 @@ static void join_next(set *s, const candidates *seeds, int most, const rg_part *
     }
 }
 
-static set choose(const rg_part *part, int ranks, MPI_Comm comm) {
-    candidates seeds = worst_elements(part, comm);
+static set choose(const rg_part *part, const rg_material *material, int ranks, MPI_Comm comm) {
+    candidates seeds = worst_elements(part, material, comm);
     set s = {.member = rg_gid_map_make(RG_PATCH_MOST)};
     join(&s, seeds.worst[0].id);
     for (size_t before = 0; s.count < CORE && s.count > before;) {
@@ -275,11 +286,11 @@ static set everything(rg_gid total) {
     return s;
 }
 
-rg_part *rg_patch_gather(const rg_part *part, MPI_Comm comm) {
+rg_part *rg_patch_gather(const rg_part *part, const rg_material *material, MPI_Comm comm) {
     int rank, ranks;
     MPI_Comm_rank(comm, &rank);
     MPI_Comm_size(comm, &ranks);
-    set s = part->total > RG_PATCH_MOST ? choose(part, ranks, comm) : everything(part->total);
+    set s = part->total > RG_PATCH_MOST ? choose(part, material, ranks, comm) : everything(part->total);
     rg_part *patch = RG_NEW(rg_part, 1);
     patch->element = RG_NEW(rg_element, rank == 0 ? RG_PATCH_MOST : 1);
     patch->elements = collect(part, &s, patch->element, ranks, comm);

@@ -80,7 +80,7 @@ static void stress_at(const rg_solver *s, const rg_workspace *w, size_t slot, co
     _Alignas(64) double cauchy[RG_GAUSS * 6 * RG_LANES];
     const rg_tile *t = rg_tile_of(s->domain, slot);
     size_t block = slot / RG_LANES - t->begin;
-    rg_bulk_args bulk = rg_tile_bulk(s, t, w);
+    rg_bulk_args bulk = rg_tile_bulk(s, t, w, block);
     rg_bulk_state_args args = {.bulk = &bulk, .cauchy = cauchy};
     s->kernels->bulk_state(&args, block, block + 1);
     for (size_t k = 0; k < 6; k++) {
@@ -109,7 +109,7 @@ static void sample(const rg_solver *s, const rg_workspace *w, size_t slot, const
 static void watch(void *context, rg_solver *s, size_t tile, const rg_workspace *w) {
     rg_probes *p = context;
     for (int i = 0; i < p->probes; i++) {
-        if (p->slot[i] >= 0 && (size_t)p->slot[i] / RG_LANES / s->domain->tile_blocks == tile) {
+        if (p->slot[i] >= 0 && rg_tile_of(s->domain, (size_t)p->slot[i]) == &s->domain->tile[tile]) {
             sample(s, w, (size_t)p->slot[i], p->at[i], p->value + p->samples * p->row + i * VALUES);
         }
     }
@@ -139,7 +139,7 @@ static void begin(rg_probes *p, rg_solver *s) {
     p->total = RG_NEW(double, size);
     for (int i = 0; i < p->probes; i++) {
         if (p->slot[i] >= 0) {
-            s->watched[(size_t)p->slot[i] / RG_LANES / s->domain->tile_blocks] = 1;
+            s->watched[rg_tile_of(s->domain, (size_t)p->slot[i]) - s->domain->tile] = 1;
         }
     }
     s->watch = watch;

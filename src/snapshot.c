@@ -92,7 +92,7 @@ static rg_cell_source cells_of(window_source *x) {
                             .of = x};
 }
 
-/* A vector field by slot, or the positions. */
+/* A vector field by slot, or (field NULL) what follows from the mesh. */
 typedef struct {
     const rg_domain *domain;
     const rg_lid *slot;
@@ -301,22 +301,10 @@ typedef struct {
     tile_state *thread; /* [threads] */
 } state_records;
 
-/* Tile that has the slot. */
-static const rg_tile *tile_of(const rg_domain *d, size_t slot) {
-    size_t low = 0, high = d->tiles;
-    while (high - low > 1) {
-        size_t middle = low + (high - low) / 2;
-        *(d->tile[middle].begin * RG_LANES <= slot ? &low : &high) = middle;
-    }
-    return &d->tile[low];
-}
-
 static void evaluate(const rg_solver *s, const rg_tile *t, tile_state *state) {
     const rg_workspace *work = &s->work[omp_get_thread_num()];
-    rg_bulk_args bulk = rg_tile_bulk(s, t, work);
-    rg_bulk_state_args args = {.bulk = &bulk, .cauchy = state->cauchy, .internal = state->internal};
     rg_tile_receive(s, t, work);
-    s->kernels->bulk_state(&args, 0, rg_tile_eblocks(t));
+    rg_tile_state(s, t, work, NULL, state->cauchy, state->internal);
     state->tile = t;
 }
 
@@ -325,7 +313,7 @@ static void get_state(const void *of, size_t i, void *out) {
     tile_state *state = &r->thread[omp_get_thread_num()];
     size_t slot = (size_t)r->slot[i];
     if (state->tile == NULL || slot < state->tile->begin * RG_LANES || slot >= state->tile->end * RG_LANES) {
-        evaluate(r->s, tile_of(r->s->domain, slot), state);
+        evaluate(r->s, rg_tile_of(r->s->domain, slot), state);
     }
     size_t at = slot - state->tile->begin * RG_LANES;
     size_t first = at / RG_LANES * RG_GAUSS, lane = at % RG_LANES;
@@ -366,6 +354,11 @@ static void write_numbers(rg_snapshots *w, const rg_solver *s, const char *name,
 static void get_rank(const void *of, size_t i, void *out) {
     (void)i;
     *(double *)out = ((const rg_slab *)of)->rank;
+}
+
+static void get_material(const void *of, size_t i, void *out) {
+    const nodal_records *r = of;
+    *(double *)out = r->domain->material[r->slot[i] / RG_LANES];
 }
 
 typedef struct {
@@ -438,6 +431,9 @@ void rg_snapshots_write(rg_snapshots *w, rg_solver *s, const rg_fragment_parts *
     }
     if (rg_snapshots_show_fragments(w)) {
         write_numbers(w, s, "fragment", get_fragment, &(fragment_records){parts, w->slab->slot});
+    }
+    if (w->fields & RG_FIELD_MATERIAL) {
+        write_numbers(w, s, "material", get_material, &(nodal_records){s->domain, w->slab->slot, NULL});
     }
     if (w->fields & RG_FIELD_CRACK) {
         write_cracks(w, s);

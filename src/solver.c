@@ -20,7 +20,7 @@
 /* ---- Set-up ---- */
 
 size_t rg_solver_history(const rg_solver *s) {
-    return s->domain->blocks * rg_history_rows(s->histories) * RG_LANES;
+    return s->domain->blocks * s->history_stride;
 }
 
 static void allocate_fields(rg_solver *s) {
@@ -35,7 +35,7 @@ static void allocate_fields(rg_solver *s) {
     s->tile_pace = rg_law_steps(&s->law) > 0 ? RG_NEW(double, d->tiles) : NULL;
     s->crack_stride = rg_crack_stride(&s->law);
     s->crack = rg_alloc_sparse(d->iblocks * s->crack_stride, sizeof *s->crack);
-    s->history = s->histories > 0 ? RG_NEW(rg_real, rg_solver_history(s)) : NULL;
+    s->history = s->history_stride > 0 ? RG_NEW(rg_real, rg_solver_history(s)) : NULL;
     bool viscous = s->input->viscosity.linear > 0 || s->input->viscosity.quadratic > 0;
     s->heat = viscous ? RG_NEW(double, blocks *RG_LANES) : NULL;
     s->cracked = RG_NEW(uint8_t, blocks);
@@ -52,7 +52,7 @@ static void allocate_fields(rg_solver *s) {
 static void place_tile(rg_solver *s, const rg_tile *t) {
     size_t at = t->begin * RG_NODE_BLOCK, bytes = rg_tile_eblocks(t) * RG_NODE_BLOCK * sizeof *s->u;
     size_t seams = rg_tile_seams(t) * RG_LANES * sizeof *s->tractions;
-    size_t history = rg_history_rows(s->histories) * RG_LANES;
+    size_t history = s->history_stride;
     memset(s->u + at, 0, bytes);
     memset(s->velocity + at, 0, bytes);
     if (s->acceleration != NULL) {
@@ -103,7 +103,7 @@ static void build_domain(rg_solver *s, const rg_interface_material *m) {
     s->domain = rg_domain_build(s->part, joined, s->rank, m);
     if (joined != NULL) {
         s->joints = rg_joints_make(s->domain, s->part, joined, s->rank);
-        s->assembly = rg_assembly_make(s->domain, s->joints, s->comm);
+        s->assembly = rg_assembly_make(s->domain, s->joints, s->material, s->comm);
     }
     rg_free(joined);
     rg_free(s->part->element);
@@ -118,19 +118,22 @@ rg_solver *rg_solver_make_from_part(const rg_case *input, rg_part *part, MPI_Com
                      .part = part,
                      .limiting = -1,
                      .stiffest = 1,
-                     .material = rg_material_of_case(input),
-                     .histories = rg_material_history(input->material.model),
+                     .materials = 1 + input->others,
+                     .material = rg_materials_of_case(input),
                      .law = rg_law_make(input),
                      .lift = input->interface.form == RG_FORM_VARIATIONAL || input->interface.faces != NULL,
                      .lumped = input->mass == RG_MASS_LUMPED};
     MPI_Comm_rank(comm, &s->rank);
     MPI_Comm_size(comm, &s->ranks);
     select_kernels(s);
-    rg_interface_material m = {s->material.lambda, s->material.mu, input->interface.beta_s,
-                               input->interface.penalty};
+    for (int m = 0; m < s->materials; m++) {
+        size_t block = rg_history_block(rg_material_history(s->material[m].model));
+        s->history_stride = block > s->history_stride ? block : s->history_stride;
+    }
+    rg_interface_material m = {s->materials, s->material, input->interface.beta_s, input->interface.penalty};
     build_domain(s, &m);
     s->constraints = rg_constraints_make(input, s->domain, s->part, s->assembly);
-    s->bodies = rg_bodies_make(input, s->domain, s->part, &s->material, s->threads, comm);
+    s->bodies = rg_bodies_make(input, s->domain, s->part, s->material, s->threads, comm);
     allocate_fields(s);
     place_fields(s);
     rg_law_start(s);
@@ -147,7 +150,9 @@ rg_solver *rg_solver_make_from_part(const rg_case *input, rg_part *part, MPI_Com
 rg_solver *rg_solver_make(const rg_case *input, MPI_Comm comm) {
     rg_part *part = rg_part_of_case(input, NULL, comm);
     bool shared = input->interface.form == RG_FORM_CONTINUOUS; /* rg_spectrum has no use for a patch then */
-    rg_part *patch = shared ? NULL : rg_patch_gather(part, comm);
+    rg_material *material = rg_materials_of_case(input);
+    rg_part *patch = shared ? NULL : rg_patch_gather(part, material, comm);
+    rg_free(material);
     rg_solver *s = rg_solver_make_from_part(input, part, comm);
     s->patch = patch;
     return s;
@@ -186,8 +191,7 @@ static void kick(rg_solver *s, size_t tile, const rg_workspace *w, const impulse
     const rg_tile *t = &s->domain->tile[tile];
     size_t at = t->begin * RG_NODE_BLOCK;
     rg_real *now = now_of(s, tile, p);
-    rg_kick_args args = {.density = s->material.density,
-                         .lumped = s->lumped,
+    rg_kick_args args = {.lumped = s->lumped,
                          .seams = seams,
                          .dt = p->dt,
                          .geom = s->domain->geom + t->begin * RG_GEOM_BLOCK,
@@ -199,7 +203,11 @@ static void kick(rg_solver *s, size_t tile, const rg_workspace *w, const impulse
                          .velocity = p->velocity + at,
                          .now = now == NULL ? NULL : now + at,
                          .dt_now = 0.5 * s->dt};
-    s->kernels->kick(&args, 0, rg_tile_eblocks(t));
+    for (size_t begin = 0, end; begin < rg_tile_eblocks(t); begin = end) {
+        end = rg_run_end(s->domain, t, begin);
+        args.density = rg_block_material(s, t, begin)->density;
+        s->kernels->kick(&args, begin, end);
+    }
 }
 
 static void touch(rg_solver *s, size_t tile, const impulse *p) {
@@ -217,10 +225,10 @@ static rg_real largest(const rg_real *x, size_t count) {
     return m + bad;
 }
 
-/* Bulk viscosity, on the forces of the bulk. */
-static void dampen(rg_solver *s, const rg_tile *t, const rg_bulk_args *bulk) {
+/* Bulk viscosity, on the forces of the bulk, of blocks that are of one material. */
+static void dampen(rg_solver *s, const rg_tile *t, const rg_bulk_args *bulk, size_t begin, size_t end) {
     double b1 = s->input->viscosity.linear, b2 = s->input->viscosity.quadratic,
-           speed = rg_material_dilatational(&s->material);
+           speed = rg_material_dilatational(&bulk->material);
     double xi = s->damping * b1;
     rg_viscosity_args args = {.bulk = bulk,
                               .velocity = s->velocity + t->begin * RG_NODE_BLOCK,
@@ -231,14 +239,14 @@ static void dampen(rg_solver *s, const rg_tile *t, const rg_bulk_args *bulk) {
                               .allowed = sqrt(1 + xi * xi) - xi,
                               .dt = s->dt,
                               .heat = s->heat + t->begin * RG_LANES};
-    s->kernels->viscosity(&args, 0, rg_tile_eblocks(t));
+    s->kernels->viscosity(&args, begin, end);
 }
 
 /* Elements and the interfaces inside: what they compute stays in the cache. */
 static void inside(rg_solver *s, size_t tile, const rg_workspace *w, const impulse *p) {
     const rg_tile *t = &s->domain->tile[tile];
     size_t blocks = rg_tile_eblocks(t);
-    rg_bulk_args bulk = rg_tile_bulk(s, t, w);
+    rg_bulk_args bulk = rg_tile_bulk(s, t, w, 0);
     bulk.advance = p->advance;
     rg_interface_args interface = rg_tile_interfaces(s, t, w);
     rg_trace_args traces = rg_tile_traces(s, t, w, false);
@@ -246,9 +254,13 @@ static void inside(rg_solver *s, size_t tile, const rg_workspace *w, const impul
         memset(p->velocity + t->begin * RG_NODE_BLOCK, 0, blocks * RG_NODE_BLOCK * sizeof *p->velocity);
     }
     s->kernels->receive(&traces, 0, rg_tile_seams(t));
-    s->kernels->bulk(&bulk, 0, blocks);
-    if (s->heat != NULL && p->constrain) {
-        dampen(s, t, &bulk);
+    for (size_t begin = 0, end; begin < blocks; begin = end) {
+        end = rg_run_end(s->domain, t, begin);
+        bulk.material = *rg_block_material(s, t, begin);
+        s->kernels->bulk(&bulk, begin, end);
+        if (s->heat != NULL && p->constrain) {
+            dampen(s, t, &bulk, begin, end);
+        }
     }
     s->kernels->send_tractions(&traces, 0, rg_tile_seams(t));
     s->kernels->interface(&interface, 0, rg_tile_inside(t));
@@ -556,8 +568,8 @@ void rg_solver_resume(rg_solver *s) {
 /* What a kick with a step `dt` ahead of it does. */
 static impulse prepare(rg_solver *s, double dt) {
     s->dt_next = dt;
-    if (s->dt > 0) {
-        rg_material_prepare(&s->material, s->dt);
+    for (int m = 0; s->dt > 0 && m < s->materials; m++) {
+        rg_material_prepare(&s->material[m], s->dt);
     }
     rg_constraints_set(s->constraints, s->time, dt, s->step > 0);
     return (impulse){
@@ -626,6 +638,7 @@ void rg_solver_free(rg_solver *s) {
     void *blocks[] = {s->u,         s->velocity, s->now,      s->crack,   s->stiffening, s->tile_stiffening,
                       s->cracked,   s->broken,   s->unlinked, s->active,  s->rows[0],    s->rows[1],
                       s->tractions, s->watched,  s->work,     s->history, s->heat,       s->acceleration};
+    rg_free(s->material);
     rg_free(s->scale);
     rg_free(s->tile_pace);
     rg_free(s->tile_seconds);

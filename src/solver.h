@@ -49,8 +49,8 @@ struct rg_solver {
     rg_real *acceleration;       /* of each element for itself, then of the nodes; only with an assembly */
     rg_real *crack;              /* state of all broken points, and the memory of their law: layout.h */
     size_t crack_stride;         /* values of a block of interfaces */
-    rg_real *history; /* layout.h: of the material, `histories` values a point; NULL where that is 0 */
-    int histories;
+    rg_real *history;            /* layout.h: of the materials; NULL where none has any */
+    size_t history_stride;       /* values of a block: as many as the longest history needs */
     double *heat;        /* [blocks][lane]: dissipated by bulk viscosity (J); NULL where there is none */
     rg_real *stiffening; /* [blocks][lane] */
     rg_real *tile_stiffening;
@@ -72,7 +72,8 @@ struct rg_solver {
     void *watch_context;
     uint8_t *watched; /* [tiles] */
 
-    rg_material material;
+    int materials;
+    rg_material *material; /* [materials] */
     rg_cohesive law;
     rg_real *scale;  /* layout as in rg_interface_args; NULL: all faces alike */
     double stiffest; /* largest ratio of strength to critical opening, over that of the law; 1: all alike */

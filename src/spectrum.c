@@ -8,6 +8,7 @@
 #include "material.h"
 #include "mem.h"
 #include "patch.h"
+#include "tile.h"
 
 enum { MAX_ITERATIONS = 80, CHECK_EVERY = 8, POWER_ITERATIONS = 60 };
 
@@ -42,7 +43,7 @@ static double mass_dot(rg_solver *s, const rg_real *a, const rg_real *b) {
                     size_t at = block * RG_NODE_BLOCK + i;
                     both[i] = sign == 0 ? a[at] + b[at] : a[at] - b[at];
                 }
-                rg_kinetic_args args = {.density = s->material.density,
+                rg_kinetic_args args = {.density = rg_material_of(s, block * RG_LANES)->density,
                                         .lumped = s->lumped,
                                         .geom = d->geom + block * RG_GEOM_BLOCK,
                                         .velocity = both,
@@ -109,8 +110,9 @@ static void randomize(rg_solver *s, rg_real *q) {
 
 typedef struct {
     rg_solver *s;
-    double height; /* smallest element height (m) */
-    double scale;  /* frequencies are in units of c_d/height, so that numbers stay near 1 (1/s^2) */
+    const rg_material *material; /* of the element that a wave crosses in the shortest time */
+    double height;               /* ... smallest of its kind (m) */
+    double scale; /* frequencies are in units of c_d/height, so that numbers stay near 1 (1/s^2) */
 } linear_operator;
 
 /* w <- w + A q / scale, A = M^-1 K. Uses u. */
@@ -307,8 +309,11 @@ static void set_state(rg_solver *s, state which, double sliding, rg_real *shared
     }
 }
 
-static double smallest_height(const rg_solver *s) {
-    double h = INFINITY;
+/* Smallest height of the elements of each material. */
+static void smallest_heights(const rg_solver *s, double h[RG_MAX_MATERIALS]) {
+    for (int m = 0; m < RG_MAX_MATERIALS; m++) {
+        h[m] = INFINITY;
+    }
     for (size_t slot = 0; slot < s->domain->blocks * RG_LANES; slot++) {
         double sum[3] = {0, 0, 0};
         for (int k = 0; s->domain->id[slot] >= 0 && k < 4; k++) {
@@ -318,11 +323,39 @@ static double smallest_height(const rg_solver *s) {
                 sum[c] += g;
                 square += g * g;
             }
-            h = fmin(h, 1 / sqrt(square));
+            double *least = &h[s->domain->material[slot / RG_LANES]];
+            *least = fmin(*least, 1 / sqrt(square));
         }
     }
-    MPI_Allreduce(MPI_IN_PLACE, &h, 1, MPI_DOUBLE, MPI_MIN, s->comm);
-    return h;
+    MPI_Allreduce(MPI_IN_PLACE, h, RG_MAX_MATERIALS, MPI_DOUBLE, MPI_MIN, s->comm);
+}
+
+/* In units of the smallest time in which a dilatational wave crosses an element. */
+static linear_operator make_operator(rg_solver *s) {
+    linear_operator op = {.s = s};
+    double h[RG_MAX_MATERIALS], shortest = INFINITY;
+    smallest_heights(s, h);
+    for (int i = 0; i < s->materials; i++) {
+        const rg_material *m = &s->material[i];
+        double time = h[i] / rg_material_dilatational(m);
+        if (time < shortest) {
+            shortest = time;
+            op.material = m;
+            op.height = h[i];
+            op.scale = (m->lambda + 2 * m->mu) / m->density / (h[i] * h[i]);
+        }
+    }
+    return op;
+}
+
+/* All materials become neo-Hookean of the same elastic constants, linear at rest: fills `model` with what
+ * they were. Or (`back`) they become that again. */
+static void linearize(rg_solver *s, rg_material_model model[RG_MAX_MATERIALS], bool back) {
+    for (int m = 0; m < s->materials; m++) {
+        rg_material_model now = s->material[m].model;
+        s->material[m].model = back ? model[m] : RG_MATERIAL_NEO_HOOKEAN;
+        model[m] = now;
+    }
 }
 
 static void rest(rg_solver *s) {
@@ -334,11 +367,9 @@ static void rest(rg_solver *s) {
 void rg_spectrum_whole(rg_solver *s) {
     rg_cohesive law = s->law;
     rg_real *crack = s->crack;
-    rg_material_model model = s->material.model;
-    s->material.model = RG_MATERIAL_NEO_HOOKEAN; /* of the same elastic constants: linear at rest */
-    const rg_material *m = &s->material;
-    linear_operator op = {.s = s, .height = smallest_height(s)};
-    op.scale = (m->lambda + 2 * m->mu) / m->density / (op.height * op.height);
+    rg_material_model model[RG_MAX_MATERIALS];
+    linearize(s, model, false);
+    linear_operator op = make_operator(s);
     rg_real *shared = RG_NEW(rg_real, RG_CRACK_BLOCK);
     double worst = 0;
     bool closes = s->input->interface.law != RG_LAW_NONE && s->input->interface.contact != RG_CONTACT_FLUX;
@@ -362,7 +393,7 @@ void rg_spectrum_whole(rg_solver *s) {
         }
     }
     s->omega2 = worst * op.scale * (1 + MARGIN);
-    s->damping = 0.5 * sqrt(s->omega2) * op.height / rg_material_dilatational(m);
+    s->damping = 0.5 * sqrt(s->omega2) * op.height / rg_material_dilatational(op.material);
     s->limiting_state = state_name[limiting];
     set_state(s, limiting, slope[1] * s->stiffest, shared);
     s->limiting = limiting_element(&op, &run[limiting], worst);
@@ -370,7 +401,7 @@ void rg_spectrum_whole(rg_solver *s) {
     s->law = law;
     s->scale = scale;
     s->crack = crack;
-    s->material.model = model;
+    linearize(s, model, true);
     s->crack_stride = rg_crack_stride(&law);
     rg_law_start(s);
     rest(s);

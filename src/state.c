@@ -42,8 +42,8 @@ void rg_state_of_solver(rg_state *st, rg_solver *s) {
     rg_state_add(st, "broken", RG_OF_FACE, RG_STATE_BYTE, 1, s->broken);
     rg_state_add(st, "unlinked", RG_OF_FACE, RG_STATE_BYTE, 1, s->unlinked);
     rg_state_add(st, "crack", RG_OF_FACE, RG_STATE_REAL, (int)(s->crack_stride / RG_LANES), s->crack);
-    if (s->histories > 0) {
-        rg_state_add(st, "history", RG_OF_ELEMENT, RG_STATE_REAL, (int)rg_history_rows(s->histories),
+    if (s->history != NULL) {
+        rg_state_add(st, "history", RG_OF_ELEMENT, RG_STATE_REAL, (int)(s->history_stride / RG_LANES),
                      s->history);
     }
     if (s->heat != NULL) {

@@ -10,8 +10,9 @@ static uint64_t element_hash(const rg_solver *s, size_t slot) {
         size_t at = rg_node_index(slot, k / 3, k % 3);
         h = rg_hash_double(rg_hash_double(h, s->u[at]), s->now[at]);
     }
-    for (size_t row = 0; row < rg_history_rows(s->histories); row++) {
-        h = rg_hash_double(h, s->history[rg_history_index(slot, s->histories, row)]);
+    size_t rows = rg_history_rows(rg_material_history(rg_material_of(s, slot)->model));
+    for (size_t row = 0; row < rows; row++) {
+        h = rg_hash_double(h, rg_history_value(s, slot, row));
     }
     return s->heat != NULL ? rg_hash_double(h, s->heat[slot]) : h;
 }

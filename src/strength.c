@@ -35,9 +35,29 @@ static double face_uniform(int64_t seed, const double *x[RG_FCORNERS]) {
     return rg_hash_uniform(rg_hash((uint64_t)seed, sum)) + 0x1p-54;
 }
 
-/* The last set whose expression is not 0 here. */
-static void apply_sets(const rg_solver *s, const double *x[RG_FCORNERS], const double normal[3], factors *f,
-                       rg_spot *bad) {
+/* Whether the materials on both sides of interface i are the two that a set names. */
+static bool lies_between(const rg_solver *s, const rg_face_set *set, size_t i) {
+    static const uint8_t alone[2] = {0, 0};
+    const uint8_t *beside = s->domain->beside != NULL ? s->domain->beside[i] : alone;
+    int a = rg_case_find_material(s->input, set->between[0]);
+    int b = rg_case_find_material(s->input, set->between[1]);
+    return (a == beside[0] && b == beside[1]) || (a == beside[1] && b == beside[0]);
+}
+
+/* Whether a set has interface i. */
+static bool has(const rg_solver *s, int number, size_t i, const double middle[3], const double normal[3],
+                rg_spot *bad) {
+    const rg_face_set *set = &s->input->interface.set[number];
+    double here = set->where == NULL ? 1 : rg_expr_face_value(set->where, middle, normal);
+    if (!isfinite(here)) {
+        rg_spot_note(bad, number, middle, here);
+    }
+    return here != 0 && (set->between == NULL || lies_between(s, set, i));
+}
+
+/* The last set that has the face. */
+static void apply_sets(const rg_solver *s, size_t face, const double *x[RG_FCORNERS], const double normal[3],
+                       factors *f, rg_spot *bad) {
     const rg_case *c = s->input;
     double work = rg_law_facts_of(s->law.law, s->law.shape, s->law.beta).work, middle[3];
     for (int k = 0; k < 3; k++) {
@@ -45,11 +65,7 @@ static void apply_sets(const rg_solver *s, const double *x[RG_FCORNERS], const d
     }
     for (int i = 0; i < c->interface.sets; i++) {
         const rg_face_set *set = &c->interface.set[i];
-        double here = rg_expr_face_value(set->where, middle, normal);
-        if (!isfinite(here)) {
-            rg_spot_note(bad, i, middle, here);
-        }
-        if (here != 0) {
+        if (has(s, i, face, middle, normal, bad)) {
             double strength = set->strength > 0 ? set->strength : c->interface.strength;
             double energy = set->energy > 0 ? set->energy : c->interface.energy;
             f->strength = strength / s->law.strength;
@@ -76,7 +92,7 @@ static factors factors_of(const rg_solver *s, const rg_tile *t, size_t i, rg_spo
         for (int c = 0; c < 3; c++) {
             normal[c] /= area;
         }
-        apply_sets(s, x, normal, &f, bad);
+        apply_sets(s, i, x, normal, &f, bad);
         if (s->input->interface.weibull.modulus > 0) {
             apply_weibull(s->input, x, area, &f);
         }

@@ -1,5 +1,7 @@
 #include "tile.h"
 
+#include <string.h>
+
 #include "mem.h"
 
 rg_trace_args rg_tile_traces(const rg_solver *s, const rg_tile *t, const rg_workspace *w, bool next) {
@@ -16,13 +18,12 @@ rg_trace_args rg_tile_traces(const rg_solver *s, const rg_tile *t, const rg_work
 }
 
 static rg_real *history_of(const rg_solver *s, const rg_tile *t) {
-    size_t block = rg_history_rows(s->histories) * RG_LANES;
-    return block == 0 ? NULL : s->history + t->begin * block;
+    return s->history == NULL ? NULL : s->history + t->begin * s->history_stride;
 }
 
-rg_bulk_args rg_tile_bulk(const rg_solver *s, const rg_tile *t, const rg_workspace *w) {
+rg_bulk_args rg_tile_bulk(const rg_solver *s, const rg_tile *t, const rg_workspace *w, size_t block) {
     const rg_domain *d = s->domain;
-    return (rg_bulk_args){.material = s->material,
+    return (rg_bulk_args){.material = *rg_block_material(s, t, block),
                           .lift = s->lift,
                           .u = s->u + t->begin * RG_NODE_BLOCK,
                           .ghost = w->ghost,
@@ -32,9 +33,29 @@ rg_bulk_args rg_tile_bulk(const rg_solver *s, const rg_tile *t, const rg_workspa
                           .cracked = s->cracked + t->begin,
                           .unlinked = s->unlinked + t->ibegin * RG_LANES,
                           .history = history_of(s, t),
+                          .history_stride = s->history_stride,
                           .force = w->force,
                           .traction = w->traction,
                           .stiffening = s->stiffening + t->begin * RG_LANES};
+}
+
+void rg_tile_state(const rg_solver *s, const rg_tile *t, const rg_workspace *w, double *energy,
+                   double *cauchy, double *internal) {
+    const size_t points = RG_GAUSS * RG_LANES;
+    rg_bulk_args bulk = rg_tile_bulk(s, t, w, 0);
+    for (size_t begin = 0, end; begin < rg_tile_eblocks(t); begin = end) {
+        end = rg_run_end(s->domain, t, begin);
+        bulk.material = *rg_block_material(s, t, begin);
+        rg_bulk_state_args args = {.bulk = &bulk,
+                                   .energy = energy == NULL ? NULL : energy + begin * RG_LANES,
+                                   .cauchy = cauchy == NULL ? NULL : cauchy + begin * points * 6,
+                                   .internal =
+                                       internal == NULL ? NULL : internal + begin * points * RG_INTERNAL};
+        s->kernels->bulk_state(&args, begin, end);
+        if (internal != NULL && rg_material_history(bulk.material.model) == 0) {
+            memset(args.internal, 0, (end - begin) * points * RG_INTERNAL * sizeof *internal);
+        }
+    }
 }
 
 rg_interface_args rg_tile_interfaces(const rg_solver *s, const rg_tile *t, const rg_workspace *w) {

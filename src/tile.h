@@ -23,8 +23,34 @@ static inline size_t rg_tile_seams(const rg_tile *t) {
 
 /* Trace rows go out to the current ones, or to those of the next state. */
 rg_trace_args rg_tile_traces(const rg_solver *s, const rg_tile *t, const rg_workspace *w, bool next);
-rg_bulk_args rg_tile_bulk(const rg_solver *s, const rg_tile *t, const rg_workspace *w);
+
+/* For blocks of the material of block `block`, counted from the tile's first one. */
+rg_bulk_args rg_tile_bulk(const rg_solver *s, const rg_tile *t, const rg_workspace *w, size_t block);
 rg_interface_args rg_tile_interfaces(const rg_solver *s, const rg_tile *t, const rg_workspace *w);
+
+/* State of all elements of a tile whose traces have been received: as in rg_bulk_state_args, the first row is
+ * of the tile's first block; `internal` is 0 where the material has no history. */
+void rg_tile_state(const rg_solver *s, const rg_tile *t, const rg_workspace *w, double *energy,
+                   double *cauchy, double *internal);
+
+/* Material of a block of a tile, counted from its first one, and of an element. */
+static inline const rg_material *rg_block_material(const rg_solver *s, const rg_tile *t, size_t block) {
+    return &s->material[s->domain->material[t->begin + block]];
+}
+
+static inline const rg_material *rg_material_of(const rg_solver *s, size_t slot) {
+    return &s->material[s->domain->material[slot / RG_LANES]];
+}
+
+/* Mass of an element (kg). */
+static inline double rg_element_mass(const rg_solver *s, size_t slot) {
+    return rg_material_of(s, slot)->density * (double)s->domain->geom[rg_geom_index(slot, RG_GEOM_VOLUME)];
+}
+
+/* Value `row` (layout.h) of the history of an element, whose material has one. */
+static inline rg_real rg_history_value(const rg_solver *s, size_t slot, size_t row) {
+    return s->history[rg_history_index(slot, s->history_stride, row)];
+}
 
 /* Value k (RG_CRACK_OPENING...) of the crack state of point q of interface i. */
 static inline rg_real *rg_crack_value(const rg_solver *s, size_t i, int q, int k) {

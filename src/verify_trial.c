@@ -53,10 +53,8 @@ void rg_trial_stresses(const rg_trial *t, rg_trial_visit *visit, void *context) 
     double *cauchy = RG_NEW(double, s->domain->tile_blocks *RG_GAUSS * 6 * RG_LANES);
     for (size_t i = 0; i < s->domain->tiles; i++) {
         const rg_tile *tile = &s->domain->tile[i];
-        rg_bulk_args bulk = rg_tile_bulk(s, tile, &s->work[0]);
-        rg_bulk_state_args args = {.bulk = &bulk, .cauchy = cauchy};
         rg_tile_receive(s, tile, &s->work[0]);
-        s->kernels->bulk_state(&args, 0, rg_tile_eblocks(tile));
+        rg_tile_state(s, tile, &s->work[0], NULL, cauchy, NULL);
         for (size_t slot = tile->begin * RG_LANES; slot < tile->end * RG_LANES; slot++) {
             const double *block = cauchy + (slot / RG_LANES - tile->begin) * RG_GAUSS * 6 * RG_LANES;
             for (size_t g = 0; s->domain->id[slot] >= 0 && g < RG_GAUSS; g++) {

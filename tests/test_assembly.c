@@ -17,7 +17,12 @@
 
 enum { TILE = 32, CELLS = 4 };
 
-static const rg_interface_material no_matter = {1, 1, 1, RG_PENALTY_ELASTIC};
+/* Elements of three materials that differ in density alone, in turn. */
+enum { MATERIALS = 3 };
+static const rg_material matter[MATERIALS] = {{.lambda = 1, .mu = 1, .density = 2},
+                                              {.lambda = 1, .mu = 1, .density = 7},
+                                              {.lambda = 1, .mu = 1, .density = 0.5}};
+static const rg_interface_material no_matter = {MATERIALS, matter, 1, RG_PENALTY_ELASTIC};
 
 typedef struct {
     const char *name, *faces;
@@ -127,7 +132,7 @@ static double *reference(const rg_mesh *mesh, const subject *s, bool *any) {
             own = fabs(d[0][0] * (d[1][1] * d[2][2] - d[1][2] * d[2][1]) -
                        d[0][1] * (d[1][0] * d[2][2] - d[1][2] * d[2][0]) +
                        d[0][2] * (d[1][0] * d[2][1] - d[1][1] * d[2][0])) *
-                  (list[end].node < 4 ? 1.0 / 36 : 4.0 / 27);
+                  (list[end].node < 4 ? 1.0 / 36 : 4.0 / 27) * matter[list[end].element % MATERIALS].density;
             mass += own;
             one = one || marked(list[end].element, list[end].node);
             for (int c = 0; c < 3; c++) {
@@ -156,10 +161,13 @@ static share make_share(const subject *s, const rg_mesh *mesh, MPI_Comm comm) {
     c.interface.faces = s->faces == NULL ? NULL : rg_expr_new(s->faces, &message);
     MPI_Comm_rank(comm, &here);
     share a = {.part = rg_part_distribute(here == 0 ? mesh : NULL, TILE, comm)};
+    for (rg_lid i = 0; i < a.part->elements; i++) {
+        a.part->element[i].material = (uint8_t)(a.part->element[i].id % MATERIALS);
+    }
     uint8_t *joined = rg_joined_faces(&c, a.part, comm);
     a.domain = rg_domain_build(a.part, joined, here, &no_matter);
     a.joints = rg_joints_make(a.domain, a.part, joined, here);
-    a.assembly = rg_assembly_make(a.domain, a.joints, comm);
+    a.assembly = rg_assembly_make(a.domain, a.joints, matter, comm);
     size_t slots = a.domain->blocks * RG_LANES;
     a.field = RG_NEW(rg_real, slots * 3 * RG_NODES);
     a.mask = RG_NEW(uint16_t, slots);

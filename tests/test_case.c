@@ -194,7 +194,8 @@ static void same_case(const rg_case *a, const rg_case *b) {
     assert_memory_equal(a->mesh.origin, b->mesh.origin, sizeof a->mesh.origin);
     assert_memory_equal(&a->mesh.jitter, &b->mesh.jitter, sizeof a->mesh.jitter);
     assert_true(a->mesh.seed == b->mesh.seed && a->mass == b->mass);
-    assert_memory_equal(&a->material, &b->material, sizeof a->material);
+    assert_memory_equal(&a->material, &b->material,
+                        offsetof(rg_material_input, name)); /* the text has names */
     assert_true(a->interface.form == b->interface.form && a->interface.penalty == b->interface.penalty);
     assert_true(a->interface.law == b->interface.law && a->interface.contact == b->interface.contact);
     assert_true(a->interface.activation == b->interface.activation);
@@ -235,6 +236,7 @@ static void test_round_trip_of_cases(void **state) {
     check_round_trip(CASES "spall-jittered.yaml", 0, NULL);
     check_round_trip(CASES "free-bar.yaml", 0, NULL);
     check_round_trip(CASES "torn-bar.yaml", 0, NULL);
+    check_round_trip(CASES "bimaterial.yaml", 0, NULL);
     static const char *const onset[] = {"interface.onset=0.7"};
     check_round_trip(CASES "endurance.yaml", 1, onset);
 }
@@ -322,7 +324,7 @@ static void test_ceramic(void **state) {
     write_changed(elastic, ceramic);
     rg_case *c = read_good(path, 0, NULL);
     rg_deshpande_evans table = rg_deshpande_evans_alumina();
-    rg_material m = rg_material_of_case(c);
+    rg_material m = rg_material_make(&c->material);
     table.poisson = 0.21;
     table.density = 3690;
     assert_memory_equal(&m.of.deshpande_evans.parameters, &table, offsetof(rg_deshpande_evans, single_pi));
@@ -341,7 +343,7 @@ static void test_metal(void **state) {
                                        "material.saturation_rate=40"};
     for (int given = 0; given <= 3; given += 3) {
         rg_case *c = read_good(path, given, voce);
-        rg_material m = rg_material_of_case(c);
+        rg_material m = rg_material_make(&c->material);
         double limit, speed, G = 70e9 / 2 / 1.21, K = 70e9 / 3 / (1 - 2 * 0.21),
                              H = given == 0 ? 0 : 1e9 + 40e8;
         const double expected[RG_PARAMETERS] = {[RG_PARAMETER_YIELD_STRESS] = 2e8,
@@ -360,7 +362,7 @@ static void test_metal(void **state) {
     }
     write_changed(NULL, base);
     rg_case *c = read_good(path, 0, NULL);
-    rg_material m = rg_material_of_case(c);
+    rg_material m = rg_material_make(&c->material);
     double none = 0;
     assert_false(rg_material_plastic_wave(&m, &none, &none));
     rg_case_free(c);

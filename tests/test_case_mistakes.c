@@ -12,13 +12,15 @@
 #define INTERVAL "allowed: integer >= 1 (steps), or number > 0 and < 1 (simulated seconds)\n"
 #define FIELDS                                                                                               \
     "allowed: list from displacement, velocity, stress, mean_stress, principal_stress, crack, "              \
-    "damage, regime, plastic_strain, triaxiality, rank, fragment"
-#define MODELS  "neo-hookean, linear-elastic, st-venant-kirchhoff, deshpande-evans, j2"
-#define CERAMIC ": not used, because material.model is neo-hookean; it belongs to deshpande-evans\n"
-#define NAMES   "allowed: letters, digits, _ and -; unique among bodies and probes\n"
-#define UNUSED  ": not used, because interface.law is none\n"
-#define BY_FORM ": not used, because interface.form is intrinsic\n"
-#define JOINED  ": not used, because interface.form is continuous, without interface.faces\n"
+    "damage, regime, plastic_strain, triaxiality, rank, fragment, material"
+#define MODELS         "neo-hookean, linear-elastic, st-venant-kirchhoff, deshpande-evans, j2"
+#define CERAMIC        ": not used, because material.model is neo-hookean; it belongs to deshpande-evans\n"
+#define NAMES          "allowed: letters, digits, _ and -; unique among bodies and probes\n"
+#define MATERIAL_NAMES "allowed: letters, digits, _ and -; unique among materials\n"
+#define PAIR           "allowed: names of two materials, or one twice: material, steel"
+#define UNUSED         ": not used, because interface.law is none\n"
+#define BY_FORM        ": not used, because interface.form is intrinsic\n"
+#define JOINED         ": not used, because interface.form is continuous, without interface.faces\n"
 #define INTRINSIC                                                                                            \
     "with form intrinsic: free, exponential, bilinear, tvergaard, polynomial, needleman, xu-needleman\n"
 #define SPECIAL ": anchors, aliases and tags are not supported\n"
@@ -159,6 +161,43 @@ static const struct mistake {
      "allowed: path of a mesh file, relative to the case file\n"
      ":3:3: mesh.cells: [2, 2, 4]: cannot be given together with mesh.file\n"
      ":4:3: mesh.size: [1e-3, 1e-3, 2e-3]: cannot be given together with mesh.file\n"},
+    /* materials, and faces between them */
+    {"  density: 3690\n",
+     "  density: 3690\n"
+     "  name: a b\n"
+     "materials:\n"
+     "  - {name: s, set: top, model: neo-hookean, young: 2e11, poisson: 0.3, density: 7800, friction: 1}\n"
+     "  - {name: s, where: z > t, model: neo-hookean, young: -1, poisson: 0.3, density: 7800}\n"
+     "  - {name: g, set: top, where: 1, model: neo-hookean, young: 2e9, poisson: 0.3, density: 1200}\n"
+     "  - {name: t, model: neo-hookean, young: 5e10, poisson: 0.3, densty: 7000}\n"
+     "  - 3\n",
+     ":9:9: material.name: a b: not a name; " MATERIAL_NAMES
+     ":11:15: materials[0].set: top: a mesh file has volume sets, the built-in box has none; say where\n"
+     ":11:87: materials[0].friction: 1: not used, because materials[0].model is neo-hookean; it belongs to "
+     "deshpande-evans\n"
+     ":12:12: materials[1].name: s: the name of an earlier material; " MATERIAL_NAMES
+     ":12:22: materials[1].where: z > t: depends on t, but this is the state at the start; allowed: number "
+     "or "
+     "expression in x, y, z\n"
+     ":12:56: materials[1].young: -1: out of range; " YOUNG
+     ":13:15: materials[2]: set and where both given; allowed: exactly one of set, where\n"
+     ":14:5: materials[3].density: missing; allowed: number > 0 (kg/m3)\n"
+     ":14:5: materials[3]: missing set or where; allowed: exactly one of set, where\n"
+     ":14:62: materials[3].densty: unknown key; did you mean 'density'?\n"
+     ":15:5: materials[4]: 3: not a mapping of keys; allowed: list of {name, set, where, and the keys of "
+     "material}\n"},
+    {"interface:\n",
+     "materials: [{name: steel, where: 1, model: neo-hookean, young: 2e11, poisson: 0.3, density: 7800}]\n"
+     "interface:\n"
+     "  sets:\n"
+     "    - {strength: 1}\n"
+     "    - {between: [material, stel]}\n"
+     "    - {between: [steel]}\n"
+     "    - {between: steel}\n",
+     ":12:7: interface.sets[0]: missing where or between; allowed: where, between, or both\n"
+     ":13:28: interface.sets[1].between: stel: no such material; " PAIR "; did you mean 'steel'?\n"
+     ":14:17: interface.sets[2].between: [steel]: wrong number of entries; " PAIR "\n"
+     ":15:17: interface.sets[3].between: steel: not a list; allowed: list of texts\n"},
     /* bodies */
     {"time:\n",
      "bodies:\n"

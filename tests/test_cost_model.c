@@ -97,7 +97,7 @@ static void touch_real(call *c, double *data, size_t blocks, size_t per_block) {
 }
 
 static size_t history_block(const call *c) {
-    return rg_history_rows(rg_material_history(c->variant.model)) * RG_LANES;
+    return rg_history_block(rg_material_history(c->variant.model));
 }
 
 static void list_arrays(call *c) {

@@ -22,8 +22,18 @@ static const double origin[3] = {-1e-3, 0, 2e-3}, size[3] = {4e-3, 6e-3, 2e-3};
 static const int tile_sizes[] = {1, 5, 8, 24, 64, 100, 256, 360, 1000};
 enum { TILE_SIZES = sizeof tile_sizes / sizeof tile_sizes[0] };
 
-static const rg_interface_material materials[] = {{1.2e11, 0.8e11, 4, RG_PENALTY_ELASTIC},
-                                                  {1.2e11, 0.8e11, 4, RG_PENALTY_ISOTROPIC}};
+static const rg_material matter[] = {
+    {.lambda = 1.2e11, .mu = 0.8e11}, {.lambda = 0.3e11, .mu = 0.1e11}, {.lambda = 2e11, .mu = 3e11}};
+
+/* One material; three, in turn among the elements, the second one rarely. */
+static const rg_interface_material materials[] = {{1, matter, 4, RG_PENALTY_ELASTIC},
+                                                  {1, matter, 4, RG_PENALTY_ISOTROPIC},
+                                                  {3, matter, 4, RG_PENALTY_ELASTIC}};
+enum { MATERIALS = sizeof materials / sizeof *materials };
+
+static int material_of(const rg_interface_material *m, rg_gid e) {
+    return m->materials == 1 ? 0 : e % 19 == 3 ? 1 : e % 2 == 0 ? 2 : 0;
+}
 
 /* A domain with the mesh and the part that it was built from. */
 typedef struct {
@@ -36,13 +46,20 @@ typedef struct {
 static setup setup_make(int tile, const rg_interface_material *material) {
     setup s = {.mesh = rg_mesh_box(cells, origin, size, 0.13, 3), .material = material};
     s.part = rg_part_distribute(s.mesh, tile, MPI_COMM_SELF);
+    for (rg_lid i = 0; i < s.part->elements; i++) {
+        rg_element *e = &s.part->element[i];
+        e->material = (uint8_t)material_of(material, e->id);
+        for (int f = 0; f < RG_FACES; f++) {
+            e->beside[f] = (uint8_t)material_of(material, e->neighbour[f]);
+        }
+    }
     s.domain = rg_domain_build(s.part, NULL, 0, material);
     return s;
 }
 
 static void for_each_setup(void (*check)(const setup *s)) {
     for (int t = 0; t < TILE_SIZES; t++) {
-        for (int m = 0; m < 2; m++) {
+        for (int m = 0; m < MATERIALS; m++) {
             setup s = setup_make(tile_sizes[t], &materials[m]);
             check(&s);
             rg_domain_free(s.domain);
@@ -72,10 +89,10 @@ static void outward(const rg_mesh *m, rg_gid e, int f, double area[3]) {
     }
 }
 
-/* Slot of a global element; every tile but the last one has the same number. */
+/* Slot of a global element; every tile but the last one has the same number of them. */
 static size_t slot_of(const rg_domain *d, rg_gid e) {
     rg_gid tile = e / d->tile_elements;
-    return d->tile[tile].begin * RG_LANES + (size_t)(e - tile * d->tile_elements);
+    return d->tile[tile].begin * RG_LANES + rg_slot_in(d, &d->tile[tile], e);
 }
 
 static int32_t interface_link(const rg_domain *d, rg_gid e, int f) {
@@ -123,6 +140,7 @@ static void check_slots(const setup *s) {
     for (rg_gid e = 0; e < s->mesh->elements; e++) {
         size_t slot = slot_of(d, e);
         assert_int_equal(d->id[slot], e);
+        assert_int_equal(d->material[slot / RG_LANES], material_of(s->material, e));
         assert_int_equal(d->tile[e / d->tile_elements].first, e / d->tile_elements * d->tile_elements);
         assert_ptr_equal(rg_tile_of(d, slot), &d->tile[e / d->tile_elements]);
         assert_memory_equal(d->set + 4 * slot, s->mesh->set + 4 * e, 4);
@@ -134,6 +152,31 @@ static void check_slots(const setup *s) {
         real += d->id[slot] >= 0;
     }
     assert_int_equal(real, d->elements);
+}
+
+/* Materials ascend in a tile, and of each the numbers. */
+static void check_runs(const setup *s) {
+    const rg_domain *d = s->domain;
+    for (size_t t = 0; t < d->tiles; t++) {
+        size_t end = 0, blocks = d->tile[t].end - d->tile[t].begin;
+        for (size_t begin = 0; begin < blocks; begin = end) {
+            end = rg_run_end(d, &d->tile[t], begin);
+            const uint8_t *of = d->material + d->tile[t].begin;
+            const rg_gid *id = d->id + d->tile[t].begin * RG_LANES;
+            assert_true(end > begin && end <= blocks && (begin == 0 || of[begin - 1] < of[begin]));
+            for (size_t at = begin * RG_LANES; at < end * RG_LANES; at++) {
+                bool first = at == begin * RG_LANES;
+                assert_int_equal(of[at / RG_LANES], of[begin]);
+                assert_true(first ? id[at] >= 0 : id[at] > id[at - 1] || id[at] < 0);
+            }
+        }
+        assert_int_equal(end, blocks);
+    }
+}
+
+static void test_runs(void **state) {
+    (void)state;
+    for_each_setup(check_runs);
 }
 
 /* Each tile holds its run of elements; every element has its place. */
@@ -250,6 +293,9 @@ static void test_faces(void **state) {
 static void check_interface(const setup *s, rg_gid e, int f, rg_gid other, size_t i) {
     const rg_domain *d = s->domain;
     const rg_interface_material *m = s->material;
+    int own = material_of(m, e), beside = material_of(m, other);
+    double lambda = 0.5 * (matter[own].lambda + matter[beside].lambda);
+    double mu = 0.5 * (matter[own].mu + matter[beside].mu);
     double out[3], normal[3], volume[2], sign = interface_link(d, e, f) & 1 ? -1 : 1;
     outward(s->mesh, e, f, out);
     double area = rg_interface_area(d, i, normal);
@@ -264,10 +310,13 @@ static void check_interface(const setup *s, rg_gid e, int f, rg_gid other, size_
     }
     double h = 3 * fmin(volume[0], volume[1]) / area, scale = m->beta_s / h;
     bool elastic = m->penalty == RG_PENALTY_ELASTIC;
-    double iso = area * scale * (elastic ? m->mu : m->lambda + 2 * m->mu);
-    double norm = elastic ? scale * (m->lambda + m->mu) / area : 0;
+    double iso = area * scale * (elastic ? mu : lambda + 2 * mu);
+    double norm = elastic ? scale * (lambda + mu) / area : 0;
     assert_true(fabs(d->igeom[rg_igeom_index(i, RG_IGEOM_PEN_ISO)] - iso) < 1e-13 * iso);
     assert_true(fabs(d->igeom[rg_igeom_index(i, RG_IGEOM_PEN_NORM)] - norm) <= 1e-13 * norm);
+    assert_int_equal(d->beside != NULL, m->materials > 1);
+    assert_true(d->beside == NULL || (d->beside[i][0] == (own < beside ? own : beside) &&
+                                      d->beside[i][1] == (own < beside ? beside : own)));
 }
 
 static void check_areas(const setup *s) {
@@ -351,20 +400,21 @@ static void test_streams(void **state) {
 
 static void check_layout(const setup *s) {
     const rg_domain *d = s->domain;
-    size_t block = 0, iblock = 0, row = 0, largest = 0, seams = 0;
+    size_t block = 0, iblock = 0, row = 0, largest = 0, seams = 0, blocks = 0;
     for (size_t t = 0; t < d->tiles; t++) {
         const rg_tile *tile = &d->tile[t];
         assert_true(tile->begin == block && tile->ibegin == iblock && tile->row == row);
-        assert_true(tile->end - tile->begin == d->tile_blocks && tile->ibegin <= tile->sbegin);
+        assert_true(tile->end > tile->begin && tile->ibegin <= tile->sbegin);
         assert_int_equal(tile->iend - tile->sbegin, (used_seams(s, t) + RG_LANES - 1) / RG_LANES);
         block = tile->end;
         iblock = tile->iend;
         row += (tile->iend - tile->sbegin) * RG_LANES;
+        blocks = tile->end - tile->begin > blocks ? tile->end - tile->begin : blocks;
         largest = tile->iend - tile->ibegin > largest ? tile->iend - tile->ibegin : largest;
         seams = tile->iend - tile->sbegin > seams ? tile->iend - tile->sbegin : seams;
     }
     assert_true(d->blocks == block && d->iblocks == iblock && d->own_rows == row);
-    assert_true(d->tile_iblocks == largest && d->tile_sblocks == seams);
+    assert_true(d->tile_blocks == blocks && d->tile_iblocks == largest && d->tile_sblocks == seams);
 }
 
 /* Blocks and rows of the tiles follow each other without gaps. */
@@ -427,9 +477,13 @@ static void test_padding(void **state) {
 
 int main(int argc, char **argv) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_slots),   cmocka_unit_test(test_element_geometry),
-        cmocka_unit_test(test_faces),   cmocka_unit_test(test_areas),
-        cmocka_unit_test(test_streams), cmocka_unit_test(test_layout),
+        cmocka_unit_test(test_slots),
+        cmocka_unit_test(test_runs),
+        cmocka_unit_test(test_element_geometry),
+        cmocka_unit_test(test_faces),
+        cmocka_unit_test(test_areas),
+        cmocka_unit_test(test_streams),
+        cmocka_unit_test(test_layout),
         cmocka_unit_test(test_padding),
     };
     MPI_Init(&argc, &argv);

@@ -101,7 +101,7 @@ static void points_step(points *p) {
 }
 
 static double *history_of(const points *p, int e, size_t row) {
-    return &p->history[rg_history_index(p->in->element[e], RG_J2_HISTORY, row)];
+    return &p->history[rg_history_index(p->in->element[e], rg_history_block(RG_J2_HISTORY), row)];
 }
 
 static double strain_of(const points *p, int e) {

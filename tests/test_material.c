@@ -130,7 +130,7 @@ static void compare_element(const path *p, const rg_solver *s, size_t slot, cons
     for (int k = 0; k < 3; k++)
         J *= 1 + s->time * p->rate[k];
     for (size_t k = 0; k < released; k++)
-        expect(p->name, "history", s->history[rg_history_index(slot, RG_DE_HISTORY, k)],
+        expect(p->name, "history", s->history[rg_history_index(slot, s->history_stride, k)],
                t->history[k % RG_DE_HISTORY], k % RG_DE_HISTORY == RG_DE_GROWTH ? 3 : 1);
     for (size_t k = 0; k < 6 * RG_GAUSS; k++) {
         double sigma = rg_reference_dot(t->P[row[k % 6]], t->F[column[k % 6]]) / J;
@@ -138,10 +138,10 @@ static void compare_element(const path *p, const rg_solver *s, size_t slot, cons
     }
     expect(p->name, "energy", energy, volume * t->result.energy, 1e9 * volume);
     expect(p->name, "released by flow",
-           s->history[rg_history_index(slot, RG_DE_HISTORY, released + RG_RELEASED_PLASTIC)],
+           s->history[rg_history_index(slot, s->history_stride, released + RG_RELEASED_PLASTIC)],
            volume * t->plastic, 1e9 * volume);
     expect(p->name, "released by damage",
-           s->history[rg_history_index(slot, RG_DE_HISTORY, released + RG_RELEASED_DAMAGE)],
+           s->history[rg_history_index(slot, s->history_stride, released + RG_RELEASED_DAMAGE)],
            volume * t->damage, 1e9 * volume);
 }
 
@@ -149,7 +149,7 @@ static void compare(const path *p, rg_solver *s, const twin *t) {
     _Alignas(64) double cauchy[RG_GAUSS * 6 * RG_LANES], energy[RG_LANES];
     int elements = 0;
     for (const rg_tile *tile = s->domain->tile; tile < s->domain->tile + s->domain->tiles; tile++) {
-        rg_bulk_args bulk = rg_tile_bulk(s, tile, &s->work[0]);
+        rg_bulk_args bulk = rg_tile_bulk(s, tile, &s->work[0], 0);
         rg_bulk_state_args args = {.bulk = &bulk, .energy = energy, .cauchy = cauchy};
         rg_tile_receive(s, tile, &s->work[0]);
         for (size_t block = tile->begin; block < tile->end; block++) {

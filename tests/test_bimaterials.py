@@ -1,0 +1,260 @@
+"""More than one material: waves at their interfaces, equilibrium across them, who is of which, and the same bits whatever
+the ranks, threads and mesh file."""
+
+import json
+import re
+
+import h5py
+import numpy as np
+import pytest
+from conftest import BENCH, CASES, SINGLE, launch, overrides, rounding
+from test_meshes import convert, file_case
+
+BAR = BENCH / "bimaterial.yaml"
+ALUMINA = {"model": "neo-hookean", "young": 260e9, "poisson": 0.21, "density": 3690}
+STEEL = {"model": "neo-hookean", "young": 210e9, "poisson": 0.3, "density": 7800}
+ZZ = 5  # of a stress field: xx xy xz yy yz zz
+STRESS, LENGTH = 100e6, 2e-3  # of the wave (Pa); of either half of the bar (m)
+RISE = 6e-8  # s, of the wave in shared nodes
+
+
+def modulus(solid):
+    """lambda + 2 mu."""
+    nu = solid["poisson"]
+    return solid["young"] * (1 - nu) / ((1 + nu) * (1 - 2 * nu))
+
+
+def speed(solid):
+    return np.sqrt(modulus(solid) / solid["density"])
+
+
+def impedance(solid):
+    return solid["density"] * speed(solid)
+
+
+def transmitted(first, second):
+    """Stress behind an interface over that of the wave that comes from `first`."""
+    return 2 * impedance(second) / (impedance(first) + impedance(second))
+
+
+def whole(first, second, **interface):
+    """The bar of two solids, pulled at the end of the first one, that does not break."""
+    wall = [{"set": f"{axis}{side}", "component": axis, "velocity": 0} for axis in "xy" for side in "-+"]
+    arrival = LENGTH / speed(first)
+    pull = STRESS / impedance(first)
+    if interface.get("form") == "continuous":  # its lumped mass rings behind a sudden front
+        pull = f"{pull}*(t < {RISE} ? (1 - cos(pi*t/{RISE}))/2 : 1)"
+    return {"mesh.cells": [2, 2, 40], "material": first, "materials": [{"name": "second", "where": "z < 0", **second}],
+            "interface": {"law": "none", **interface},
+            "boundary": [*wall, {"set": "z+", "component": "z", "velocity": pull}],
+            "time.end": min(2 * arrival, arrival + 2 * LENGTH / speed(second)), "output.fields": []}
+
+
+ORDERS = [(ALUMINA, STEEL), (STEEL, ALUMINA)]
+FORMS = [{}, {"form": "incomplete", "beta_s": 40}, {"form": "continuous"}, {"penalty": "isotropic"}]
+
+
+@pytest.mark.parametrize("first, second, interface", [*[(*order, {}) for order in ORDERS], *[(*ORDERS[0], f) for f in FORMS[1:]]])
+def test_wave_is_reflected_and_transmitted_as_impedances_say(run, first, second, interface):
+    """Plateaus half a millimetre on both sides of the interface, from 20 ns after the front to 5 ns before the next; with
+    shared nodes, whose wave takes 60 ns to rise, from 75 ns, within 2 %, on a finer mesh."""
+    lumped = interface.get("form") == "continuous"
+    finer = {"mesh.cells": [4, 4, 54]} if lumped else {}
+    bar = run(BAR, threads=2, sets={**whole(first, second, **interface), **finer})
+    time, end = bar.history["time"], bar.history["time"][-1]
+    arrival, away = LENGTH / speed(first), 0.5e-3
+    begin_after, share = (75e-9, 0.02) if lumped else (20e-9, 0.01)
+
+    def plateau(probe, begin, stop):
+        return bar.history[f"{probe}_szz"][(time > begin + begin_after) & (time < stop - 5e-9)].mean()
+
+    through = transmitted(first, second) * STRESS
+    incoming = plateau("alumina", arrival - away / speed(first), arrival + away / speed(first))
+    assert incoming == pytest.approx(STRESS, rel=share)
+    assert plateau("alumina", arrival + away / speed(first), end) == pytest.approx(through, rel=share)
+    assert plateau("steel", arrival + away / speed(second), end) == pytest.approx(through, rel=share)
+    assert bar.summary["energy_error_rel"] < (3e-3 if interface.get("form") == "incomplete" else 2e-4)
+
+
+@pytest.fixture(scope="module")
+def delamination(run):
+    return run(BAR, threads=2, sets={"output.interval": 2e-9, "output.fields": ["crack", "material"]})
+
+
+def test_reflection_breaks_the_interface(delamination):
+    """What the case promises: time and energy of the delamination, and that nothing else breaks."""
+    arrival, area = LENGTH / speed(ALUMINA), 0.3e-3**2
+    through = transmitted(ALUMINA, STEEL) * STRESS
+    assert STRESS < 110e6 < through
+    summary, energy = delamination.summary, delamination.energy
+    assert summary["first_fracture_time_s"] == pytest.approx(arrival, rel=0.03)
+    assert summary["failed_area_m2"] == pytest.approx(area, rel=1e-6)
+    assert summary["dissipated_J"] == pytest.approx(5 * area, rel=1e-3)
+    assert summary["energy_error_rel"] < 3e-3
+    assert np.abs(delamination.frames()[-1]["crack/points"][:, 2]).max() < 1e-6
+    rate = (1 / impedance(ALUMINA) + 1 / impedance(STEEL)) * 110e6 / (2 * 5 / 110e6)
+    separation = np.log(through / (through - 110e6)) / rate
+    half = np.interp(0.5 * area, energy["failed_area"], energy["time"])
+    assert half == pytest.approx(arrival + separation, rel=0.03)
+
+
+def test_reflection_from_the_softer_side_does_not(run):
+    """The same wave from the steel leaves 82 MPa at the interface."""
+    sets = whole(STEEL, ALUMINA)
+    interface = {"law": "linear", "strength": 400e6, "energy": 34,
+                 "sets": [{"between": ["second", "material"], "strength": 110e6, "energy": 5}]}
+    assert run(BAR, threads=2, sets={**sets, "interface": interface}).summary["broken_area_m2"] == 0
+
+
+def test_fragments_have_the_masses_of_their_materials(delamination):
+    rows = np.genfromtxt(delamination.dir / "fragments.csv", delimiter=",", names=True)
+    last = rows[rows["time"] == rows["time"].max()]
+    volume = 0.3e-3**2 * LENGTH
+    assert sorted(last["mass"]) == pytest.approx([3690 * volume, 7800 * volume], rel=rounding(1e-9, 1e-5))
+
+
+def test_field_has_the_material_of_each_element(delamination):
+    centre = delamination.points().reshape(-1, 10, 3)[:, :4].mean(axis=1)
+    assert np.array_equal(delamination.frames()[0]["material"].ravel(), (centre[:, 2] < 0).astype(float))
+
+
+def test_laminate_under_constant_stress_stays_at_rest(run):
+    """Continuous displacement and traction, but not strain: exact in both elements, also across the penalty."""
+    soft = {"model": "linear-elastic", "young": 20e9, "poisson": 0.35, "density": 1200}
+    stiff = {**ALUMINA, "model": "linear-elastic"}
+    strain = [STRESS / modulus(stiff), STRESS / modulus(soft)]
+    bar = run(BAR, threads=2, sets={
+        **whole(stiff, soft), "mesh.cells": [2, 2, 20], "time.end": 1, "time.steps": 200, "output.interval": 200,
+        "initial": {"displacement": {"z": f"z < 0 ? {strain[1]}*z : {strain[0]}*z"}}, "output.fields": ["stress"],
+        "boundary": [{"set": s, "component": s[0], "velocity": 0} for s in ("x-", "x+", "y-", "y+", "z-", "z+")]})
+    stress = bar.frames()[-1]["stress"]
+    assert np.abs(stress[:, ZZ] - STRESS).max() < rounding(1e-10, 1e-3) * STRESS
+    assert bar.energy["kinetic"][-1] < rounding(1e-20, 1e-8) * bar.energy["bulk"][-1]
+
+
+TORN = {"mesh.cells": [3, 3, 12], "mesh.jitter": 0.12, "time.end": 0.8e-6, "output.fields": [], "output.interval": 1e-7}
+
+
+def test_one_material_named_twice_is_one_material(run):
+    """The elements lie in another order in their tiles; each computes the same."""
+    bar = run(BENCH / "torn-bar.yaml", sets=TORN)
+    twice = run(BENCH / "torn-bar.yaml", threads=2,
+                sets={**TORN, "materials": [{"name": "again", "where": "z > 2e-3 + x", **ALUMINA}]})
+    assert bar.summary["broken_area_m2"] > 0
+    assert twice.summary["state_hash"] == bar.summary["state_hash"]
+    assert (twice.dir / "energy.csv").read_bytes() == (bar.dir / "energy.csv").read_bytes()
+
+
+@pytest.fixture(scope="module")
+def three(run):
+    """three(ranks, threads, form): three materials; in single precision all are neo-Hookean."""
+    text = (CASES / "three-materials.yaml").read_text()
+    listed = [{"name": "metal", "where": "z + 0.3*x > 0.1e-3", **STEEL},
+              {"name": "ceramic", "where": "x^2 + y^2 + (z - 0.1e-3)^2 < (0.25e-3)^2", **ALUMINA, "density": 3000}]
+    assert all(entry["where"] in text for entry in listed)
+    single = {"materials": listed, "output.fields": ["displacement", "material", "crack"]} if SINGLE else {}
+
+    def go(ranks=1, threads=1, **sets):
+        return run(CASES / "three-materials.yaml", ranks=ranks, threads=threads, sets={**single, **sets})
+    return go
+
+
+FORMS_THAT_BREAK = [{}, {"interface.form": "incomplete", "interface.beta_s": 40}, {"interface.form": "continuous", "interface.faces": "z > 0"},
+                    {"interface.form": "intrinsic", "interface.law": "exponential"}]
+
+
+@pytest.mark.parametrize("ranks, threads, sets", [
+    (1, 2, {}), (2, 1, {}), (3, 1, {}), *[(2, 1, sets) for sets in FORMS_THAT_BREAK[1:]],
+    (3, 1, {"viscosity.linear": 0.06, "viscosity.quadratic": 1.2})])
+def test_same_bits_on_any_ranks_and_threads(three, ranks, threads, sets):
+    one, many = three(**sets), three(ranks, threads, **sets)
+    assert one.summary["state_hash"] == many.summary["state_hash"]
+    for name in ("energy.csv", "history.csv", "fragments.csv"):
+        assert (one.dir / name).read_bytes() == (many.dir / name).read_bytes(), name
+    assert one.summary["broken_area_m2"] > 0
+    assert one.summary["energy_error_rel"] < 0.01
+
+
+def test_all_histories_go_on(three):
+    if SINGLE:
+        pytest.skip("no material with a history in single precision")
+    last = three().frames()[-1]
+    of = last["material"].ravel()
+    assert set(of) == {0, 1, 2}
+    assert (last["plastic_strain"].ravel()[of == 0] == 0).all() and (last["damage"].ravel()[of < 2] == 0).all()
+    assert last["plastic_strain"].ravel()[of == 1].max() > 1e-4 and last["damage"].ravel()[of == 2].min() > 0.01
+
+
+def test_restart_on_other_ranks(three, tmp_path):
+    """And the case must be the same: not one with another material."""
+    sets = {"checkpoint.steps": 60}
+    stop = three(2, **sets, **{"time.steps": 100})
+    for found in sorted((stop.dir / "checkpoints").glob("step-*.h5"))[1:]:
+        found.unlink()
+    process = launch("run", "--restart", stop.dir, "-q", "--set", "materials[0].density=7000", ranks=1)
+    assert process.returncode == 2
+    process = launch("run", "--restart", stop.dir, "-q", "--set", "time.steps=100000", ranks=3)
+    assert process.returncode == 0, process.stderr
+    assert json.loads((stop.dir / "summary.json").read_text())["state_hash"] == three(**sets).summary["state_hash"]
+
+
+@pytest.fixture(scope="module")
+def sets_file(scratch):
+    """The bar as Abaqus input, with its halves as element sets, and the case that reads what rhegma mesh makes of it."""
+    folder = scratch / "halves"
+    folder.mkdir()
+    text = re.sub(r"^boundary:\n(  .*\n)+", "", BAR.read_text(), flags=re.M)
+    source = folder / "bar.yaml"
+    source.write_text(text.replace("[3, 3, 40]", "[2, 2, 12]") + "initial: {velocity: {z: \"-12*cos(pi*z/4e-3)\"}}\n")
+    file, _ = convert(source, folder / "box.h5")
+    position = dict(zip(file["vertex"][:].tolist(), file["x"][:].tolist()))
+    corner = file["corner"][:]
+    centre = np.array([[position[v] for v in row] for row in corner]).mean(axis=1)
+    lines = ["*NODE", *[f"{v + 1}, {x[0]:.17g}, {x[1]:.17g}, {x[2]:.17g}" for v, x in sorted(position.items())]]
+    for name, chosen in (("top", centre[:, 2] > 0), ("bottom", centre[:, 2] < 0)):
+        lines += [f"*ELEMENT, TYPE=C3D4, ELSET={name}"]
+        lines += [", ".join(str(k + 1) for k in (e, *corner[e])) for e in np.flatnonzero(chosen)]
+        lines += [f"*SOLID SECTION, ELSET={name}, MATERIAL=a", "1."]
+    (folder / "bar.inp").write_text("\n".join(lines) + "\n")
+    halves, _ = convert(folder / "bar.inp", folder / "halves.h5")
+    assert sorted(n.decode() for n in halves["volume_sets"][:]) == ["bottom", "top"]
+    return file_case(folder, folder / "halves.h5", source)
+
+
+@pytest.mark.parametrize("ranks", [1, 3])
+def test_volume_sets_of_a_file(run, sets_file, ranks):
+    steel = {"name": "steel", **STEEL}
+    sets = {"output.fields": ["material"], "output.interval": 1e-7, "time.end": 0.3e-6}
+    by_set = run(sets_file, ranks=ranks, sets={**sets, "materials": [{"set": "bottom", **steel}]})
+    by_place = run(sets_file, sets={**sets, "materials": [{"where": "z < 0", **steel}]})
+    assert by_set.summary["state_hash"] == by_place.summary["state_hash"]
+    assert by_set.summary["elements"] == 288 and by_set.frames()[0]["material"].sum() == 144
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+@pytest.mark.parametrize("claim, message", [
+    ({"set": "botom"}, "materials[0].set: botom: {file} has no such volume set; allowed: {sets}; did you mean 'bottom'?"),
+    ({"where": "z > 1"}, "materials[0].where: z > 1: no element is in it"),
+    ({"where": "1/(z > 0)"}, "materials[0].where: 1/(z > 0) is inf at (")])
+def test_claims_that_are_refused(sets_file, tmp_path, ranks, claim, message):
+    out = tmp_path / "out"
+    process = launch("run", sets_file, "-q", "-o", out, *overrides({"materials": [{"name": "steel", **STEEL, **claim}]}),
+                     ranks=ranks)
+    with h5py.File(sets_file.parent / "halves.h5") as file:
+        names = ", ".join(n.decode() for n in file["volume_sets"][:])
+    assert process.returncode == 2 and not out.exists()
+    assert message.format(file=sets_file.parent / "halves.h5", sets=names) in process.stderr
+
+
+def test_material_that_lost_all_is_told(sets_file):
+    steel = {"name": "steel", "where": "z < 0", **STEEL}
+    process = launch("check", sets_file, *overrides({"materials": [steel, {**steel, "name": "iron", "where": "z < 1"}]}))
+    assert process.returncode == 2 or "materials: steel: later materials claim all of its elements" in process.stderr
+    assert "material alumina: later materials claim all of its elements" in process.stderr
+
+
+def test_check_tells_all_materials(run):
+    said = launch("check", CASES / "three-materials.yaml" if not SINGLE else BAR).stdout
+    for words in (("material       glass: neo-hookean", "material       metal: j2", "material       ceramic: deshpande-evans")
+                  if not SINGLE else ("material       alumina: neo-hookean", "material       steel: neo-hookean")):
+        assert words in said
