@@ -71,6 +71,13 @@ static void count_all(const rg_solver *s, int64_t count[2]) {
     MPI_Allreduce(MPI_IN_PLACE, count, 2, MPI_INT64_T, MPI_SUM, s->comm);
 }
 
+static void count_materials(const rg_solver *s, int64_t of[RG_MAX_MATERIALS]) {
+    for (size_t slot = 0; slot < s->domain->blocks * RG_LANES; slot++) {
+        of[s->domain->material[slot / RG_LANES]] += s->domain->id[slot] >= 0;
+    }
+    MPI_Allreduce(MPI_IN_PLACE, of, RG_MAX_MATERIALS, MPI_INT64_T, MPI_SUM, s->comm);
+}
+
 rg_estimate rg_estimate_run(const rg_solver *s) {
     const rg_case *c = s->input;
     double xi = s->damping * c->viscosity.linear; /* of the stiffest mode, by bulk viscosity */
@@ -80,6 +87,7 @@ rg_estimate rg_estimate_run(const rg_solver *s) {
                      .interfaces = count[0],
                      .dofs = 3 * count[1],
                      .dt_critical = 2 / sqrt(s->omega2) * (sqrt(1 + xi * xi) - xi)};
+    count_materials(s, e.of_material);
     e.dt = c->time.safety * e.dt_critical;
     double steps = ceil(c->time.end / e.dt * (1 - 1e-12));
     if (c->time.steps > 0) {
@@ -99,11 +107,15 @@ rg_estimate rg_estimate_run(const rg_solver *s) {
     return e;
 }
 
-static void print_material(const rg_solver *s, int i, FILE *out) {
+static void print_material(const rg_solver *s, const rg_estimate *e, int i, FILE *out) {
     const rg_material *m = &s->material[i];
     double limit, speed;
-    fprintf(out, "material       %s%s%s%s\n", s->materials > 1 ? rg_case_material_name(s->input, i) : "",
-            s->materials > 1 ? ": " : "", rg_material_word(m->model),
+    char name[160] = "";
+    if (s->materials > 1) {
+        snprintf(name, sizeof name, "%s: %" PRId64 " elements, ", rg_case_material_name(s->input, i),
+                 e->of_material[i]);
+    }
+    fprintf(out, "material       %s%s%s\n", name, rg_material_word(m->model),
             m->model == RG_MATERIAL_LINEAR_ELASTIC ? ": for small strains and rotations alone" : "");
     fprintf(out, "wave speeds    dilatational %.1f m/s, shear %.1f m/s\n", rg_material_dilatational(m),
             rg_material_shear(m));
@@ -121,7 +133,7 @@ void rg_estimate_print(const rg_solver *s, const rg_estimate *e, FILE *out) {
         rg_quality_print(&s->part->quality, s->part->interfaces, out);
     }
     for (int i = 0; i < s->materials; i++) {
-        print_material(s, i, out);
+        print_material(s, e, i, out);
     }
     fprintf(out,
             "time step      %.4g s = %.3g of the critical %.4g s, set by element %" PRId64

@@ -25,7 +25,7 @@ static const char usage[] =
     "                                               per unit of IN; --improve makes flat elements less flat\n"
     "       rhegma mesh CASE.yaml -o OUT.h5 [--set a.b=value]   a mesh file from the mesh of a case\n"
     "       rhegma mesh --info MESH.h5 [--case CASE.yaml]   what a mesh file holds; its time steps with the\n"
-    "                                               material of a case, else for waves of 1 m/s\n"
+    "                                               fastest material of a case, else for waves of 1 m/s\n"
     "       rhegma mesh --partition N[,M...] MESH.h5   store partitions for N, M ... ranks in a mesh file\n";
 
 /* ---- arguments ---- */

@@ -26,11 +26,23 @@ static void write_bodies(FILE *f, const rg_bodies *b) {
     }
 }
 
+static void write_materials(FILE *f, const rg_solver *s, const rg_estimate *e) {
+    fputs("  \"materials\": [\n", f);
+    for (int i = 0; i < s->materials; i++) {
+        fputs("  {\n", f);
+        rg_json_text(f, "name", rg_case_material_name(s->input, i));
+        rg_json_integer(f, "elements", e->of_material[i]);
+        fprintf(f, "  \"model\": \"%s\"}%s\n", rg_material_word(rg_case_material(s->input, i)->model),
+                i + 1 < s->materials ? "," : "],");
+    }
+}
+
 static void write_run(FILE *f, const rg_summary *m, const rg_solver *s, const rg_estimate *e) {
     rg_json_text(f, "case", s->input->name);
     rg_json_integer(f, "elements", e->elements);
     rg_json_integer(f, "interfaces", e->interfaces);
     rg_json_integer(f, "dofs", e->dofs);
+    write_materials(f, s, e);
     rg_json_integer(f, "ranks", s->ranks);
     rg_json_integer(f, "threads", s->threads);
     rg_json_integer(f, "partitions", m->partitions);

@@ -89,13 +89,13 @@ def test_reflection_breaks_the_interface(delamination):
     summary, energy = delamination.summary, delamination.energy
     assert summary["first_fracture_time_s"] == pytest.approx(arrival, rel=0.03)
     assert summary["failed_area_m2"] == pytest.approx(area, rel=1e-6)
-    assert summary["dissipated_J"] == pytest.approx(5 * area, rel=1e-3)
+    assert summary["dissipated_J"] == pytest.approx(5 * area, rel=rounding(1e-9, 1e-5))
     assert summary["energy_error_rel"] < 3e-3
     assert np.abs(delamination.frames()[-1]["crack/points"][:, 2]).max() < 1e-6
     rate = (1 / impedance(ALUMINA) + 1 / impedance(STEEL)) * 110e6 / (2 * 5 / 110e6)
     separation = np.log(through / (through - 110e6)) / rate
     half = np.interp(0.5 * area, energy["failed_area"], energy["time"])
-    assert half == pytest.approx(arrival + separation, rel=0.03)
+    assert half == pytest.approx(arrival + separation, rel=0.01)
 
 
 def test_reflection_from_the_softer_side_does_not(run):
@@ -128,7 +128,7 @@ def test_laminate_under_constant_stress_stays_at_rest(run):
         "initial": {"displacement": {"z": f"z < 0 ? {strain[1]}*z : {strain[0]}*z"}}, "output.fields": ["stress"],
         "boundary": [{"set": s, "component": s[0], "velocity": 0} for s in ("x-", "x+", "y-", "y+", "z-", "z+")]})
     stress = bar.frames()[-1]["stress"]
-    assert np.abs(stress[:, ZZ] - STRESS).max() < rounding(1e-10, 1e-3) * STRESS
+    assert np.abs(stress[:, ZZ] - STRESS).max() < rounding(1e-12, 1e-3) * STRESS
     assert bar.energy["kinetic"][-1] < rounding(1e-20, 1e-8) * bar.energy["bulk"][-1]
 
 
@@ -191,8 +191,13 @@ def test_restart_on_other_ranks(three, tmp_path):
     stop = three(2, **sets, **{"time.steps": 100})
     for found in sorted((stop.dir / "checkpoints").glob("step-*.h5"))[1:]:
         found.unlink()
-    process = launch("run", "--restart", stop.dir, "-q", "--set", "materials[0].density=7000", ranks=1)
-    assert process.returncode == 2
+    case = stop.dir / "case.yaml"
+    text = case.read_text()
+    assert text.count("density: 7800 ") == 1
+    case.write_text(text.replace("density: 7800 ", "density: 7000 "))
+    process = launch("run", "--restart", stop.dir, "-q")
+    assert process.returncode == 2 and "materials[0].density: 7000; in the checkpoint: 7800" in process.stderr
+    case.write_text(text)
     process = launch("run", "--restart", stop.dir, "-q", "--set", "time.steps=100000", ranks=3)
     assert process.returncode == 0, process.stderr
     assert json.loads((stop.dir / "summary.json").read_text())["state_hash"] == three(**sets).summary["state_hash"]
@@ -249,12 +254,28 @@ def test_claims_that_are_refused(sets_file, tmp_path, ranks, claim, message):
 def test_material_that_lost_all_is_told(sets_file):
     steel = {"name": "steel", "where": "z < 0", **STEEL}
     process = launch("check", sets_file, *overrides({"materials": [steel, {**steel, "name": "iron", "where": "z < 1"}]}))
-    assert process.returncode == 2 or "materials: steel: later materials claim all of its elements" in process.stderr
-    assert "material alumina: later materials claim all of its elements" in process.stderr
+    assert process.returncode == 0
+    for name in ("materials: steel", "material alumina"):
+        assert f"{name}: later materials claim all of its elements" in process.stderr
 
 
-def test_check_tells_all_materials(run):
-    said = launch("check", CASES / "three-materials.yaml" if not SINGLE else BAR).stdout
-    for words in (("material       glass: neo-hookean", "material       metal: j2", "material       ceramic: deshpande-evans")
-                  if not SINGLE else ("material       alumina: neo-hookean", "material       steel: neo-hookean")):
-        assert words in said
+def test_check_and_summary_tell_all_materials(delamination):
+    said = launch("check", BAR).stdout
+    for name in ("alumina", "steel"):
+        assert f"material       {name}: 1080 elements, neo-hookean\n" in said
+        assert {"name": name, "elements": 1080, "model": "neo-hookean"} in delamination.summary["materials"]
+
+
+def test_body_meets_both_materials(run):
+    """A sphere hits the interface from the side: momentum of all, and a penalty and mass of each element's own."""
+    bar = run(BAR, threads=2, sets={
+        "mesh.cells": [3, 3, 8], "mesh.size": [0.3e-3, 0.3e-3, 0.8e-3], "mesh.origin": [0, 0, -0.4e-3], "boundary": [],
+        "interface": {"law": "none", "penalty": "isotropic"}, "output.fields": [], "output.probes": [], "time.end": 0.4e-6,
+        "bodies": [{"name": "ball", "shape": "sphere", "motion": "free", "at": [0.35e-3, 0.15e-3, 0], "radius": 0.05e-3,
+                    "density": 8000, "velocity": {"x": -20}, "faces": ["x+"]}]})
+    energy, ball = bar.energy, bar.summary["bodies"][0]
+    start = 8000 * 4 / 3 * np.pi * 0.05e-3**3 * 20
+    assert ball["velocity"][0] > 0 and abs(ball["velocity"][2]) > 0.01  # back, and to one side
+    for axis, value in zip("xyz", (-start, 0, 0)):
+        assert np.abs(energy[f"momentum_{axis}"] - value).max() < rounding(1e-13, 1e-5) * start
+    assert bar.summary["energy_error_rel"] < 1e-3
