@@ -117,14 +117,20 @@ static void fill_tile(rg_domain *d, const rg_part *part, const rg_element *eleme
                       size_t t) {
     const rg_tile *tile = &d->tile[t];
     size_t first = tile->begin * RG_LANES, count = (size_t)rg_tile_size(part, part->tile_id[t]);
+    size_t slots = (tile->end - tile->begin) * RG_LANES;
     place_materials(d, tile, element, count);
-    for (size_t at = 0; at < (tile->end - tile->begin) * RG_LANES; at++) {
-        set_padding(d, first + at, at);
+    for (size_t at = 0; at < slots; at++) {
+        d->id[first + at] = -1;
     }
     for (size_t i = 0; i < count; i++) {
         size_t at = rg_slot_in(d, tile, element[i].id);
         set_element(d, first + at, at, &element[i]);
         mark_joined(d, first + at, joined == NULL ? 0 : joined[element + i - part->element]);
+    }
+    for (size_t at = 0; at < slots; at++) {
+        if (d->id[first + at] < 0) {
+            set_padding(d, first + at, at);
+        }
     }
 }
 
