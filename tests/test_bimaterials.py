@@ -175,6 +175,12 @@ def test_same_bits_on_any_ranks_and_threads(three, ranks, threads, sets):
     assert one.summary["energy_error_rel"] < 0.01
 
 
+def test_same_bits_where_tiles_are_dealt_anew(three):
+    one, dealt = three(), three(2, **{"mesh.rebalance": 0.5})
+    assert dealt.summary["partitions"] > 1
+    assert dealt.summary["state_hash"] == one.summary["state_hash"]
+
+
 def test_all_histories_go_on(three):
     if SINGLE:
         pytest.skip("no material with a history in single precision")
