@@ -10,7 +10,7 @@
 typedef struct {
     int64_t elements, interfaces, dofs;
     int64_t of_material[RG_MAX_MATERIALS]; /* elements */
-    double dt_critical, dt; /* 2/omega, and times safety (s) */
+    double dt_critical, dt;                /* 2/omega, and times safety (s) */
     int64_t steps;
     double bytes_per_element, peak_bytes_per_element; /* fields; and with output and cracks everywhere */
     double seconds;       /* estimate for the time loop on these ranks and threads */

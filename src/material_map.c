@@ -10,23 +10,17 @@
 #include "exchange.h"
 #include "gid_map.h"
 #include "mem.h"
+#include "spot.h"
 
 typedef struct {
     const rg_case *c;
     rg_part *part;
     MPI_Comm comm;
-    int rank, ranks;
+    int rank;
     int region[RG_MAX_MATERIALS];       /* volume set of entry i; -1: it has an expression */
     int64_t claimed[RG_MAX_MATERIALS];  /* elements that entry i claims */
     int64_t elements[RG_MAX_MATERIALS]; /* elements of material i */
 } map;
-
-/* Where all ranks have the same to say, rank 0 does, and ends the job. */
-static void let_first_speak(const map *m) {
-    if (m->rank > 0) {
-        MPI_Barrier(m->comm);
-    }
-}
 
 /* ---- Who claims what ---- */
 
@@ -39,7 +33,7 @@ static _Noreturn void refuse_set(const map *m, int i) {
         used += (size_t)snprintf(all + used, sizeof all - used, "%s%s", r > 0 ? ", " : "", names[r]);
     }
     const char *near = rg_nearest(m->c->other[i].set, names);
-    let_first_speak(m);
+    rg_speak(m->comm);
     rg_fatal(RG_USAGE, "%s: materials[%d].set: %s: %s has no such volume set; allowed: %s%s%s%s", m->c->path,
              i, m->c->other[i].set, m->c->mesh.file, all, near != NULL ? "; did you mean '" : "",
              near != NULL ? near : "", near != NULL ? "'?" : "");
@@ -61,22 +55,16 @@ static void find_centroid(const rg_element *e, double x[3]) {
     }
 }
 
-/* An entry whose expression is not finite at an element. */
-typedef struct {
-    rg_lid element;
-    int entry; /* -1: none */
-    double value;
-} fault;
-
 /* Asks all entries for element k; where[i] are a thread's own expressions. */
-static void claim(map *m, rg_lid k, rg_expr *const where[], int64_t claimed[], fault *bad) {
+static void claim(map *m, rg_lid k, rg_expr *const where[], int64_t claimed[], rg_spot *bad) {
     rg_element *e = &m->part->element[k];
     double x[3];
     find_centroid(e, x);
     for (int i = 0; i < m->c->others; i++) {
         double here = where[i] != NULL ? rg_expr_value(where[i], x, 0) : e->region == m->region[i];
-        if (!isfinite(here) && bad->entry < 0) {
-            *bad = (fault){k, i, here};
+        if (!isfinite(here)) {
+#pragma omp critical
+            rg_spot_note(bad, i, x, here);
         } else if (here != 0) {
             e->material = (uint8_t)(i + 1);
             claimed[i]++;
@@ -84,40 +72,32 @@ static void claim(map *m, rg_lid k, rg_expr *const where[], int64_t claimed[], f
     }
 }
 
-/* The first rank that has something to complain of does so. */
-static void refuse_values(const map *m, const fault *bad) {
-    int here = bad->entry >= 0 ? m->rank : m->ranks, first;
-    MPI_Allreduce(&here, &first, 1, MPI_INT, MPI_MIN, m->comm);
-    if (first < m->ranks && first != m->rank) {
-        MPI_Barrier(m->comm);
-    }
-    if (first < m->ranks) {
-        double x[3];
-        find_centroid(&m->part->element[bad->element], x);
+/* Of all entries and ranks the lowest place is told. */
+static void refuse_values(const map *m, rg_spot *bad) {
+    if (rg_spot_lowest(bad, m->comm)) {
+        rg_speak(m->comm);
         rg_fatal(RG_USAGE, "%s: materials[%d].where: %s is %g at (%g, %g, %g), the centroid of an element",
-                 m->c->path, bad->entry, rg_expr_text(m->c->other[bad->entry].where), bad->value, x[0], x[1],
-                 x[2]);
+                 m->c->path, (int)bad->which, rg_expr_text(m->c->other[bad->which].where), bad->value,
+                 bad->x[0], bad->x[1], bad->x[2]);
     }
 }
 
 static void claim_all(map *m) {
-    fault bad = {.entry = -1};
+    rg_spot bad = {.which = RG_NOWHERE};
 #pragma omp parallel
     {
         rg_expr *where[RG_MAX_MATERIALS];
         int64_t claimed[RG_MAX_MATERIALS] = {0};
-        fault mine = {.entry = -1};
         for (int i = 0; i < m->c->others; i++) {
             where[i] = rg_expr_copy(m->c->other[i].where);
         }
 #pragma omp for schedule(static)
         for (rg_lid k = 0; k < m->part->elements; k++) {
-            claim(m, k, where, claimed, &mine);
+            claim(m, k, where, claimed, &bad);
         }
 #pragma omp critical
         for (int i = 0; i < m->c->others; i++) {
             m->claimed[i] += claimed[i];
-            bad = mine.entry >= 0 && (bad.entry < 0 || mine.element < bad.element) ? mine : bad;
         }
         for (int i = 0; i < m->c->others; i++) {
             rg_expr_free(where[i]);
@@ -138,7 +118,7 @@ static void check_claims(map *m) {
     for (int i = 0; i < c->others; i++) {
         if (m->claimed[i] == 0) {
             const rg_other_material *o = &c->other[i];
-            let_first_speak(m);
+            rg_speak(m->comm);
             rg_fatal(RG_USAGE, "%s: materials[%d].%s: %s: no element is in it", c->path, i,
                      o->set != NULL ? "set" : "where", o->set != NULL ? o->set : rg_expr_text(o->where));
         }
@@ -215,7 +195,6 @@ void rg_materials_assign(const rg_case *c, rg_part *part, MPI_Comm comm) {
     }
     map m = {.c = c, .part = part, .comm = comm};
     MPI_Comm_rank(comm, &m.rank);
-    MPI_Comm_size(comm, &m.ranks);
     find_regions(&m);
     claim_all(&m);
     check_claims(&m);
