@@ -16,8 +16,16 @@ static double work_of(const rg_solver *s) {
     return seconds[RG_PHASE_COMPUTE] + seconds[RG_PHASE_JUMP] + seconds[RG_PHASE_PACK];
 }
 
-void rg_balance_start(rg_balance *b, const rg_solver *s, bool dealt) {
+/* What tiles took so far, set-up included, is not asked for any more. */
+static void forget(rg_solver *s) {
+    if (s->tile_seconds != NULL) {
+        memset(s->tile_seconds, 0, s->domain->tiles * sizeof *s->tile_seconds);
+    }
+}
+
+void rg_balance_start(rg_balance *b, rg_solver *s, bool dealt) {
     *b = (rg_balance){.level = dealt ? 0 : 1, .now = 1, .spent = work_of(s), .step = s->step};
+    forget(s);
 }
 
 /* The most over the mean, of the work since the last look. */
@@ -42,7 +50,7 @@ bool rg_balance_pays(rg_balance *b, rg_solver *s, double cost, double left) {
     int pays = limit < 1 || (b->now > limit * b->level && (1 - b->level / b->now) * left > WORTH * cost);
     MPI_Bcast(&pays, 1, MPI_INT, 0, s->comm);
     if (!pays) {
-        memset(s->tile_seconds, 0, s->domain->tiles * sizeof *s->tile_seconds);
+        forget(s);
     }
     return pays;
 }

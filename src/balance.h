@@ -15,7 +15,7 @@ typedef struct {
 } rg_balance;
 
 /* From the solver's state on; `dealt`: the partition was made by measured costs. */
-void rg_balance_start(rg_balance *b, const rg_solver *s, bool dealt);
+void rg_balance_start(rg_balance *b, rg_solver *s, bool dealt);
 
 /* Every so many steps: whether to deal the tiles anew, given that this takes `cost` seconds and the run as it
  * is `left` more. True where the work is more uneven than mesh.rebalance allows, on top of what the partition

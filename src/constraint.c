@@ -236,6 +236,11 @@ static void note(rg_constraints *k, const entry *e, int i, double time) {
 
 bool rg_constraints_told(const rg_constraints *k, char *words, size_t size, MPI_Comm comm) {
     rg_spot bad = k->bad;
+    double first = bad.which == RG_NOWHERE ? INFINITY : bad.value;
+    MPI_Allreduce(MPI_IN_PLACE, &first, 1, MPI_DOUBLE, MPI_MIN, comm);
+    if (bad.which != RG_NOWHERE && bad.value > first) { /* it only followed */
+        bad.which = RG_NOWHERE;
+    }
     bool found = rg_spot_lowest(&bad, comm);
     if (found) {
         const rg_boundary *b = &k->input->boundary[bad.which];

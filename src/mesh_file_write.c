@@ -234,7 +234,6 @@ static void put_partition(const target *w, const rg_tile_partition *p) {
 
 /* ---- file ---- */
 
-/* An empty file with the temporary name. */
 /* What has the name is replaced: that must not be a directory, or a device. */
 static void check_target(const target *w) {
     struct stat found;

@@ -114,18 +114,38 @@ static face *list_faces(const outer *list, int count, int64_t *faces) {
     return all;
 }
 
+typedef struct {
+    rg_gid element[2];
+} pair;
+
+static int by_elements(const void *a, const void *b) {
+    const pair *p = a, *q = b;
+    int k = p->element[0] == q->element[0];
+    return (p->element[k] > q->element[k]) - (p->element[k] < q->element[k]);
+}
+
+/* Two elements may share several faces in place: they are told once. */
 static void check_pairs(const face *all, int64_t faces, const rg_mesh_file *file, rg_faults *faults) {
+    pair *found = RG_NEW(pair, (size_t)faces + 1);
+    size_t pairs = 0;
     for (int64_t i = 1; i < faces; i++) {
-        bool twice = all[i].key == all[i - 1].key;
-        char *words = twice ? rg_faults_place(faults, all[i - 1].element, all[i].element) : NULL;
+        if (all[i].key == all[i - 1].key) {
+            found[pairs++] = (pair){{all[i - 1].element, all[i].element}};
+        }
+    }
+    qsort(found, pairs, sizeof *found, by_elements);
+    for (size_t i = 0; i < pairs; i++) {
+        const rg_gid *e = found[i].element;
+        bool told = i > 0 && by_elements(&found[i - 1], &found[i]) == 0;
+        char *words = told ? NULL : rg_faults_place(faults, e[0], e[1]);
         if (words != NULL) {
             snprintf(words, RG_FAULT_WORDS,
                      "elements %" PRId64 " and %" PRId64
                      " have a face at the same place, but are not neighbours: the mesh is open there",
-                     rg_mesh_file_original(file, all[i - 1].element),
-                     rg_mesh_file_original(file, all[i].element));
+                     rg_mesh_file_original(file, e[0]), rg_mesh_file_original(file, e[1]));
         }
     }
+    rg_free(found);
 }
 
 /* ---- geometry of the surface ---- */

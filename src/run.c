@@ -135,7 +135,7 @@ static void output(run *r, bool fields) {
 /* A state that no step can leave: not finite, or such that the step collapses. `dt` is the step tried. */
 static void examine(run *r, int64_t step, double time, double dt) {
     const rg_solver *s = r->solver;
-    char why[200];
+    char why[400];
     if (!isfinite(s->stiffening_anywhere)) {
         bool told = rg_constraints_told(s->constraints, why, sizeof why, s->comm);
         snprintf(r->failure, sizeof r->failure, "the state is not finite%s%s%s",
@@ -237,7 +237,9 @@ static void time_loop(run *r) {
     r->summary.output_seconds += other;
     r->summary.checkpoints += r->checkpoints.written;
     r->summary.checkpoint_seconds += r->checkpoints.total;
-    r->summary.checkpoint_median = rg_checkpoints_median(&r->checkpoints);
+    if (r->checkpoints.written > 0) {
+        r->summary.checkpoint_median = rg_checkpoints_median(&r->checkpoints);
+    }
 }
 
 /* ---- outputs ---- */
@@ -280,9 +282,6 @@ static void open_outputs(run *r) {
 static void reopen_outputs(run *r) {
     const rg_case *c = r->input;
     int rank = r->solver->rank;
-    if (rank == 0) {
-        rg_refuse_busy(c->output.dir, "energy.csv");
-    }
     r->energy = rg_csv_reopen(c->output.dir, "energy.csv", rank, r->keep.energy_bytes);
     rg_csv_hold(r->energy);
     rg_probes_reopen(r->probes, r->solver, r->keep.history_bytes);
@@ -328,6 +327,10 @@ static void make_state(run *r, double *cost, MPI_Comm comm) {
         rg_spectrum(r->solver);
         return;
     }
+    if (r->solver->rank == 0) {
+        rg_refuse_busy(c->output.dir, "energy.csv");
+    }
+    MPI_Barrier(comm);
     rg_checkpoint_load(&r->checkpoints);
     rg_restart_spectrum(&r->keep, r->solver);
     if (r->keep.interval != c->output.interval_time) { /* outputs are due at its multiples */

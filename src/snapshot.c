@@ -376,7 +376,8 @@ static size_t keep_faces(const rg_expr *region, size_t count, rg_crack_face *fac
     size_t kept = 0;
     for (size_t i = 0; i < count; i++) {
         double centre[3];
-        if (region_at(region, &face[i].x[0][0], 3, centre) != 0) {
+        double here = region_at(region, &face[i].x[0][0], 3, centre);
+        if (isfinite(here) && here != 0) { /* it is known to be finite in elements only */
             face[kept++] = face[i];
         }
     }

@@ -350,10 +350,10 @@ static void sweep(rg_solver *s, tile_work *work, const impulse *p, size_t begin,
     const rg_workspace *w = &s->work[omp_get_thread_num()];
 #pragma omp for schedule(static)
     for (size_t t = begin; t < end; t++) {
-        double before = s->tile_seconds != NULL ? MPI_Wtime() : 0;
+        double before = s->tile_seconds != NULL ? omp_get_wtime() : 0;
         work(s, t, w, p);
         if (s->tile_seconds != NULL) {
-            s->tile_seconds[t] += MPI_Wtime() - before;
+            s->tile_seconds[t] += omp_get_wtime() - before;
         }
         if (under != NULL && omp_get_thread_num() == 0) {
             rg_halo_poll(under);

@@ -7,7 +7,9 @@
 
 #include "error.h"
 #include "files.h"
+#include "h5_parallel.h"
 #include "json.h"
+#include "mem.h"
 #include "revision.h"
 #include "state_hash.h"
 
@@ -118,9 +120,9 @@ void rg_summary_write(rg_summary *m, rg_solver *s, const rg_ledger *l, const rg_
 }
 
 bool rg_completed(const char *dir) {
-    char path[1024], line[256];
-    snprintf(path, sizeof path, "%s/summary.json", dir);
+    char *path = rg_join_path(dir, "summary.json"), line[256];
     FILE *f = fopen(path, "r");
+    rg_free(path);
     bool found = false;
     while (f != NULL && !found && fgets(line, sizeof line, f) != NULL) {
         found = strstr(line, "\"status\": \"completed\"") != NULL;

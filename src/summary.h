@@ -16,7 +16,7 @@ typedef struct {
     double output_seconds;     /* wall time of output within the time loop */
     int checkpoints;           /* written */
     double checkpoint_seconds; /* wall time of that */
-    double checkpoint_median;  /* of one of them, since the last partition (s) */
+    double checkpoint_median;  /* of one of them, on the last partition that wrote any (s) */
     double halo_wait_seconds;  /* longest wait for messages on any rank; filled by rg_summary_write */
     const char *failure;       /* "" where the run reached its end */
     double us_per_tet_step,
