@@ -3,7 +3,7 @@
 //     rhegma mesh bench/cases/plate-unstructured.geo -o plate-unstructured.h5 --scale 1e-3
 // Surfaces by Gmsh's Delaunay algorithm, volume by HXT, which also mends what is flatter than the threshold: the smallest
 // height is 0.28 mm, not 0.19, which saves a third of the time steps. One thread; still the count has
-// differed by up to 0.5 % from one hour to another (190,697 to 191,598), which its Delaunay algorithms do not do.
+// differed by up to 0.5 % from one hour to another (190,697 to 191,598).
 Mesh.Algorithm = 5;
 Mesh.Algorithm3D = 10;
 Mesh.OptimizeThreshold = 0.5;
