@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "mem.h"
+#include "tile_weight.h"
 
 enum { LOOK = 100 }; /* steps between looks: what one of them measures is steady within some per cent */
 
@@ -62,10 +63,8 @@ double *rg_balance_costs(const rg_solver *s) {
     for (rg_lid t = 0; t < part->tiles; t++) {
         cost[part->tile_id[t]] = s->tile_seconds[t];
     }
-    /* One rank has each value, the others have zero: the sum only brings them together. */
-    MPI_Reduce(s->rank == 0 ? MPI_IN_PLACE : cost, cost, (int)all, MPI_DOUBLE, MPI_SUM, 0, s->comm);
-    if (s->rank > 0) {
-        rg_free(cost);
+    cost = rg_tile_weights_gather(cost, (int64_t)all, s->comm);
+    if (cost == NULL) {
         return NULL;
     }
     for (size_t t = 0; t < all; t++) {

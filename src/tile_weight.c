@@ -62,6 +62,18 @@ static void weigh_slab(scale *s, const rg_mesh_slab *slab) {
     }
 }
 
+double *rg_tile_weights_gather(double *weight, int64_t tiles, MPI_Comm comm) {
+    int rank;
+    MPI_Comm_rank(comm, &rank);
+    /* One rank has each value, the others have zero: the sum only brings them together. */
+    MPI_Reduce(rank == 0 ? MPI_IN_PLACE : weight, weight, (int)tiles, MPI_DOUBLE, MPI_SUM, 0, comm);
+    if (rank > 0) {
+        rg_free(weight);
+        return NULL;
+    }
+    return weight;
+}
+
 double *rg_tile_weights_of_file(const rg_case *c, MPI_Comm comm) {
     int rank, ranks;
     MPI_Comm_rank(comm, &rank);
@@ -86,12 +98,7 @@ double *rg_tile_weights_of_file(const rg_case *c, MPI_Comm comm) {
         rg_speak(comm);
         refuse(&s);
     }
-    /* One rank has each value, the others have zero: the sum only brings them together. */
-    MPI_Reduce(rank == 0 ? MPI_IN_PLACE : s.weight, s.weight, (int)h->tiles, MPI_DOUBLE, MPI_SUM, 0, comm);
+    double *weight = rg_tile_weights_gather(s.weight, h->tiles, comm);
     rg_mesh_file_close(f);
-    if (rank > 0) {
-        rg_free(s.weight);
-        s.weight = NULL;
-    }
-    return s.weight;
+    return weight;
 }

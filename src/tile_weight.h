@@ -11,4 +11,8 @@
 double *rg_tile_weights_of_mesh(const rg_case *c, const rg_mesh *mesh, int tile);
 double *rg_tile_weights_of_file(const rg_case *c, MPI_Comm comm);
 
+/* Brings together what the ranks know of the tiles, each of its own and 0 of others: all of weight[tiles] on
+ * rank 0; frees it on others, which get NULL. Collective. */
+double *rg_tile_weights_gather(double *weight, int64_t tiles, MPI_Comm comm);
+
 #endif
