@@ -532,13 +532,22 @@ static rg_mesh_slab *read_run(rg_mesh_file *f, int64_t begin, int64_t end, rg_fa
     return r.good ? slab : NULL;
 }
 
-/* What is wrong with a run is told tile by tile, so that it is the same whichever tiles are read at once. */
-rg_mesh_slab *rg_mesh_file_slab(rg_mesh_file *f, int64_t begin, int64_t end, rg_faults *faults) {
-    rg_mesh_slab *slab = read_run(f, begin, end, NULL);
-    int64_t before = faults->count;
-    for (int64_t t = begin; t < end && slab == NULL; t++) {
-        rg_mesh_slab_free(read_run(f, t, t + 1, faults));
+/* NULL: there are faults, told tile by tile, so that they are the same whichever tiles are read at once.
+ * Halves that are sound are not looked at again: a fault among many tiles is soon found. */
+static rg_mesh_slab *read_or_tell(rg_mesh_file *f, int64_t begin, int64_t end, rg_faults *faults) {
+    bool several = end - begin > 1;
+    rg_mesh_slab *slab = read_run(f, begin, end, several ? NULL : faults);
+    if (slab == NULL && several) {
+        int64_t middle = begin + (end - begin) / 2;
+        rg_mesh_slab_free(read_or_tell(f, begin, middle, faults));
+        rg_mesh_slab_free(read_or_tell(f, middle, end, faults));
     }
+    return slab;
+}
+
+rg_mesh_slab *rg_mesh_file_slab(rg_mesh_file *f, int64_t begin, int64_t end, rg_faults *faults) {
+    int64_t before = faults->count;
+    rg_mesh_slab *slab = read_or_tell(f, begin, end, faults);
     if (slab == NULL && faults->count == before) {
         refuse(f, "tiles", "%" PRId64 " to %" PRId64 " cannot be read at once", begin, end - 1);
     }
