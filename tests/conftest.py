@@ -1,6 +1,7 @@
 """Runs the built program for the system tests. A finished run is kept for the session: asking for it again is free.
 
-The program is the one that environment variable RHEGMA names, else build/rhegma of this tree."""
+The program is the one that environment variable RHEGMA names, else build/rhegma of this tree. RHEGMA_TIMEOUT: seconds that
+a run may take."""
 
 import json
 import os
@@ -17,7 +18,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 PROGRAM = pathlib.Path(os.environ.get("RHEGMA", ROOT / "build" / "rhegma")).resolve()
 BENCH = ROOT / "bench" / "cases"
 CASES = ROOT / "tests" / "cases"
-TIMEOUT = 300  # seconds: a run that hangs is a failure
+TIMEOUT = int(os.environ.get("RHEGMA_TIMEOUT", 300))  # seconds: a run that hangs is a failure
 ENVIRONMENT = {
     "OMPI_ALLOW_RUN_AS_ROOT": "1",
     "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
