@@ -19,7 +19,7 @@ static const char usage[] =
     "usage: rhegma run CASE.yaml [options]     run a case\n"
     "       rhegma check CASE.yaml [options]   say what a run would do, without running\n"
     "       rhegma verify                      check the program on this machine against theory\n"
-    "       rhegma mesh IN -o OUT.h5 [options]  make a mesh file; rhegma mesh alone says more\n"
+    "       rhegma mesh IN -o OUT.h5 [options]  make a mesh file; rhegma mesh --help says more\n"
     "       rhegma --version | --help\n"
     "options:\n"
     "  --set a.b=value   override a value of the case file (repeatable)\n"
@@ -59,6 +59,14 @@ static char *directory_override(const char *dir) {
     }
     strcpy(end, "\"");
     return text;
+}
+
+static bool asks_for_help(int argc, char **argv) {
+    bool asks = false;
+    for (int i = 1; i < argc; i++) {
+        asks = asks || strcmp(argv[i], "--help") == 0 || strcmp(argv[i], "-h") == 0;
+    }
+    return asks;
 }
 
 static int parse(int argc, char **argv, int rank, arguments *a) {
@@ -127,8 +135,10 @@ static int execute(int argc, char **argv, int rank) {
         printf("rhegma %s, %s precision\n", RG_REVISION, RG_PRECISION);
         return RG_OK;
     }
-    if (argc == 2 && (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0)) {
-        fputs(usage, stdout);
+    if (asks_for_help(argc, argv)) {
+        if (rank == 0) {
+            fputs(usage, stdout);
+        }
         return RG_OK;
     }
     if (argc > 1 && strcmp(argv[1], "verify") == 0) {
@@ -155,7 +165,7 @@ static int execute(int argc, char **argv, int rank) {
 
 int main(int argc, char **argv) {
     if (argc > 1 && strcmp(argv[1], "mesh") == 0) {
-        return rg_mesh_command(argc, argv);
+        return asks_for_help(argc, argv) ? rg_mesh_help() : rg_mesh_command(argc, argv);
     }
     /* Open MPI's own I/O layer has been reported to hang or corrupt HDF5's collective writes
      * (HDFGroup/hdf5#1227, open-mpi/ompi#12718): use ROMIO unless the user chose otherwise. */

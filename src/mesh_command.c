@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "case.h"
@@ -62,6 +63,12 @@ static void read_option(rg_mesh_arguments *a, const char *option, const char *va
     }
 }
 
+static bool same_file(const char *a, const char *b) {
+    struct stat of_a, of_b;
+    return stat(a, &of_a) == 0 && stat(b, &of_b) == 0 && of_a.st_dev == of_b.st_dev &&
+           of_a.st_ino == of_b.st_ino;
+}
+
 static void check_together(const rg_mesh_arguments *a) {
     if (a->input == NULL) {
         complain("nothing to read", "");
@@ -75,6 +82,9 @@ static void check_together(const rg_mesh_arguments *a) {
     }
     if (a->info && a->output != NULL) {
         complain("--info writes nothing; not understood: -o", a->output);
+    }
+    if (a->output != NULL && same_file(a->input, a->output)) {
+        complain("it would take the place of what it is made from: -o", a->output);
     }
     if (a->improve && (a->info || a->partition != NULL)) {
         complain("--improve is for a mesh on its way in; not understood with it",
@@ -269,6 +279,11 @@ static int store_partitions(const rg_mesh_arguments *a) {
     rg_free(partition);
     rg_free(parts);
     rg_tile_graph_free(g);
+    return RG_OK;
+}
+
+int rg_mesh_help(void) {
+    fputs(usage, stdout);
     return RG_OK;
 }
 

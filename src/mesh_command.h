@@ -25,6 +25,9 @@ rg_mesh_arguments rg_mesh_arguments_read(int argc, char **argv, int first);
  * mesh file go to the program rhegma-mesh beside this one, which is built where Gmsh is there. */
 int rg_mesh_command(int argc, char **argv);
 
+/* Prints how to use it; returns RG_OK. */
+int rg_mesh_help(void);
+
 /* Sorts, connects and checks an imported mesh, tells of what is odd about it, improves it if that was asked
  * for, and writes it. */
 void rg_mesh_finish(rg_mesh *mesh, const rg_mesh_arguments *a);

@@ -63,11 +63,18 @@ def test_version_is_that_of_the_summary(run):
     assert process.stdout == f"rhegma {summary['revision']}, {summary['precision']} precision\n"
 
 
-@pytest.mark.parametrize("option", ["--help", "-h"])
-def test_help_names_every_option(option):
-    process = launch(option)
+@pytest.mark.parametrize("arguments", [["--help"], ["-h"], ["run", "--help"], ["check", "a.yaml", "-h"], ["verify", "--help"]])
+def test_help_names_every_option(arguments):
+    process = launch(*arguments)
     assert process.returncode == 0 and process.stderr == ""
     for word in ("run", "check", "--set", "-o", "-q", "--version", "mpirun", "OMP_NUM_THREADS", "RHEGMA_ISA"):
+        assert word in process.stdout
+
+
+def test_help_of_mesh():
+    process = launch("mesh", "--help")
+    assert process.returncode == 0 and process.stderr == ""
+    for word in ("-o", "--scale", "--improve", "--info", "--case", "--partition", "--set"):
         assert word in process.stdout
 
 

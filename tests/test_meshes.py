@@ -229,6 +229,15 @@ def test_wrong_arguments(tmp_path, arguments, message):
     assert "usage: rhegma mesh" in process.stderr and list(tmp_path.iterdir()) == []
 
 
+def test_output_does_not_replace_its_input(tmp_path):
+    case = shutil.copy(BENCH / "spall.yaml", tmp_path / "a.yaml")
+    other = tmp_path / "b.yaml"
+    other.symlink_to(case)
+    process = launch("mesh", case, "-o", other)
+    assert process.returncode == 2 and "it would take the place of what it is made from: -o" in process.stderr
+    assert case.read_text() == (BENCH / "spall.yaml").read_text()
+
+
 # ---- Abaqus ----
 
 PART = """*HEADING
