@@ -12,6 +12,10 @@
 
 #define MOST_STEPS 1e15
 
+/* Pressure waves run at some 20 m/s in the softest gels and at 18 km/s in diamond (m/s). */
+#define SLOWEST_WAVE 10
+#define FASTEST_WAVE 30e3
+
 /* Length of the cohesive zone of mode I, plane strain: (9 pi/32) E/(1 - nu^2) G_c/sigma_c^2 (thesis 2; Rice
  * 1968). */
 static double cohesive_zone(const rg_case *c, const rg_solver *s) {
@@ -117,8 +121,14 @@ static void print_material(const rg_solver *s, const rg_estimate *e, int i, FILE
     }
     fprintf(out, "material       %s%s%s\n", name, rg_material_word(m->model),
             m->model == RG_MATERIAL_LINEAR_ELASTIC ? ": for small strains and rotations alone" : "");
-    fprintf(out, "wave speeds    dilatational %.1f m/s, shear %.1f m/s\n", rg_material_dilatational(m),
-            rg_material_shear(m));
+    double fastest = rg_material_dilatational(m);
+    fprintf(out, "wave speeds    dilatational %.1f m/s, shear %.1f m/s\n", fastest, rg_material_shear(m));
+    if (fastest < SLOWEST_WAVE || fastest > FASTEST_WAVE) {
+        fprintf(
+            out,
+            "warning: no solid carries waves at %.3g m/s: are its moduli in Pa and its density in kg/m3?\n",
+            fastest);
+    }
     if (rg_material_plastic_wave(m, &limit, &speed)) {
         fprintf(out, "plastic waves  %.1f m/s, beyond %.4g Pa in uniaxial strain\n", speed, limit);
     }
@@ -128,6 +138,9 @@ void rg_estimate_print(const rg_solver *s, const rg_estimate *e, FILE *out) {
     const rg_case *c = s->input;
     fprintf(out, "elements       %" PRId64 " (%" PRId64 " degrees of freedom), %" PRId64 " interfaces\n",
             e->elements, e->dofs, e->interfaces);
+    const double(*box)[3] = (const double(*)[3])s->part->box;
+    fprintf(out, "body           %.4g x %.4g x %.4g m\n", box[1][0] - box[0][0], box[1][1] - box[0][1],
+            box[1][2] - box[0][2]);
     if (s->ranks > 1) {
         fprintf(out, "partition      ");
         rg_quality_print(&s->part->quality, s->part->interfaces, out);

@@ -1,5 +1,5 @@
-/* What is known of a run before it starts: counts, wave speeds, time step, memory, time, resolution of the
- * cohesive zone. */
+/* What is known of a run before it starts: counts, size of the body, wave speeds, time step, memory, time,
+ * resolution of the cohesive zone. */
 #ifndef RG_ESTIMATE_H
 #define RG_ESTIMATE_H
 
@@ -21,7 +21,7 @@ typedef struct {
 /* Collective; needs rg_spectrum to have run. */
 rg_estimate rg_estimate_run(const rg_solver *s);
 
-/* Prints it for a person (rank 0 only). */
+/* Prints it for a person, with a warning where numbers look as if they were not in SI units (rank 0 only). */
 void rg_estimate_print(const rg_solver *s, const rg_estimate *e, FILE *out);
 
 #endif

@@ -136,6 +136,7 @@ def test_check_says_what_a_run_would_do(tmp_path):
     assert process.returncode == 0 and process.stderr == ""
     said = {line[:14].strip(): line[14:].strip() for line in process.stdout.splitlines()}
     assert said["elements"] == "12960 (388800 degrees of freedom), 24408 interfaces"
+    assert said["body"] == "0.0004 x 0.0004 x 0.004 m"
     assert said["material"] == "neo-hookean" and "plastic waves" not in said
     assert said["wave speeds"] == "dilatational 8906.0 m/s, shear 5395.9 m/s"
     assert re.match(r"[\d.e-]+ s = [\d.]+ of the critical [\d.e-]+ s, set by element \d+", said["time step"])
@@ -151,6 +152,15 @@ def test_check_does_not_warn_of_a_resolved_cohesive_zone(tmp_path):
     process = launch("check", SPALL, *overrides({"interface.energy": 340}), cwd=tmp_path)
     assert process.returncode == 0
     assert "4.4 times the longest edge" in process.stdout and "warning" not in process.stdout
+
+
+@pytest.mark.parametrize("sets, speed", [({"material.young": 260}, "0.282"), ({"material.density": 3.69}, "2.82e+05"),
+                                         ({"material.young": 5e6}, None)])
+def test_check_asks_for_the_units_of_impossible_waves(sets, speed):
+    process = launch("check", FRAGMENTS, *overrides(sets))
+    assert process.returncode == 0
+    warned = re.findall(r"warning: no solid carries waves at (\S+) m/s", process.stdout)
+    assert warned == ([] if speed is None else [speed])
 
 
 @pytest.mark.parametrize("sets, bound", [({}, None), ({"time.safety": 0.51}, "0.5"), ({"interface.onset": 0.075}, "0.25"),
