@@ -172,7 +172,7 @@ void rg_estimate_print(const rg_solver *s, const rg_estimate *e, FILE *out) {
                 "switched; the energy will show it\n",
                 s->law.onset, steady_safety(&s->law));
     }
-    if (isfinite(e->cohesive_zone)) {
+    if (isfinite(e->cohesive_zone) && e->largest_edge > 0) {
         double ratio = e->cohesive_zone / e->largest_edge;
         fprintf(out, "cohesive zone  %.3g m, %.2g times the longest edge (%.3g m)\n", e->cohesive_zone, ratio,
                 e->largest_edge);

@@ -154,6 +154,12 @@ def test_check_does_not_warn_of_a_resolved_cohesive_zone(tmp_path):
     assert "4.4 times the longest edge" in process.stdout and "warning" not in process.stdout
 
 
+def test_check_says_nothing_of_a_cohesive_zone_without_interfaces():
+    process = launch("check", FRAGMENTS, *overrides({"interface.form": "continuous", "interface.faces": 0}))
+    assert process.returncode == 0 and ", 0 interfaces" in process.stdout
+    assert "cohesive zone" not in process.stdout
+
+
 @pytest.mark.parametrize("sets, speed", [({"material.young": 260}, "0.282"), ({"material.density": 3.69}, "2.82e+05"),
                                          ({"material.young": 5e6}, None)])
 def test_check_asks_for_the_units_of_impossible_waves(sets, speed):
