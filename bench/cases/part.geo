@@ -1,5 +1,5 @@
 // A real part: a flanged bearing housing with a bore and four bolt holes, from OpenCASCADE primitives, in mm.
-//     rhegma mesh bench/cases/part.geo -o part.h5 --scale 1e-3
+//     build/rhegma mesh bench/cases/part.geo -o part.h5 --scale 1e-3
 // Surfaces and volume by Gmsh's Delaunay algorithms, one thread: the same mesh every time.
 SetFactory("OpenCASCADE");
 Mesh.Algorithm = 5;

@@ -1,6 +1,6 @@
 // Plate of the impact test, 50.8 x 50.8 x 12 mm, in equal cubes of 6 tetrahedra: 183,673 tetrahedra in section 5.2 of
 // the thesis, 51 x 51 x 12 x 6 = 187,272 here. The plate is hit at z = 6 mm.
-//     rhegma mesh bench/cases/plate-structured.geo -o plate-structured.h5 --scale 1e-3
+//     build/rhegma mesh bench/cases/plate-structured.geo -o plate-structured.h5 --scale 1e-3
 // Transfinite: no algorithm chooses anything. (bench/cases/impact-structured.yaml takes as many cubes of the built-in box, which
 // are cut alike and so have a mirror symmetry that these lack.)
 General.NumThreads = 1;

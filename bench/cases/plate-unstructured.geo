@@ -1,6 +1,6 @@
 // Plate of the impact test, 50.8 x 50.8 x 12 mm, unstructured: 198,431 tetrahedra in section 5.2 of the thesis. The
 // plate is hit at z = 6 mm.
-//     rhegma mesh bench/cases/plate-unstructured.geo -o plate-unstructured.h5 --scale 1e-3
+//     build/rhegma mesh bench/cases/plate-unstructured.geo -o plate-unstructured.h5 --scale 1e-3
 // Surfaces by Gmsh's Delaunay algorithm, volume by HXT, which also mends what is flatter than the threshold: the smallest
 // height is 0.28 mm, not 0.19, which saves a third of the time steps. One thread; still the count has
 // differed by up to 0.5 % from one hour to another (190,697 to 191,598).

@@ -1,6 +1,6 @@
 // Bar of the spall test, graded towards the middle, where one plane of faces is exactly flat: 223,394 tetrahedra with
 // edges of about 11.4 um at the plane in section 5.1.2 of the thesis.
-//     rhegma mesh bench/cases/spall-graded.geo -o spall-graded.h5 --scale 1e-3 --improve
+//     build/rhegma mesh bench/cases/spall-graded.geo -o spall-graded.h5 --scale 1e-3 --improve
 // Surfaces by Gmsh's frontal Delaunay algorithm, volume by its Delaunay algorithm, one thread: the same mesh every time.
 Mesh.Algorithm = 6;
 Mesh.Algorithm3D = 1;

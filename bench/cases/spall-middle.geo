@@ -1,6 +1,6 @@
 // Bar of the spall test, uniformly refined in the middle, where no flat plane is on offer: 150,742 tetrahedra with edges
 // of about 14.8 um there in section 5.1.2 of the thesis.
-//     rhegma mesh bench/cases/spall-middle.geo -o spall-middle.h5 --scale 1e-3 --improve
+//     build/rhegma mesh bench/cases/spall-middle.geo -o spall-middle.h5 --scale 1e-3 --improve
 // Surfaces by Gmsh's frontal Delaunay algorithm, volume by its Delaunay algorithm, one thread: the same mesh every time.
 Mesh.Algorithm = 6;
 Mesh.Algorithm3D = 1;

@@ -1,5 +1,5 @@
 // Bar of the spall test, 0.4 x 0.4 x 4 mm, uniform and unstructured: 13,683 tetrahedra in section 5.1.1 of the thesis.
-//     rhegma mesh bench/cases/spall-uniform.geo -o spall-uniform.h5 --scale 1e-3
+//     build/rhegma mesh bench/cases/spall-uniform.geo -o spall-uniform.h5 --scale 1e-3
 // Surfaces by Gmsh's Delaunay algorithm, volume by its Delaunay algorithm, one thread: the same mesh every time.
 Mesh.Algorithm = 5;
 Mesh.Algorithm3D = 1;
