@@ -86,8 +86,9 @@ static void add_change(char **words, const char *here, const char *before) {
 }
 
 char *rg_case_changes(const char *before, const char *here) {
-    char *words = rg_text_format("the case is not that of the checkpoint; a restart may change time.end, "
-                                 "time.steps, time.safety, output and checkpoint, but not");
+    char *words =
+        rg_text_format("the case is not that of the checkpoint; a restart may change time, checkpoint, "
+                       "mesh.weight, mesh.rebalance and most of output, but not");
     size_t none = strlen(words);
     for (const char *line = here; *line != '\0'; line = next_line(line)) {
         const char *then = find_line(before, line);

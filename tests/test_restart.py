@@ -401,6 +401,7 @@ CHANGES = [
     ({"mass": "lumped"}, "mass: lumped; in the checkpoint: consistent"),
     ({"boundary": [CASE["boundary"][0]]}, r"boundary\[1\].component: not given; in the checkpoint: x"),
     ({"output.probes": []}, r"output.probes\[0\].name: not given"),
+    ({"output.fragments": "none"}, "most of output, but not\n  output.fragments: none; in the checkpoint: each"),
     ({"mesh.cells": [2, 2, 15]}, "a checkpoint of 384 elements; the mesh of the case has 360"),
     ({"mesh.seed": 9}, "a checkpoint on another mesh"),
 ]
