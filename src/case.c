@@ -6,10 +6,13 @@
 #include "case_check.h"
 #include "mem.h"
 
-enum { CHUNK = 65536, FRAMES = 50 /* outputs in a run, by default */ };
+enum {
+    CHUNK = 65536,
+    MOST = 64 << 20, /* bytes: more is no case, but perhaps a mesh */
+    FRAMES = 50      /* outputs in a run, by default */
+};
 
-/* The whole file; NULL and errno if it cannot be read. */
-static char *read_file(const char *path, size_t *size) {
+char *rg_case_file(const char *path, size_t *size) {
     FILE *file = fopen(path, "rb");
     if (file == NULL) {
         return NULL;
@@ -21,8 +24,8 @@ static char *read_file(const char *path, size_t *size) {
         text = rg_realloc(text, *size + CHUNK, 1);
         got = fread(text + *size, 1, CHUNK, file);
         *size += got;
-    } while (got > 0);
-    int error = ferror(file) ? errno : 0;
+    } while (got > 0 && *size <= MOST);
+    int error = ferror(file) ? errno : got > 0 ? EFBIG : 0;
     fclose(file);
     if (error != 0) {
         rg_free(text);
@@ -50,10 +53,8 @@ static void derive(rg_case *c) {
     }
 }
 
-/* The case in text[0..size); a text that could not be read (NULL) counts as one problem, of which `errno` is
- * the reason. */
-static rg_case *read_text(const char *path, const char *text, size_t size, int overrides,
-                          const char *const override[], FILE *errors) {
+rg_case *rg_case_read_text(const char *path, const char *text, size_t size, int overrides,
+                           const char *const override[], FILE *errors) {
     rg_problems problems = {.file = path};
     rg_node root = {.kind = RG_NODE_BAD};
     if (text != NULL) {
@@ -99,15 +100,10 @@ int rg_case_find_material(const rg_case *c, const char *name) {
 
 rg_case *rg_case_read(const char *path, int overrides, const char *const override[], FILE *errors) {
     size_t size = 0;
-    char *text = read_file(path, &size);
-    rg_case *c = read_text(path, text, size, overrides, override, errors);
+    char *text = rg_case_file(path, &size);
+    rg_case *c = rg_case_read_text(path, text, size, overrides, override, errors);
     rg_free(text);
     return c;
-}
-
-rg_case *rg_case_read_text(const char *name, const char *text, size_t size, int overrides,
-                           const char *const override[], FILE *errors) {
-    return read_text(name, text, size, overrides, override, errors);
 }
 
 void rg_case_free(rg_case *c) {

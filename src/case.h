@@ -180,8 +180,13 @@ typedef struct {
  * `errors`. */
 rg_case *rg_case_read(const char *path, int overrides, const char *const override[], FILE *errors);
 
-/* The same of a case that is in memory: YAML text[0..size), called `name` in messages. */
-rg_case *rg_case_read_text(const char *name, const char *text, size_t size, int overrides,
+/* The bytes of a case file; NULL, with errno, if it cannot be read or is too large to be one. The caller
+ * frees them (rg_free). */
+char *rg_case_file(const char *path, size_t *size);
+
+/* rg_case_read of a case that is in memory: YAML text[0..size), of the file at `path` in messages. NULL
+ * stands for a file that could not be read, for the reason in errno. */
+rg_case *rg_case_read_text(const char *path, const char *text, size_t size, int overrides,
                            const char *const override[], FILE *errors);
 
 /* Input of material i (0: `material`, then the others), and its name. */

@@ -1,4 +1,5 @@
 /* rhegma: three-dimensional dynamic fracture and fragmentation of brittle solids. */
+#include <errno.h>
 #include <mpi.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -117,13 +118,32 @@ static int parse(int argc, char **argv, int rank, arguments *a) {
     return a->path == NULL ? complain(rank, "no case file given", "") : RG_OK;
 }
 
-/* All ranks read the case; only one reports what is wrong with it. */
+/* The text of the case on all ranks, NULL with errno if it cannot be read. Rank 0 reads it: a pipe can be
+ * read once, and a file that somebody saves meanwhile must not be two cases. */
+static char *share_text(const char *path, int rank, size_t *size) {
+    char *text = rank == 0 ? rg_case_file(path, size) : NULL;
+    int64_t head[] = {text != NULL, text != NULL ? 0 : errno, (int64_t)*size};
+    MPI_Bcast(head, 3, MPI_INT64_T, 0, MPI_COMM_WORLD);
+    if (head[0] == 0) {
+        errno = (int)head[1];
+        return NULL;
+    }
+    *size = (size_t)head[2];
+    text = rank == 0 ? text : RG_NEW(char, *size + 1);
+    MPI_Bcast(text, (int)*size, MPI_CHAR, 0, MPI_COMM_WORLD);
+    return text;
+}
+
+/* All ranks check the case; only one reports what is wrong with it. */
 static rg_case *read_case(const arguments *a, int rank) {
     FILE *errors = rank == 0 ? stderr : fopen("/dev/null", "w");
     if (errors == NULL) {
         rg_fatal(RG_FAILURE, "/dev/null cannot be opened");
     }
-    rg_case *c = rg_case_read(a->path, a->overrides, a->override, errors);
+    size_t size = 0;
+    char *text = share_text(a->path, rank, &size);
+    rg_case *c = rg_case_read_text(a->path, text, size, a->overrides, a->override, errors);
+    rg_free(text);
     if (rank != 0) {
         fclose(errors);
     }

@@ -1,7 +1,9 @@
 """The command line: what a user can get wrong, what the program then says, and what it leaves behind."""
 
 import json
+import os
 import re
+import subprocess
 
 import pytest
 import yaml
@@ -54,6 +56,25 @@ def test_missing_case_file(tmp_path, command):
     assert process.returncode == 2
     assert process.stderr == "nowhere.yaml: cannot be read: No such file or directory\n"
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_case_from_a_pipe(run, tmp_path, ranks):
+    """It can be read once, however many the ranks."""
+    pipe = tmp_path / "fragments"
+    os.mkfifo(pipe)
+    with subprocess.Popen(["timeout", "60", "cp", FRAGMENTS, pipe]):
+        process = launch("run", pipe, "-q", "-o", tmp_path / "out", *overrides(SHORT), ranks=ranks)
+    assert process.returncode == 0, process.stderr
+    assert summary_of(tmp_path / "out")["state_hash"] == run(FRAGMENTS, sets=SHORT).summary["state_hash"]
+
+
+def test_file_too_large_for_a_case(tmp_path):
+    large = tmp_path / "mesh.vtk"
+    large.touch()
+    os.truncate(large, 65 << 20)
+    process = launch("run", large)
+    assert process.returncode == 2 and process.stderr == f"{large}: cannot be read: File too large\n"
 
 
 def test_version_is_that_of_the_summary(run):
