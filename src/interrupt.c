@@ -31,7 +31,21 @@ void rg_interrupt_listen(void) {
     handle(SIGUSR2, SA_RESTART);
     handle(SIGTERM, SA_RESTART | (int)SA_RESETHAND);
     handle(SIGINT, SA_RESTART | (int)SA_RESETHAND);
+    if (signal(SIGHUP, SIG_IGN) != SIG_IGN) { /* nohup stays in force */
+        handle(SIGHUP, SA_RESTART);           /* the terminal and the shell may both send one */
+    }
     signal(SIGXFSZ, SIG_IGN);
+    signal(SIGPIPE, SIG_IGN);
+}
+
+void rg_interrupt_deafen(void) {
+    const int number[] = {SIGUSR1, SIGUSR2, SIGTERM, SIGINT, SIGPIPE};
+    for (size_t i = 0; i < sizeof number / sizeof *number; i++) {
+        signal(number[i], SIG_DFL);
+    }
+    if (signal(SIGHUP, SIG_DFL) == SIG_IGN) {
+        signal(SIGHUP, SIG_IGN);
+    }
 }
 
 double rg_interrupt_now(void) {

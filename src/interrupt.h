@@ -1,8 +1,9 @@
 /* What asks a run to write a checkpoint or to stop: signals, and the clock.
  *
- *   SIGUSR1                    write a checkpoint and go on
- *   SIGTERM, SIGINT, SIGUSR2   write a checkpoint and stop; a second SIGINT or SIGTERM ends it at once
- *   the wall-time limit        write a checkpoint and stop, in time
+ *   SIGUSR1                   write a checkpoint and go on
+ *   SIGTERM, SIGINT, SIGUSR2  write a checkpoint and stop; a second SIGINT or SIGTERM ends it at once
+ *   SIGHUP                    the same, of a lost terminal; unless it was ignored from the start (nohup)
+ *   the wall-time limit       write a checkpoint and stop, in time
  *
  * A signal to any one rank is enough: wishes travel with the time step's reduction (solver.c). (mpirun passes
  * SIGUSR1 and SIGUSR2 on; on SIGTERM and SIGINT it ends the ranks within a second, so it is SIGUSR2 that asks
@@ -14,9 +15,12 @@
 
 enum { RG_WISH_NONE, RG_WISH_CHECKPOINT, RG_WISH_STOP, RG_WISH_TIME_UP };
 
-/* From now on signals are wishes, and writing beyond a limit of file size an error like a full disk. The
- * clock of the wall-time limit starts. */
+/* From now on signals are wishes, and writing beyond a limit of file size, or to a pipe that nobody reads any
+ * more, is an error like a full disk. The clock of the wall-time limit starts. */
 void rg_interrupt_listen(void);
+
+/* From now on signals end the program as they do others: for what has nothing to save. */
+void rg_interrupt_deafen(void);
 
 /* The limit, in seconds since rg_interrupt_listen: the sooner of `walltime` (0: none) and the end of the
  * Slurm job (SLURM_JOB_END_TIME). Infinite if there is none. Meant for rank 0. */

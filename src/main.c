@@ -1,9 +1,11 @@
 /* rhegma: three-dimensional dynamic fracture and fragmentation of brittle solids. */
 #include <errno.h>
+#include <fcntl.h>
 #include <mpi.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "denormals.h"
 #include "error.h"
@@ -30,7 +32,7 @@ static const char usage[] =
     "left out\n"
     "  --overwrite       run: start anew where an unfinished run left checkpoints\n"
     "  --walltime H:M:S  run: write a checkpoint and stop (exit status 3) before so much time has passed\n"
-    "signals: USR1 writes a checkpoint; TERM, INT, USR2 write one and stop\n"
+    "signals: USR1 writes a checkpoint; TERM, INT, HUP, USR2 write one and stop\n"
     "ranks: mpirun -n N rhegma ...; threads: OMP_NUM_THREADS; instruction set: RHEGMA_ISA\n";
 
 typedef struct {
@@ -150,6 +152,28 @@ static rg_case *read_case(const arguments *a, int rank) {
     return c;
 }
 
+/* A standard stream that is closed gives its number to whatever is opened next, an output or a socket of MPI,
+ * and that would get what is said. */
+static void fill_streams(void) {
+    int file;
+    do {
+        file = open("/dev/null", O_RDWR);
+    } while (file >= 0 && file <= STDERR_FILENO);
+    if (file >= 0) {
+        close(file);
+    }
+}
+
+/* Whether standard output took everything; says so, once, if it did not. */
+static bool has_said_all(void) {
+    bool all = fflush(stdout) == 0 && ferror(stdout) == 0;
+    if (!all) {
+        rg_warn("standard output cannot be written: some of what was said is lost");
+        clearerr(stdout);
+    }
+    return all;
+}
+
 static int execute(int argc, char **argv, int rank) {
     if (argc == 2 && strcmp(argv[1], "--version") == 0) {
         printf("rhegma %s, %s precision\n", RG_REVISION, RG_PRECISION);
@@ -166,6 +190,7 @@ static int execute(int argc, char **argv, int rank) {
             return complain(rank, "verify takes nothing else; not understood", argv[2]);
         }
         rg_flush_denormals();
+        rg_interrupt_deafen();
         return rg_verify(MPI_COMM_WORLD);
     }
     arguments a = {0};
@@ -177,15 +202,27 @@ static int execute(int argc, char **argv, int rank) {
         return RG_USAGE;
     }
     rg_flush_denormals();
-    int status =
-        strcmp(a.command, "run") == 0 ? rg_run(c, MPI_COMM_WORLD, &a.run) : rg_check(c, MPI_COMM_WORLD);
+    int status;
+    if (strcmp(a.command, "run") == 0) {
+        status = rg_run(c, MPI_COMM_WORLD, &a.run);
+        has_said_all();
+    } else {
+        rg_interrupt_deafen();
+        status = rg_check(c, MPI_COMM_WORLD);
+    }
     rg_case_free(c);
     return status;
 }
 
+/* Of what only answers, an answer that was lost is a failure. */
+static int answer(int status) {
+    return has_said_all() || status != RG_OK ? status : RG_FAILURE;
+}
+
 int main(int argc, char **argv) {
+    fill_streams();
     if (argc > 1 && strcmp(argv[1], "mesh") == 0) {
-        return asks_for_help(argc, argv) ? rg_mesh_help() : rg_mesh_command(argc, argv);
+        return answer(asks_for_help(argc, argv) ? rg_mesh_help() : rg_mesh_command(argc, argv));
     }
     /* Open MPI's own I/O layer has been reported to hang or corrupt HDF5's collective writes
      * (HDFGroup/hdf5#1227, open-mpi/ompi#12718): use ROMIO unless the user chose otherwise. */
@@ -200,7 +237,7 @@ int main(int argc, char **argv) {
         rg_fatal(RG_FAILURE, "the MPI library does not support threads (MPI_THREAD_FUNNELED)");
     }
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-    int status = execute(argc, argv, rank);
+    int status = answer(execute(argc, argv, rank));
     MPI_Finalize();
     return status;
 }

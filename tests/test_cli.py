@@ -3,11 +3,13 @@
 import json
 import os
 import re
+import signal
 import subprocess
+import time
 
 import pytest
 import yaml
-from conftest import BENCH, CASES, launch, overrides
+from conftest import BENCH, CASES, ENVIRONMENT, PROGRAM, TIMEOUT, launch, overrides
 
 SPALL = BENCH / "spall.yaml"
 FRAGMENTS = CASES / "fragments.yaml"
@@ -97,6 +99,52 @@ def test_help_of_mesh():
     assert process.returncode == 0 and process.stderr == ""
     for word in ("-o", "--scale", "--improve", "--info", "--case", "--partition", "--set"):
         assert word in process.stdout
+
+
+# ---- Streams ----
+
+
+def start(*arguments, **streams):
+    return subprocess.Popen([str(PROGRAM), *map(str, arguments)], env={**os.environ, **ENVIRONMENT}, **streams)
+
+
+def test_run_outlives_the_reader_of_its_output(run, tmp_path):
+    process = start("run", FRAGMENTS, "-o", tmp_path / "out", *overrides(SHORT), stdout=subprocess.PIPE,
+                    stderr=subprocess.PIPE)
+    process.stdout.close()
+    said = process.stderr.read().decode()
+    process.stderr.close()
+    assert process.wait(TIMEOUT) == 0
+    assert said == "rhegma: warning: standard output cannot be written: some of what was said is lost\n"
+    assert summary_of(tmp_path / "out")["state_hash"] == run(FRAGMENTS, sets=SHORT).summary["state_hash"]
+
+
+def test_closed_streams_are_not_taken_for_others(tmp_path):
+    """Neither outputs nor MPI's sockets get their numbers, and with them the words of the run."""
+    process = start("run", FRAGMENTS, "-o", tmp_path / "out", *overrides({"time.end": 1e-3}),
+                    preexec_fn=lambda: os.closerange(0, 3))
+    begin = time.monotonic()
+    while not (tmp_path / "out" / "energy.csv").exists():
+        assert process.poll() is None and time.monotonic() - begin < TIMEOUT
+        time.sleep(0.01)
+    found = [os.readlink(f"/proc/{process.pid}/fd/{number}") for number in range(3)]
+    process.kill()
+    process.wait()
+    assert found == 3 * ["/dev/null"]
+
+
+@pytest.mark.parametrize("words", [["check", FRAGMENTS], ["--version"]])
+def test_an_answer_that_is_lost_is_a_failure(words):
+    with open("/dev/full", "w") as full:
+        assert start(*words, stdout=full, stderr=subprocess.DEVNULL).wait(TIMEOUT) == 1
+
+
+def test_an_interrupt_ends_what_has_nothing_to_save():
+    process = start("verify", stdout=subprocess.PIPE)
+    process.stdout.readline()
+    process.send_signal(signal.SIGINT)
+    assert process.wait(TIMEOUT) == -signal.SIGINT
+    process.stdout.close()
 
 
 # ---- Bad cases ----

@@ -270,6 +270,22 @@ def test_signals_that_stop(tmp_path, long_run, name, ranks):
         finish(tmp_path / "out", long_run)
 
 
+@pytest.mark.parametrize("before, expect", [(signal.SIG_DFL, 3), (signal.SIG_IGN, 0)])
+def test_a_terminal_that_goes_away(tmp_path, before, expect):
+    """Stops a run with a checkpoint, but not under nohup. Shell and system both send the signal."""
+    kept = signal.signal(signal.SIGHUP, before)
+    try:
+        background = Background(tmp_path / "out", {**LONG, "time.steps": 400}, ranks=1)
+    finally:
+        signal.signal(signal.SIGHUP, kept)
+    background.wait_for(3)
+    for _ in range(2):
+        os.kill(background.process.pid, signal.SIGHUP)
+    status, said = background.end()
+    assert status == expect, said
+    assert len(checkpoints(tmp_path / "out")) == (expect == 3)
+
+
 def test_sigusr1_writes_a_checkpoint_and_goes_on(tmp_path, long_run):
     background = Background(tmp_path / "out", {**LONG, "time.steps": 400}, ranks=2)
     background.wait_for(3)
