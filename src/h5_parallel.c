@@ -5,6 +5,7 @@
 #include <fcntl.h>
 #include <limits.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/statvfs.h>
 #include <unistd.h>
@@ -275,6 +276,18 @@ static void prepare(rg_h5_file *f, const char *path, MPI_Comm comm) {
     rg_h5_listen(f->reason);
 }
 
+/* The name by which MPI-IO finds a file; the caller frees it. ROMIO takes all before the first colon of a
+ * path for a kind of file system, so a path with a colon gets one that serves for all kinds. OMPIO knows
+ * none. */
+static char *mpi_name(const char *path) {
+    const char *io = getenv("OMPI_MCA_io");
+    bool romio = io == NULL || strcmp(io, "ompio") != 0;
+    size_t size = strlen(path) + sizeof "ufs:";
+    char *name = rg_realloc(NULL, size, 1);
+    snprintf(name, size, "%s%s", romio && strchr(path, ':') != NULL ? "ufs:" : "", path);
+    return name;
+}
+
 /* Why the file could not be created, in the system's words, which MPI-IO keeps to itself. */
 static void tell_reason(rg_h5_file *f) {
     int disk = open(f->part, O_RDWR | O_CREAT, 0666);
@@ -294,7 +307,9 @@ void rg_h5_create(rg_h5_file *f, const char *path, hsize_t room, MPI_Comm comm) 
     if (room > 0) {
         H5Pset_userblock(plan, room);
     }
-    f->file = access < 0 ? -1 : H5Fcreate(f->part, H5F_ACC_TRUNC, plan, access);
+    char *name = mpi_name(f->part);
+    f->file = access < 0 ? -1 : H5Fcreate(name, H5F_ACC_TRUNC, plan, access);
+    rg_free(name);
     H5Pclose(plan);
     H5Pclose(access);
     if (f->file < 0) {
@@ -308,7 +323,9 @@ void rg_h5_create(rg_h5_file *f, const char *path, hsize_t room, MPI_Comm comm) 
 bool rg_h5_open(rg_h5_file *f, const char *path, MPI_Comm comm) {
     prepare(f, path, comm);
     hid_t access = parallel_access(comm);
-    f->file = access < 0 ? -1 : H5Fopen(path, H5F_ACC_RDONLY, access);
+    char *name = mpi_name(path);
+    f->file = access < 0 ? -1 : H5Fopen(name, H5F_ACC_RDONLY, access);
+    rg_free(name);
     H5Pclose(access);
     int ok = f->file >= 0;
     MPI_Allreduce(MPI_IN_PLACE, &ok, 1, MPI_INT, MPI_MIN, comm);

@@ -404,6 +404,19 @@ def test_expression_that_is_not_finite_is_told_once(tmp_path, what):
     assert f"{what} is not finite at " in said[0][0]
 
 
+@pytest.mark.parametrize("ranks, io", [(1, "romio321"), (2, "romio321"), (1, "ompio")])
+def test_paths_with_colons(run, tmp_path, ranks, io):
+    """MPI-IO would take what stands before a colon for a kind of file system."""
+    out = tmp_path / "2026-11-22T12:30:00"
+    sets = {**SHORT, "checkpoint.steps": 30}
+    process = launch("run", FRAGMENTS, "-q", "-o", out.name, *overrides(sets), ranks=ranks, cwd=tmp_path, OMPI_MCA_io=io)
+    assert process.returncode == 0, process.stderr
+    process = launch("run", "--restart", out, "-q", *overrides({"time.steps": 50}), ranks=ranks, OMPI_MCA_io=io)
+    assert process.returncode == 0, process.stderr
+    assert summary_of(out)["state_hash"] == run(FRAGMENTS, sets={"time.steps": 50}).summary["state_hash"]
+    assert [path.name for path in tmp_path.iterdir()] == [out.name]
+
+
 @pytest.mark.parametrize("ranks", [1, 2])
 def test_long_paths(tmp_path, ranks):
     """What the system takes is taken, what it does not is refused once."""
