@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stddef.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "element.h"
@@ -26,16 +27,24 @@ static void unit(const double v[3], double out[3]) {
     }
 }
 
-static double velocity_at(const rg_body *b, int c, double time, MPI_Comm comm) {
+/* The velocity that the case gives body i; notes where that is not finite for the first time. */
+static double velocity_at(rg_bodies *b, int i, int c, double time) {
     static const double nowhere[3] = {0, 0, 0};
-    const rg_expr *e = b->input->velocity[c];
+    const rg_expr *e = b->body[i].input->velocity[c];
     double v = e == NULL ? 0 : rg_expr_value(e, nowhere, time);
-    if (!isfinite(v)) { /* on all ranks */
-        rg_speak(comm);
-        rg_fatal(RG_USAGE, "bodies: velocity.%c of %s: %s is not finite at t = %g s", "xyz"[c],
-                 b -> input -> name, rg_expr_text(e), time);
+    if (!isfinite(v) && b->lapse.input == NULL) {
+        b->lapse = (rg_body_lapse){b->body[i].input, c, time};
     }
     return v;
+}
+
+bool rg_bodies_told(const rg_bodies *b, char *words, size_t size) {
+    const rg_body_lapse *l = &b->lapse;
+    if (l->input != NULL) {
+        snprintf(words, size, "bodies: velocity.%c of %s: %s is not finite at t = %g s", "xyz"[l->component],
+                 l -> input -> name, rg_expr_text(l->input->velocity[l->component]), l -> time);
+    }
+    return l->input != NULL;
 }
 
 static double mass_of(const rg_body_input *in) {
@@ -43,16 +52,25 @@ static double mass_of(const rg_body_input *in) {
     return in->motion == RG_MOTION_PRESCRIBED ? INFINITY : in->density > 0 ? in->density * volume : in->mass;
 }
 
-static void make_body(rg_body *b, const rg_body_input *in, MPI_Comm comm) {
+static void make_body(rg_bodies *all, int i, const rg_body_input *in) {
+    rg_body *b = &all->body[i];
     b->input = in;
     b->mass = mass_of(in);
     unit(in->shape == RG_SHAPE_PLANE ? in->normal : in->axis, b->direction);
     memcpy(b->x, in->at, sizeof b->x);
     for (int c = 0; c < 3; c++) {
-        b->v[c] = velocity_at(b, c, 0, comm);
+        b->v[c] = velocity_at(all, i, c, 0);
     }
     memcpy(b->seen.x, b->x, sizeof b->x);
     memcpy(b->seen.v, b->v, sizeof b->v);
+}
+
+static void refuse_lapse(const rg_bodies *b, const rg_case *c) {
+    char words[400];
+    if (rg_bodies_told(b, words, sizeof words)) { /* on all ranks */
+        rg_speak(b->comm);
+        rg_fatal(RG_USAGE, "%s: %s", c->path, words);
+    }
 }
 
 /* ---- Faces that may touch them ---- */
@@ -300,8 +318,9 @@ rg_bodies *rg_bodies_make(const rg_case *c, const rg_domain *d, const rg_part *p
     }
     b->body = RG_NEW(rg_body, (size_t)b->count);
     for (int i = 0; i < b->count; i++) {
-        make_body(&b->body[i], &c->body[i], comm);
+        make_body(b, i, &c->body[i]);
     }
+    refuse_lapse(b, c);
     b->sum = RG_NEW(rg_exact_sum, (size_t)(3 * b->count * threads));
     b->total = RG_NEW(rg_exact_sum, (size_t)(3 * b->count));
     find_faces(b, c, part);
@@ -325,13 +344,14 @@ void rg_bodies_sum(rg_bodies *b) {
     rg_exact_start_allreduce(b->total, sums, b->comm, &b->request);
 }
 
-static void kick(rg_body *b, double time, double dt_last, double dt_next, MPI_Comm comm) {
+static void kick(rg_bodies *all, int i, double time, double dt_last, double dt_next) {
+    rg_body *b = &all->body[i];
     bool prescribed = b->input->motion == RG_MOTION_PRESCRIBED;
     b->seen.work = b->work;
     for (int c = 0; c < 3; c++) {
         double force = b->seen.force[c], before = b->v[c];
-        b->seen.v[c] = prescribed ? velocity_at(b, c, time, comm) : before + 0.5 * dt_last * force / b->mass;
-        b->v[c] = prescribed ? velocity_at(b, c, time + 0.5 * dt_next, comm)
+        b->seen.v[c] = prescribed ? velocity_at(all, i, c, time) : before + 0.5 * dt_last * force / b->mass;
+        b->v[c] = prescribed ? velocity_at(all, i, c, time + 0.5 * dt_next)
                              : before + 0.5 * (dt_last + dt_next) * force / b->mass;
         if (prescribed) {
             b->seen.work -= 0.5 * dt_last * before * force;
@@ -347,7 +367,7 @@ void rg_bodies_kick(rg_bodies *b, double time, double dt_last, double dt_next) {
         for (int c = 0; c < 3; c++) {
             b->body[i].seen.force[c] = rg_exact_value(&b->total[3 * i + c]);
         }
-        kick(&b->body[i], time, dt_last, dt_next, b->comm);
+        kick(b, i, time, dt_last, dt_next);
     }
 }
 

@@ -40,6 +40,13 @@ typedef struct {
     rg_body_seen seen; /* at the last kick */
 } rg_body;
 
+/* A prescribed velocity that is not finite, and when (s); `input` NULL: none was. */
+typedef struct {
+    const rg_body_input *input;
+    int component;
+    double time;
+} rg_body_lapse;
+
 /* A face that may touch a body. */
 typedef struct {
     rg_lid slot;
@@ -69,11 +76,12 @@ typedef struct {
     rg_exact_sum *sum;   /* [threads][count][3] force on each body (N) */
     rg_exact_sum *total; /* [count][3] */
     MPI_Request request;
+    rg_body_lapse lapse; /* the first; on all ranks the same */
 } rg_bodies;
 
 /* The bodies of a case, with the faces of this rank that may touch them. Ends the run with a message if a set
- * is unknown or a body overlaps the solid at the start. Keeps references to `c`, `d` and `m`, the materials.
- * Collective. Free with rg_bodies_free. */
+ * is unknown, a velocity is not finite or a body overlaps the solid at the start. Keeps references to `c`,
+ * `d` and `m`, the materials. Collective. Free with rg_bodies_free. */
 rg_bodies *rg_bodies_make(const rg_case *c, const rg_domain *d, const rg_part *part, const rg_material *m,
                           int threads, MPI_Comm comm);
 
@@ -104,6 +112,10 @@ void rg_bodies_sum(rg_bodies *b);
  * dt_next long; `seen` is their state at `time`, half of dt_last after the middle of the last step.
  * Collective. */
 void rg_bodies_kick(rg_bodies *b, double time, double dt_last, double dt_next);
+
+/* Whether a prescribed velocity was not finite so far; then words[size] says which and when first. Such a
+ * body touches nothing any more. */
+bool rg_bodies_told(const rg_bodies *b, char *words, size_t size);
 
 /* Moves the bodies on by a step. */
 void rg_bodies_drift(rg_bodies *b, double dt);

@@ -136,8 +136,9 @@ static void output(run *r, bool fields) {
 static void examine(run *r, int64_t step, double time, double dt) {
     const rg_solver *s = r->solver;
     char why[400];
-    if (!isfinite(s->stiffening_anywhere)) {
-        bool told = rg_constraints_told(s->constraints, why, sizeof why, s->comm);
+    bool lapse = rg_bodies_told(s->bodies, why, sizeof why); /* of which the solid may know nothing */
+    if (lapse || !isfinite(s->stiffening_anywhere)) {
+        bool told = lapse || rg_constraints_told(s->constraints, why, sizeof why, s->comm);
         snprintf(r->failure, sizeof r->failure, "the state is not finite%s%s%s",
                  told ? " (" : " (or an element is inside out)", told ? why : "", told ? ")" : "");
     } else if (collapsed(r, s->stiffening_anywhere)) {

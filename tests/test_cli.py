@@ -351,6 +351,7 @@ def stops_as_not_finite(attempt, sets, ranks, why="or an element is inside out")
     message = re.search(NOT_FINITE % why, said, re.M)
     assert message, said
     assert summary_of(out)["status"] == message[1]
+    assert json.loads((out / "autopsy.json").read_text())["reason"] in message[1]
     return int(message[2]), float(message[3])
 
 
@@ -376,6 +377,16 @@ def test_blow_up_between_two_outputs_is_found(attempt, interval, ranks):
 def test_expression_that_ceases_to_be_finite_stops_the_run(attempt, kind, value, ranks):
     sets = {"boundary": [{"set": "z+", "component": "z", kind: value}], "output.energy_limit": 1e300}
     step, _ = stops_as_not_finite(attempt, sets, ranks, re.escape(f"boundary[0].{kind}: {value} is not finite at "))
+    assert step > 1
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_body_whose_velocity_ceases_to_be_finite_stops_the_run(attempt, ranks):
+    """Though it touches nothing, so that the solid does not feel it."""
+    wall = {"name": "wall", "shape": "plane", "motion": "prescribed", "at": [0, 0, -1], "normal": [0, 0, 1],
+            "velocity": {"x": "sqrt(1e-8 - t)"}}
+    step, _ = stops_as_not_finite(attempt, {"bodies": [wall], "output.energy_limit": 1e300}, ranks,
+                                  re.escape("bodies: velocity.x of wall: sqrt(1e-8 - t) is not finite at t = 1"))
     assert step > 1
 
 
