@@ -98,9 +98,24 @@ void rg_remove_endings(const char *dir) {
     remove_in(dir, "autopsy.json");
 }
 
+void rg_refuse_own_case(const char *dir) {
+    char own[PATH_BYTES], result[PATH_BYTES];
+    join(own, sizeof own, dir, "case.yaml");
+    join(result, sizeof result, dir, "energy.csv");
+    if (access(own, F_OK) == 0 && access(result, F_OK) != 0) {
+        rg_fatal(
+            RG_USAGE,
+            "%s: no run wrote it, for there is no energy.csv beside it, but this one would write over it: "
+            "take another directory (-o), or name the file otherwise",
+            own);
+    }
+}
+
+/* But case.yaml and energy.csv, which are replaced: at no time one is there without the other, and no case is
+ * lost that the run itself came from. */
 void rg_remove_results(const char *dir, int rank) {
-    static const char *const names[] = {"summary.json", "energy.csv", "history.csv", "fragments.csv",
-                                        "autopsy.json", "case.yaml",  "fields.xdmf", "fields.h5"};
+    static const char *const names[] = {"summary.json", "history.csv", "fragments.csv",
+                                        "autopsy.json", "fields.xdmf", "fields.h5"};
     for (size_t i = 0; rank == 0 && i < sizeof names / sizeof *names; i++) {
         remove_in(dir, names[i]);
     }

@@ -20,7 +20,11 @@ bool rg_sync(const char *path);
  * message about `name` on failure. */
 int64_t rg_settle(FILE *file, const char *name);
 
-/* Removes what an earlier run left in `dir`, so that results of two runs never mix; rank 0. */
+/* Ends the run if case.yaml in `dir` is not of a run but the user's own; rank 0. */
+void rg_refuse_own_case(const char *dir);
+
+/* Removes what an earlier run left in `dir`, so that results of two runs never mix; energy.csv and case.yaml
+ * are to be written anew, in this order. Rank 0. */
 void rg_remove_results(const char *dir, int rank);
 
 /* Removes what only the end of a run writes: summary and autopsy. */

@@ -262,6 +262,7 @@ static void open_outputs(run *r) {
     const rg_case *c = r->input;
     if (r->solver->rank == 0) {
         rg_refuse_busy(c->output.dir, "energy.csv");
+        rg_refuse_own_case(c->output.dir);
     }
     refuse_overwriting(r);
     rg_make_directory(c->output.dir, r->solver->comm);
@@ -270,10 +271,10 @@ static void open_outputs(run *r) {
                               true); /* first: none may outlive the files that it goes on with */
     }
     rg_remove_results(c->output.dir, r->solver->rank);
-    rg_echo_case(c, r->solver->rank);
     r->energy = rg_csv_open(c->output.dir, "energy.csv", r->solver->rank);
     rg_csv_hold(r->energy);
     rg_csv_energy_header(r->energy);
+    rg_echo_case(c, r->solver->rank);
     rg_probes_open(r->probes, r->solver);
     r->snapshots = rg_snapshots_open(r->solver, &r->slab);
     r->fragments = rg_fragment_table_open(r->solver);

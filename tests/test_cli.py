@@ -3,6 +3,7 @@
 import json
 import os
 import re
+import shutil
 import signal
 import subprocess
 import time
@@ -297,6 +298,18 @@ def test_output_goes_to_the_named_place(tmp_path):
 def test_default_output_is_named_after_the_case(tmp_path):
     assert launch("run", FRAGMENTS, "-q", *overrides(SHORT), cwd=tmp_path).returncode == 0
     assert (tmp_path / "results" / "fragments" / "summary.json").exists()
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_case_of_the_user_is_not_overwritten(tmp_path, ranks):
+    """By the echo of the same name; that of an earlier run is, also where the run comes from it."""
+    shutil.copy(FRAGMENTS, tmp_path / "case.yaml")
+    process = launch("run", "case.yaml", "-q", "-o", ".", *overrides(SHORT), cwd=tmp_path, ranks=ranks)
+    assert process.returncode == 2 and process.stderr.count("rhegma: ") == 1
+    assert "./case.yaml: no run wrote it" in process.stderr
+    assert (tmp_path / "case.yaml").read_text() == FRAGMENTS.read_text() and len(list(tmp_path.iterdir())) == 1
+    for case in ("case.yaml", "out/case.yaml"):
+        assert launch("run", case, "-q", "-o", "out", *overrides(SHORT), cwd=tmp_path, ranks=ranks).returncode == 0
 
 
 def test_echo_of_a_case_gives_the_same_run(run, tmp_path):
