@@ -374,6 +374,7 @@ static void begin(run *r, MPI_Comm comm) {
         rg_affinity_print(comm, stdout);
     }
     open_or_reopen(r);
+    rg_schedule_warn(&r->schedule, r->solver);
     r->solver->phases = (rg_phases){.last = 0};
     if (speaks && r->restart) {
         printf("goes on from step %" PRId64 ", time %.6g s\n", r->solver->step, r->solver->time);

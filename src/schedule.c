@@ -2,6 +2,7 @@
 
 #include <math.h>
 
+#include "error.h"
 #include "interrupt.h"
 
 /* Of a checkpoint that was never written: bytes of an element, and how fast a disk is at least. */
@@ -9,11 +10,14 @@
 #define BYTES_PER_SECOND  50e6
 
 /* Before the limit of wall time: three times the slowest checkpoint, 2 s, and 1 % of the limit. */
+static double last_moment(const rg_schedule *t, double seconds) {
+    return t->limit - 3 * seconds - 2 - 0.01 * (isfinite(t->limit) ? t->limit : 0);
+}
+
 static void set_clock(const rg_schedule *t, const rg_solver *s, double seconds) {
     double every = s->input->checkpoint.wall_time;
     if (s->rank == 0) {
-        double stop = t->limit - 3 * seconds - 2 - 0.01 * (isfinite(t->limit) ? t->limit : 0);
-        rg_interrupt_clock(stop, every > 0 ? rg_interrupt_now() + every : INFINITY);
+        rg_interrupt_clock(last_moment(t, seconds), every > 0 ? rg_interrupt_now() + every : INFINITY);
     }
 }
 
@@ -30,6 +34,16 @@ void rg_schedule_start(rg_schedule *t, const rg_solver *s, double walltime) {
                        .last = s->step > 0 ? s->step : -1};
     t->limit = s->rank == 0 ? rg_interrupt_limit(walltime) : INFINITY;
     set_clock(t, s, rg_schedule_seconds(s, 0));
+}
+
+void rg_schedule_warn(const rg_schedule *t, const rg_solver *s) {
+    double seconds = rg_schedule_seconds(s, 0), now = rg_interrupt_now();
+    if (s->rank == 0 && last_moment(t, seconds) <= now) {
+        rg_warn(
+            "the wall-time limit of %.0f s leaves no time for steps: set-up took %.0f s, and a checkpoint of "
+            "about %.0f s needs three times that and 2 s",
+            t->limit, now, seconds);
+    }
 }
 
 bool rg_schedule_due(const rg_schedule *t, const rg_solver *s, bool end) {

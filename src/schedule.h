@@ -13,6 +13,10 @@ typedef struct {
 /* From the solver's state on; rank 0 sets the clock (interrupt.h). `walltime` 0: none but Slurm's. */
 void rg_schedule_start(rg_schedule *t, const rg_solver *s, double walltime);
 
+/* Warns, before the first step, of a limit that leaves time for one at most: a job that queues itself again
+ * while the exit status says so would do that for ever. */
+void rg_schedule_warn(const rg_schedule *t, const rg_solver *s);
+
 /* Whether the present state is to be saved: the same on all ranks. `end`: it is the last one. */
 bool rg_schedule_due(const rg_schedule *t, const rg_solver *s, bool end);
 

@@ -310,6 +310,13 @@ def test_wall_time_limit(tmp_path, long_run, way):
     assert time.monotonic() - begin < 60 and len(checkpoints(tmp_path / "out")) == 1
 
 
+def test_wall_time_that_leaves_none_for_steps(tmp_path):
+    """A job that queues itself again on status 3 would do so for ever."""
+    process = launch("run", FRAGMENTS, "-q", "-o", tmp_path / "out", "--walltime", "0:00:01", *overrides(LONG))
+    assert process.returncode == 3
+    assert re.search(r"warning: the wall-time limit of 1 s leaves no time for steps: set-up took \d+ s", process.stderr)
+
+
 @pytest.mark.parametrize("text", ["90", "1:60:00", "0:00:00", "-1:00:00", "1:00:00x", ""])
 def test_wall_time_that_is_none(text):
     process = launch("run", FRAGMENTS, "--walltime", text)
