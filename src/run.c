@@ -57,10 +57,6 @@ static double stable_step(const run *r, double stiffening) {
     return rg_pace_step(r->solver, dt);
 }
 
-static bool collapsed(const run *r, double stiffening) {
-    return stable_step(r, stiffening) < r->input->time.collapse * r->dt_reference;
-}
-
 static double step_size(const run *r, double stiffening) {
     double dt = stable_step(r, stiffening);
     if (r->keep.frame < r->input->output.times) { /* equal steps that end at the next frame */
@@ -132,18 +128,19 @@ static void output(run *r, bool fields) {
     rg_progress_show(&r->progress, r->solver, e);
 }
 
-/* A state that no step can leave: not finite, or such that the step collapses. `dt` is the step tried. */
-static void examine(run *r, int64_t step, double time, double dt) {
+/* A state that no step can leave: not finite, or such that the step collapses. */
+static void examine(run *r, int64_t step, double time) {
     const rg_solver *s = r->solver;
     char why[400];
+    double next = stable_step(r, s->stiffening_anywhere);
     bool lapse = rg_bodies_told(s->bodies, why, sizeof why); /* of which the solid may know nothing */
     if (lapse || !isfinite(s->stiffening_anywhere)) {
         bool told = lapse || rg_constraints_told(s->constraints, why, sizeof why, s->comm);
         snprintf(r->failure, sizeof r->failure, "the state is not finite%s%s%s",
                  told ? " (" : " (or an element is inside out)", told ? why : "", told ? ")" : "");
-    } else if (collapsed(r, s->stiffening_anywhere)) {
+    } else if (next < r->input->time.collapse * r->dt_reference) {
         snprintf(r->failure, sizeof r->failure,
-                 "the time step collapsed: %.3g s, below %.3g (time.collapse) of the %.3g s at rest", dt,
+                 "the time step collapsed: %.3g s, below %.3g (time.collapse) of the %.3g s at rest", next,
                  r->input->time.collapse, r->dt_reference);
     } else {
         return;
@@ -191,7 +188,7 @@ static bool advance(run *r, double *other) {
         rg_solver_step(s, dt);
     }
     rg_probes_next(r->probes, time);
-    examine(r, step, time, dt);
+    examine(r, step, time);
     bool failed = r->failure[0] != '\0';
     if (failed && !fresh && !careful) {
         rg_solver_kick(s, dt); /* the fields are those of the state that followed */

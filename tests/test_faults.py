@@ -188,6 +188,8 @@ def test_autopsy_of_an_element_inside_out(tmp_path, ranks):
 @pytest.mark.parametrize("ranks", [1, 2])
 def test_autopsy_of_a_time_step_that_collapses(tmp_path, ranks):
     found = fail(tmp_path, {**PUSH, "time.collapse": 0.5}, ranks, r"time step collapsed: .*below 0.5 \(time.collapse\)")
+    step, rest = map(float, re.search(r"collapsed: (\S+) s, below 0.5 .* of the (\S+) s at rest", found["reason"]).groups())
+    assert 0 < step < 0.5 * rest
     assert found["step_limited_by"] == "the stiffening of the element"
     assert found["stiffening"] > 4 and 0 < found["smallest_jacobian"] < 0.7 and found["z_m"] > 1.2e-3
     assert last_frame(tmp_path / "out")[0] == found["step"]
