@@ -182,6 +182,14 @@ static void put_all(rg_h5_file *f, rg_checkpoints *k) {
     }
 }
 
+/* The name of a checkpoint is on the disk before an older one goes. Not all file systems bring a folder there
+ * when asked: EINVAL. */
+static void sync_folder(const rg_checkpoints *k) {
+    bool ok = k->solver->rank != 0 || rg_sync(k->folder) || errno == EINVAL;
+    rg_h5_file about = {.comm = k->solver->comm, .rank = k->solver->rank};
+    rg_h5_agree_on(&about, ok, k->folder, "bring the folder to the disk", strerror(errno));
+}
+
 void rg_checkpoint_write(rg_checkpoints *k, int keep) {
     const rg_solver *s = k->solver;
     MPI_Barrier(s->comm); /* so that waiting for a slower rank does not count */
@@ -193,11 +201,12 @@ void rg_checkpoint_write(rg_checkpoints *k, int keep) {
     rg_h5_create(&f, path, RG_SEAL, s->comm);
     put_all(&f, k);
     rg_h5_close(&f);
-    rg_h5_agree_on(&f, rg_seal_put(f.part, s->step, s->comm), path, "seal the file", strerror(errno));
+    bool sealed = rg_seal_put(f.part, s->step, s->comm);
+    rg_h5_agree_on(&f, sealed, path, "seal the file", strerror(errno));
     rg_h5_finish(&f, true);
     rg_free(path);
+    sync_folder(k);
     if (s->rank == 0) {
-        rg_sync(k->folder);
         rg_folder_prune(k->folder, keep);
     }
     double seconds = MPI_Wtime() - begin;
