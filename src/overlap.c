@@ -23,6 +23,10 @@ typedef struct {
 
 enum { AXIS = 20 }; /* cells number from -2^AXIS to 2^AXIS along each axis */
 
+/* An element whose box has become so many times longer is no piece of the body any more: a run that goes
+ * wrong leaves some with corners metres away, in more cells than can be looked at. */
+#define TORN 10
+
 enum { RECENT = 1 << 12 }; /* consecutive elements lie close together: most repetitions are recent */
 
 /* ---- Cells ---- */
@@ -31,11 +35,30 @@ typedef struct {
     int64_t low[3], high[3]; /* cells that an element's box reaches into, ends included */
 } span;
 
-/* False where an element is outside the grid, or nowhere. */
-static bool element_span(double x[4][3], double cell, span *r) {
+static double lowest(const double *corner, int c) {
+    return fmin(fmin(corner[c], corner[3 + c]), fmin(corner[6 + c], corner[9 + c]));
+}
+
+static double highest(const double *corner, int c) {
+    return fmax(fmax(corner[c], corner[3 + c]), fmax(corner[6 + c], corner[9 + c]));
+}
+
+/* Longest side of the box around four corners. */
+static double extent(const double *corner) {
+    double longest = 0;
     for (int c = 0; c < 3; c++) {
-        double low = fmin(fmin(x[0][c], x[1][c]), fmin(x[2][c], x[3][c]));
-        double high = fmax(fmax(x[0][c], x[1][c]), fmax(x[2][c], x[3][c]));
+        longest = fmax(longest, highest(corner, c) - lowest(corner, c));
+    }
+    return longest;
+}
+
+/* False where an element is outside the grid, nowhere, or torn; `reference`: its corners at rest. */
+static bool element_span(double x[4][3], const double *reference, double cell, span *r) {
+    if (!(extent(x[0]) <= TORN * extent(reference))) {
+        return false;
+    }
+    for (int c = 0; c < 3; c++) {
+        double low = lowest(x[0], c), high = highest(x[0], c);
         if (!(low > -cell * (1 << AXIS)) || !(high < cell * (1 << AXIS))) {
             return false;
         }
@@ -108,7 +131,7 @@ static void list_elements(lister *l) {
             continue;
         }
         rg_current_corners(l->s, i, x);
-        if (!element_span(x, l->cell, &r)) {
+        if (!element_span(x, l->s->domain->corner + 12 * i, l->cell, &r)) {
             continue;
         }
         int64_t at[3] = {r.low[0], r.low[1], r.low[2]};
@@ -186,8 +209,7 @@ static bool contains(double x[4][3], const double point[3]) {
 
 static bool boxes_meet(double a[4][3], double b[4][3]) {
     for (int c = 0; c < 3; c++) {
-        double low = fmin(fmin(a[0][c], a[1][c]), fmin(a[2][c], a[3][c]));
-        double high = fmax(fmax(a[0][c], a[1][c]), fmax(a[2][c], a[3][c]));
+        double low = lowest(a[0], c), high = highest(a[0], c);
         bool below = b[0][c] < low && b[1][c] < low && b[2][c] < low && b[3][c] < low;
         bool above = b[0][c] > high && b[1][c] > high && b[2][c] > high && b[3][c] > high;
         if (below || above) {
