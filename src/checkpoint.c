@@ -118,6 +118,11 @@ static void get_record(const void *of, size_t i, void *out) {
     rg_state_get(r->array, (size_t)r->slot[i], out);
 }
 
+static void put_record(const void *of, size_t i, void *in) {
+    const element_records *r = of;
+    rg_state_put(r->array, (size_t)r->slot[i], in);
+}
+
 static char *make_window(rg_checkpoints *k, size_t bytes) {
     if (bytes > k->window_bytes) {
         rg_free(k->window);
@@ -335,18 +340,20 @@ static bool check_case(const rg_checkpoints *k, const rg_h5_file *f, const char 
     return ok;
 }
 
-static bool get_elements(hid_t group, const rg_checkpoints *k, const rg_state_array *a) {
-    size_t bytes = rg_state_bytes(a);
-    char *record = RG_NEW(char, k->slab->own *bytes + 1), *sorted = RG_NEW(char, k->slab->count *bytes + 1);
+/* Window by window, as they were written. */
+static bool get_elements(hid_t group, rg_checkpoints *k, const rg_state_array *a) {
+    size_t bytes = rg_state_bytes(a), rows = rg_slab_window(bytes), most = rg_slab_most(k->slab);
+    char *window = make_window(k, rows * bytes);
+    element_records records = {a, k->slab->slot};
     rg_h5_slab s = of_elements(k->slab, a);
-    bool ok = rg_h5_read(group, &s, sorted);
-    rg_slab_fetch_bytes(k->slab, bytes, sorted, record);
-#pragma omp parallel for schedule(static)
-    for (size_t i = 0; i < k->slab->own; i++) {
-        rg_state_put(a, (size_t)k->slab->slot[i], record + i * bytes);
+    int64_t end = s.first + s.count;
+    bool ok = true;
+    for (size_t first = 0; first < most; first += rows) {
+        s.count = end - s.first < (int64_t)rows ? end - s.first : (int64_t)rows;
+        ok = rg_h5_read(group, &s, window) && ok;
+        rg_slab_scatter(k->slab, first, rows, bytes, window, put_record, &records);
+        s.first += s.count;
     }
-    rg_free(record);
-    rg_free(sorted);
     return ok;
 }
 
@@ -367,7 +374,7 @@ static bool get_rows(hid_t group, const rg_state_array *a) {
     return ok;
 }
 
-static bool get_group(const rg_h5_file *f, const rg_checkpoints *k, const char *name, rg_state_of of) {
+static bool get_group(const rg_h5_file *f, rg_checkpoints *k, const char *name, rg_state_of of) {
     hid_t group = H5Gopen2(f->file, name, H5P_DEFAULT);
     bool ok = group >= 0;
     for (int i = 0; ok && i < k->state->arrays; i++) {
@@ -385,7 +392,7 @@ static bool get_group(const rg_h5_file *f, const rg_checkpoints *k, const char *
     return ok;
 }
 
-static bool get_all(rg_h5_file *f, const rg_checkpoints *k) {
+static bool get_all(rg_h5_file *f, rg_checkpoints *k) {
     rg_solver *s = k->solver;
     bool ok = get_group(f, k, "run", RG_OF_RUN) && get_group(f, k, "element", RG_OF_ELEMENT);
     memset(s->broken, 0, s->domain->iblocks * RG_LANES); /* what another attempt may have left */
@@ -399,7 +406,7 @@ static bool get_all(rg_h5_file *f, const rg_checkpoints *k) {
 }
 
 /* One checkpoint; false, with the reason, if it is damaged. */
-static bool load(const rg_checkpoints *k, const char *path, char *reason, size_t size) {
+static bool load(rg_checkpoints *k, const char *path, char *reason, size_t size) {
     if (!rg_seal_holds(path, k->solver->comm, reason, size)) {
         return false;
     }
@@ -427,7 +434,7 @@ static void set_aside(const char *path) {
 }
 
 /* Loads the newest good one of `count`; returns its place in the list, or `count`. */
-static int load_newest(const rg_checkpoints *k, int count, const int64_t *steps) {
+static int load_newest(rg_checkpoints *k, int count, const int64_t *steps) {
     char reason[400];
     for (int i = 0; i < count; i++) {
         char *path = rg_folder_path(k->folder, steps[i]);

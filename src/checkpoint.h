@@ -24,7 +24,7 @@ typedef struct {
     char *folder;     /* where the checkpoints are */
     rg_slab **shared; /* made with the first one, if there is none yet */
     rg_slab *slab;    /* NULL until the first checkpoint */
-    char *window;     /* of the state of elements in global order, on its way to the disk */
+    char *window;     /* of the state of elements in global order, on its way to the disk or back */
     size_t window_bytes;
     uint64_t mesh; /* hash of the mesh */
     int written;

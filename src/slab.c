@@ -174,64 +174,88 @@ static char *make_room(rg_slab *s, size_t bytes) {
     return s->room;
 }
 
-/* Records that stay go to their rows of the window, the others to `leaving`. */
-static void collect(const rg_slab *s, const traffic *out, size_t first, size_t bytes, rg_slab_get *get,
-                    const void *of, char *window, char *leaving) {
+/* A window on its way: the records of own elements, and those of the window's rows. */
+typedef struct {
+    size_t first, bytes;
+    char *row; /* the window itself */
+    traffic own, others;
+    char *of_own, *of_others; /* records that change ranks */
+} passage;
+
+static passage open_passage(rg_slab *s, size_t first, size_t rows, size_t bytes, char *window) {
+    passage p = {.first = first,
+                 .bytes = bytes,
+                 .row = window,
+                 .own = traffic_of(s, s->row, s->send, s->send_at, first, rows),
+                 .others = traffic_of(s, s->place, s->receive, s->receive_at, first, rows)};
+    p.of_own = make_room(s, (p.own.total + p.others.total) * bytes + 1);
+    p.of_others = p.of_own + p.own.total * bytes;
+    return p;
+}
+
+/* Own elements: records that stay are in their rows of the window, the others in `of_own`. */
+static void move_own(const rg_slab *s, const passage *p, rg_slab_move *move, const void *of) {
 #pragma omp parallel
     for (int r = 0; r < s->ranks; r++) {
         bool stays = r == s->rank;
-        size_t n = stays ? out->here : (size_t)out->count[r];
+        size_t n = stays ? p->own.here : (size_t)p->own.count[r];
         if (n == 0) {
             continue;
         }
 #pragma omp for schedule(static) nowait
         for (size_t k = 0; k < n; k++) {
-            size_t i = out->begin[r] + k;
-            get(of, i,
-                stays ? window + (s->row[i] - first) * bytes : leaving + ((size_t)out->at[r] + k) * bytes);
+            size_t i = p->own.begin[r] + k;
+            move(of, i,
+                 stays ? p->row + (s->row[i] - p->first) * p->bytes
+                       : p->of_own + ((size_t)p->own.at[r] + k) * p->bytes);
         }
     }
 }
 
-static void place_arrived(const rg_slab *s, const traffic *in, size_t first, size_t bytes,
-                          const char *arrived, char *window) {
+/* Rows of other ranks' elements: from `of_others`, or (`out`) to there. */
+static void move_others(const rg_slab *s, const passage *p, bool out) {
     for (int r = 0; r < s->ranks; r++) {
-        for (size_t k = 0; k < (size_t)in->count[r]; k++) {
-            size_t row = s->place[in->begin[r] + k] - first;
-            memcpy(window + row * bytes, arrived + ((size_t)in->at[r] + k) * bytes, bytes);
+        for (size_t k = 0; k < (size_t)p->others.count[r]; k++) {
+            char *row = p->row + (s->place[p->others.begin[r] + k] - p->first) * p->bytes;
+            char *other = p->of_others + ((size_t)p->others.at[r] + k) * p->bytes;
+            memcpy(out ? other : row, out ? row : other, p->bytes);
         }
     }
 }
 
-size_t rg_slab_gather(rg_slab *s, size_t first, size_t rows, size_t bytes, rg_slab_get *get, const void *of,
-                      char *out) {
-    traffic leave = traffic_of(s, s->row, s->send, s->send_at, first, rows);
-    traffic arrive = traffic_of(s, s->place, s->receive, s->receive_at, first, rows);
-    char *leaving = make_room(s, (leave.total + arrive.total) * bytes + 1);
-    char *arrived = leaving + leave.total * bytes;
-    collect(s, &leave, first, bytes, get, of, out, leaving);
+static void exchange(const rg_slab *s, size_t bytes, const traffic *leave, const char *leaving,
+                     const traffic *arrive, char *arrived) {
     if (s->ranks > 1) {
         MPI_Datatype record = record_type(bytes);
-        MPI_Alltoallv(leaving, leave.count, leave.at, record, arrived, arrive.count, arrive.at, record,
+        MPI_Alltoallv(leaving, leave->count, leave->at, record, arrived, arrive->count, arrive->at, record,
                       s->comm);
         MPI_Type_free(&record);
-        place_arrived(s, &arrive, first, bytes, arrived, out);
     }
-    size_t here = arrive.here + arrive.total;
-    free_traffic(&leave);
-    free_traffic(&arrive);
+}
+
+static void close_passage(passage *p) {
+    free_traffic(&p->own);
+    free_traffic(&p->others);
+}
+
+size_t rg_slab_gather(rg_slab *s, size_t first, size_t rows, size_t bytes, rg_slab_move *get, const void *of,
+                      char *out) {
+    passage p = open_passage(s, first, rows, bytes, out);
+    move_own(s, &p, get, of);
+    exchange(s, bytes, &p.own, p.of_own, &p.others, p.of_others);
+    move_others(s, &p, false);
+    size_t here = p.others.here + p.others.total;
+    close_passage(&p);
     return here;
 }
 
-void rg_slab_fetch_bytes(const rg_slab *s, size_t bytes, const void *in, void *out) {
-    MPI_Datatype record = record_type(bytes);
-    char *leaving = RG_NEW(char, s->count *bytes + 1);
-    for (size_t i = 0; i < s->count; i++) {
-        memcpy(leaving + i * bytes, (const char *)in + s->place[i] * bytes, bytes);
-    }
-    MPI_Alltoallv(leaving, s->receive, s->receive_at, record, out, s->send, s->send_at, record, s->comm);
-    rg_free(leaving);
-    MPI_Type_free(&record);
+void rg_slab_scatter(rg_slab *s, size_t first, size_t rows, size_t bytes, char *in, rg_slab_move *put,
+                     const void *of) {
+    passage p = open_passage(s, first, rows, bytes, in);
+    move_others(s, &p, true);
+    exchange(s, bytes, &p.others, p.of_others, &p.own, p.of_own);
+    move_own(s, &p, put, of);
+    close_passage(&p);
 }
 
 void rg_slab_free(rg_slab *s) {

@@ -20,8 +20,9 @@ typedef struct {
     MPI_Comm comm;
 } rg_slab;
 
-/* Puts the record of own element i (in the order of `slot`) to `out`. Several threads call it at once. */
-typedef void rg_slab_get(const void *of, size_t i, void *out);
+/* Moves the record of own element i (in the order of `slot`) to `record`, or from there. Several threads call
+ * it at once. */
+typedef void rg_slab_move(const void *of, size_t i, void *record);
 
 /* Rank whose slab holds element `id` of `total`. */
 int rg_slab_owner(rg_gid total, int ranks, rg_gid id);
@@ -39,11 +40,12 @@ size_t rg_slab_most(const rg_slab *s);
 /* Collective: the window of rows [first, first + rows) of every slab, as far as it has them, in global order:
  * out[.][bytes]. Returns how many rows that is here. Who goes through all slabs window by window needs no
  * copy of all records. */
-size_t rg_slab_gather(rg_slab *s, size_t first, size_t rows, size_t bytes, rg_slab_get *get, const void *of,
+size_t rg_slab_gather(rg_slab *s, size_t first, size_t rows, size_t bytes, rg_slab_move *get, const void *of,
                       char *out);
 
-/* Collective: records of `bytes` bytes, in[count] in global order, go to out[own] in the order of `slot`. */
-void rg_slab_fetch_bytes(const rg_slab *s, size_t bytes, const void *in, void *out);
+/* The way back: records of the same window, in[.][bytes], each to its element. Collective. */
+void rg_slab_scatter(rg_slab *s, size_t first, size_t rows, size_t bytes, char *in, rg_slab_move *put,
+                     const void *of);
 
 void rg_slab_free(rg_slab *s);
 

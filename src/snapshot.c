@@ -48,7 +48,7 @@ static double region_at(const rg_expr *region, const double *points, int count, 
 /* Records by own element, in the order of the slab, on their way to the writer. */
 typedef struct {
     const rg_snapshots *w;
-    rg_slab_get *get;
+    rg_slab_move *get;
     const void *of;
     size_t values, rows; /* of a record; of a window */
     size_t next;         /* entry of w->row from which on the rows lie in windows to come */
@@ -77,7 +77,7 @@ static size_t get_window(void *of, size_t k, double *out) {
 }
 
 /* Compressed data are written at once. */
-static window_source open_source(const rg_snapshots *w, const rg_case *c, size_t values, rg_slab_get *get,
+static window_source open_source(const rg_snapshots *w, const rg_case *c, size_t values, rg_slab_move *get,
                                  const void *of) {
     size_t rows =
         c->output.compression > 0 ? rg_slab_most(w->slab) : WINDOW_BYTES / (values * sizeof(double));
@@ -215,7 +215,7 @@ rg_writer_mark rg_snapshots_settle(rg_snapshots *w) {
 
 /* Fields that are all in the same records. */
 static void write_volume(rg_snapshots *w, const rg_solver *s, size_t fields, const rg_volume_field *field,
-                         size_t values, rg_slab_get *get, const void *of) {
+                         size_t values, rg_slab_move *get, const void *of) {
     window_source x = open_source(w, s->input, values, get, of);
     rg_cell_source cells = cells_of(&x);
     rg_writer_volume(w->writer, fields, field, &cells);
@@ -346,7 +346,7 @@ static void write_states(rg_snapshots *w, const rg_solver *s) {
 }
 
 /* One number of each element. */
-static void write_numbers(rg_snapshots *w, const rg_solver *s, const char *name, rg_slab_get *get,
+static void write_numbers(rg_snapshots *w, const rg_solver *s, const char *name, rg_slab_move *get,
                           const void *of) {
     write_volume(w, s, 1, &(rg_volume_field){name, "1", RG_CENTER_CELL, 1, 0}, 1, get, of);
 }
