@@ -13,6 +13,14 @@ typedef struct {
     double strength, opening;
 } factors;
 
+/* Looks at the faces, one after the other. */
+typedef struct {
+    const rg_solver *s;
+    double work;       /* of separation, over strength times opening */
+    int (*between)[2]; /* [sets]: materials that a set names, the lower first; of others nothing */
+    rg_spot bad;       /* where an expression is not finite */
+} search;
+
 /* Corners of an interface, as its first side has them; both sides have the same bits. */
 static void corners(const rg_solver *s, const rg_tile *t, size_t i, const double *x[RG_FCORNERS]) {
     int32_t link = s->domain->side[0][i];
@@ -35,41 +43,51 @@ static double face_uniform(int64_t seed, const double *x[RG_FCORNERS]) {
     return rg_hash_uniform(rg_hash((uint64_t)seed, sum)) + 0x1p-54;
 }
 
-/* Whether the materials on both sides of interface i are the two that a set names. */
-static bool lies_between(const rg_solver *s, const rg_face_set *set, size_t i) {
+static void find_materials(search *f) {
+    const rg_case *c = f->s->input;
+    for (int i = 0; i < c->interface.sets; i++) {
+        if (c->interface.set[i].between != NULL) {
+            int a = rg_case_find_material(c, c->interface.set[i].between[0]);
+            int b = rg_case_find_material(c, c->interface.set[i].between[1]);
+            f->between[i][0] = a < b ? a : b;
+            f->between[i][1] = a < b ? b : a;
+        }
+    }
+}
+
+/* Whether the materials on both sides of interface i are the two that set `number` names. */
+static bool lies_between(const search *f, int number, size_t i) {
     static const uint8_t alone[2] = {0, 0};
-    const uint8_t *beside = s->domain->beside != NULL ? s->domain->beside[i] : alone;
-    int a = rg_case_find_material(s->input, set->between[0]);
-    int b = rg_case_find_material(s->input, set->between[1]);
-    return (a == beside[0] && b == beside[1]) || (a == beside[1] && b == beside[0]);
+    const uint8_t *beside = f->s->domain->beside != NULL ? f->s->domain->beside[i] : alone;
+    return f->between[number][0] == beside[0] && f->between[number][1] == beside[1];
 }
 
 /* Whether a set has interface i. */
-static bool has(const rg_solver *s, int number, size_t i, const double middle[3], const double normal[3],
-                rg_spot *bad) {
-    const rg_face_set *set = &s->input->interface.set[number];
+static bool has(search *f, int number, size_t i, const double middle[3], const double normal[3]) {
+    const rg_face_set *set = &f->s->input->interface.set[number];
     double here = set->where == NULL ? 1 : rg_expr_face_value(set->where, middle, normal);
     if (!isfinite(here)) {
-        rg_spot_note(bad, number, middle, here);
+        rg_spot_note(&f->bad, number, middle, here);
     }
-    return here != 0 && (set->between == NULL || lies_between(s, set, i));
+    return here != 0 && (set->between == NULL || lies_between(f, number, i));
 }
 
 /* The last set that has the face. */
-static void apply_sets(const rg_solver *s, size_t face, const double *x[RG_FCORNERS], const double normal[3],
-                       factors *f, rg_spot *bad) {
-    const rg_case *c = s->input;
-    double work = rg_law_facts_of(s->law.law, s->law.shape, s->law.beta).work, middle[3];
+static void apply_sets(search *look, size_t face, const double *x[RG_FCORNERS], const double normal[3],
+                       factors *f) {
+    const rg_case *c = look->s->input;
+    const rg_cohesive *law = &look->s->law;
+    double middle[3];
     for (int k = 0; k < 3; k++) {
         middle[k] = (x[0][k] + x[1][k] + x[2][k]) / 3;
     }
     for (int i = 0; i < c->interface.sets; i++) {
         const rg_face_set *set = &c->interface.set[i];
-        if (has(s, i, face, middle, normal, bad)) {
+        if (has(look, i, face, middle, normal)) {
             double strength = set->strength > 0 ? set->strength : c->interface.strength;
             double energy = set->energy > 0 ? set->energy : c->interface.energy;
-            f->strength = strength / s->law.strength;
-            f->opening = work > 0 ? energy / (work * strength) / s->law.opening : 1;
+            f->strength = strength / law->strength;
+            f->opening = look->work > 0 ? energy / (look->work * strength) / law->opening : 1;
         }
     }
 }
@@ -83,7 +101,8 @@ static void apply_weibull(const rg_case *c, const double *x[RG_FCORNERS], double
     f->opening /= c->interface.weibull.keep == RG_KEEP_ENERGY ? w : 1;
 }
 
-static factors factors_of(const rg_solver *s, const rg_tile *t, size_t i, rg_spot *bad) {
+static factors factors_of(search *look, const rg_tile *t, size_t i) {
+    const rg_solver *s = look->s;
     factors f = {1, 1};
     double normal[3], area = rg_interface_area(s->domain, i, normal);
     if (area > 0) { /* not in padding */
@@ -92,7 +111,7 @@ static factors factors_of(const rg_solver *s, const rg_tile *t, size_t i, rg_spo
         for (int c = 0; c < 3; c++) {
             normal[c] /= area;
         }
-        apply_sets(s, i, x, normal, &f, bad);
+        apply_sets(look, i, x, normal, &f);
         if (s->input->interface.weibull.modulus > 0) {
             apply_weibull(s->input, x, area, &f);
         }
@@ -108,21 +127,27 @@ void rg_strength_make(rg_solver *s) {
         return;
     }
     double stiffest = 0;
-    rg_spot bad = {.which = RG_NOWHERE};
+    search look = {.s = s,
+                   .work = rg_law_facts_of(s->law.law, s->law.shape, s->law.beta).work,
+                   .between = rg_alloc((size_t)c->interface.sets + 1, sizeof *look.between),
+                   .bad = {.which = RG_NOWHERE}};
+    const rg_spot *bad = &look.bad;
+    find_materials(&look);
     s->scale = RG_NEW(rg_real, d->iblocks * 2 * RG_LANES);
     for (size_t t = 0; t < d->tiles; t++) { /* expressions are not for threads */
         for (size_t i = d->tile[t].ibegin * RG_LANES; i < d->tile[t].iend * RG_LANES; i++) {
-            factors f = factors_of(s, &d->tile[t], i, &bad);
+            factors f = factors_of(&look, &d->tile[t], i);
             s->scale[i / RG_LANES * 2 * RG_LANES + i % RG_LANES] = (rg_real)f.strength;
             s->scale[(i / RG_LANES * 2 + 1) * RG_LANES + i % RG_LANES] = (rg_real)f.opening;
             stiffest = fmax(stiffest, f.strength / f.opening);
         }
     }
-    if (rg_spot_lowest(&bad, s->comm)) {
+    rg_free(look.between);
+    if (rg_spot_lowest(&look.bad, s->comm)) {
         rg_speak(s->comm);
         rg_fatal(RG_USAGE, "%s: interface.sets[%d].where: %s is not finite at (%g, %g, %g)", c->path,
-                 (int)bad.which, rg_expr_text(c->interface.set[bad.which].where), bad.x[0], bad.x[1],
-                 bad.x[2]);
+                 (int)bad->which, rg_expr_text(c->interface.set[bad->which].where), bad->x[0], bad->x[1],
+                 bad->x[2]);
     }
     MPI_Allreduce(&stiffest, &s->stiffest, 1, MPI_DOUBLE, MPI_MAX, s->comm);
 }
