@@ -111,6 +111,15 @@ rg_estimate rg_estimate_run(const rg_solver *s) {
     return e;
 }
 
+void rg_estimate_warn(const rg_case *c, const rg_estimate *e) {
+    for (int i = 0; i <= c->others; i++) {
+        if (e->of_material[i] == 0) {
+            rg_warn("%s: %s %s: later materials claim all of its elements", c->path,
+                    i == 0 ? "material" : "materials:", rg_case_material_name(c, i));
+        }
+    }
+}
+
 static void print_material(const rg_solver *s, const rg_estimate *e, int i, FILE *out) {
     const rg_material *m = &s->material[i];
     double limit, speed;

@@ -17,9 +17,8 @@ typedef struct {
     rg_part *part;
     MPI_Comm comm;
     int rank;
-    int region[RG_MAX_MATERIALS];       /* volume set of entry i; -1: it has an expression */
-    int64_t claimed[RG_MAX_MATERIALS];  /* elements that entry i claims */
-    int64_t elements[RG_MAX_MATERIALS]; /* elements of material i */
+    int region[RG_MAX_MATERIALS];      /* volume set of entry i; -1: it has an expression */
+    int64_t claimed[RG_MAX_MATERIALS]; /* elements that entry i claims */
 } map;
 
 /* ---- Who claims what ---- */
@@ -106,27 +105,15 @@ static void claim_all(map *m) {
     refuse_values(m, &bad);
 }
 
-/* ---- Whether all have some ---- */
-
 static void check_claims(map *m) {
     const rg_case *c = m->c;
-    for (rg_lid k = 0; k < m->part->elements; k++) {
-        m->elements[m->part->element[k].material]++;
-    }
     MPI_Allreduce(MPI_IN_PLACE, m->claimed, RG_MAX_MATERIALS, MPI_INT64_T, MPI_SUM, m->comm);
-    MPI_Allreduce(MPI_IN_PLACE, m->elements, RG_MAX_MATERIALS, MPI_INT64_T, MPI_SUM, m->comm);
     for (int i = 0; i < c->others; i++) {
         if (m->claimed[i] == 0) {
             const rg_other_material *o = &c->other[i];
             rg_speak(m->comm);
             rg_fatal(RG_USAGE, "%s: materials[%d].%s: %s: no element is in it", c->path, i,
                      o->set != NULL ? "set" : "where", o->set != NULL ? o->set : rg_expr_text(o->where));
-        }
-    }
-    for (int i = 0; m->rank == 0 && i <= c->others; i++) {
-        if (m->elements[i] == 0) {
-            rg_warn("%s: %s %s: later materials claim all of its elements", c->path,
-                    i == 0 ? "material" : "materials:", rg_case_material_name(c, i));
         }
     }
 }

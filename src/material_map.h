@@ -7,8 +7,8 @@
 
 /* Fills `material` and `beside` of the part's elements: number 0 that of `material`, then those of
  * `materials`, of which the last one that claims an element has it. Ends the run with a message if a volume
- * set is unknown, an expression is not finite at the centroid of an element, or a material claims none;
- * warns where later ones took all that it claimed. Collective. */
+ * set is unknown, an expression is not finite at the centroid of an element, or a material claims none
+ * (later ones may take all of its elements: rg_estimate_warn). Collective. */
 void rg_materials_assign(const rg_case *c, rg_part *part, MPI_Comm comm);
 
 #endif

@@ -364,6 +364,9 @@ static void begin(run *r, MPI_Comm comm) {
     double started = MPI_Wtime();
     prepare(r, NULL, comm);
     bool speaks = r->solver->rank == 0 && !r->options->quiet;
+    if (r->solver->rank == 0) {
+        rg_estimate_warn(r->input, &r->summary.estimate);
+    }
     if (speaks) {
         rg_estimate_print(r->solver, &r->summary.estimate, stdout);
     }
@@ -457,6 +460,7 @@ int rg_check(const rg_case *c, MPI_Comm comm) {
     rg_solver_start(s);
     rg_estimate estimate = rg_estimate_run(s);
     if (s->rank == 0) {
+        rg_estimate_warn(c, &estimate);
         rg_estimate_print(s, &estimate, stdout);
     }
     rg_affinity_print(comm, stdout);

@@ -265,6 +265,16 @@ def test_material_that_lost_all_is_told(sets_file):
         assert f"{name}: later materials claim all of its elements" in process.stderr
 
 
+def test_and_only_once_where_tiles_are_dealt_anew(tmp_path):
+    half = {"name": "iron", "where": "z < 0", **STEEL}
+    sets = {"materials": [{**half, "name": "steel"}, half], "mesh.rebalance": 0.5, "time.steps": 210,
+            "output.fields": [], "output.energy_limit": 1e9}
+    process = launch("run", CASES / "fragments.yaml", "-q", "-o", tmp_path / "out", *overrides(sets), ranks=2)
+    assert process.returncode == 0
+    assert json.loads((tmp_path / "out" / "summary.json").read_text())["partitions"] > 1
+    assert process.stderr.count("materials: steel: later materials claim all of its elements") == 1
+
+
 def test_check_and_summary_tell_all_materials(delamination):
     said = launch("check", BAR).stdout
     for name in ("alumina", "steel"):
