@@ -210,8 +210,10 @@ static double element_omega2(const rg_bodies *b) {
     double largest = 0, eigenvalue = face_eigenvalue(b), sum = 0;
     size_t faces = b->tile_begin[b->domain->tiles];
     for (size_t i = 0; i < faces; i++) {
-        bool same = i > 0 && b->face[i].slot == b->face[i - 1].slot;
-        sum = (same ? sum : 0) + eigenvalue * b->face[i].stiffness / rg_contact_mass(b, &b->face[i]);
+        const rg_contact_face *f = &b->face[i];
+        bool same = i > 0 && f->slot == f[-1].slot;
+        double mass = rg_element_mass(b->domain, b->material, (size_t)f->slot);
+        sum = (same ? sum : 0) + eigenvalue * f->stiffness / mass;
         largest = fmax(largest, sum);
     }
     return largest;

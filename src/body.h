@@ -92,9 +92,6 @@ typedef struct {
     rg_real *now;      /* or NULL */
 } rg_contact_kick;
 
-/* Mass of the element of face f (kg). */
-double rg_contact_mass(const rg_bodies *b, const rg_contact_face *f);
-
 /* Depth of point x below the surface of a body (m), negative outside; `normal` points out of the body. */
 double rg_body_depth(const rg_body *b, const double x[3], double normal[3]);
 

@@ -25,12 +25,6 @@ double rg_body_depth(const rg_body *b, const double x[3], double normal[3]) {
     return b->input->radius - distance;
 }
 
-double rg_contact_mass(const rg_bodies *b, const rg_contact_face *f) {
-    size_t slot = (size_t)f->slot;
-    return b->material[b->domain->material[slot / RG_LANES]].density *
-           (double)b->domain->geom[rg_geom_index(slot, RG_GEOM_VOLUME)];
-}
-
 /* Deformed positions of a face's nodes. */
 static void place_nodes(const rg_bodies *b, const rg_contact_face *f, const rg_real *u,
                         double x[RG_FNODES][3]) {
@@ -82,7 +76,7 @@ static bool face_forces(const rg_bodies *b, const rg_contact_face *f, const rg_r
 static void kick_element(const rg_bodies *b, const rg_contact_face *f, double force[RG_FNODES][3],
                          const rg_contact_kick *kick) {
     size_t slot = (size_t)f->slot;
-    double mass = rg_contact_mass(b, f);
+    double mass = rg_element_mass(b->domain, b->material, slot);
     for (int n = 0; n < RG_NODES; n++) {
         for (int c = 0; c < 3; c++) {
             double a = 0;

@@ -164,14 +164,13 @@ static bool boundary_varies(const rg_boundary *b) {
     return b->is_displacement || rg_expr_uses_time(b->value);
 }
 
-static void add_entry(rg_constraints *k, size_t slot, int c, unsigned mask, const int16_t which[RG_NODES]) {
+static void add_entry(rg_constraints *k, double mass, size_t slot, int c, unsigned mask,
+                      const int16_t which[RG_NODES]) {
     if ((k->entries & (k->entries - 1)) == 0) { /* grow at powers of two */
         k->entry = rg_realloc(k->entry, k->entries == 0 ? 1 : 2 * k->entries, sizeof *k->entry);
     }
     entry *e = &k->entry[k->entries++];
-    *e = (entry){.slot = (rg_lid)slot, .component = (int8_t)c, .pattern = pattern_of(k, mask)};
-    e->mass = rg_case_material(k->input, k->domain->material[slot / RG_LANES])->density *
-              k->domain->geom[rg_geom_index(slot, RG_GEOM_VOLUME)];
+    *e = (entry){.slot = (rg_lid)slot, .component = (int8_t)c, .pattern = pattern_of(k, mask), .mass = mass};
     for (int i = 0; i < e->pattern->constrained; i++) {
         e->boundary[i] = which[e->pattern->node[i]];
         e->varies = e->varies || boundary_varies(&k->input->boundary[e->boundary[i]]);
@@ -179,7 +178,7 @@ static void add_entry(rg_constraints *k, size_t slot, int c, unsigned mask, cons
 }
 
 rg_constraints *rg_constraints_make(const rg_case *c, const rg_domain *d, const rg_part *part,
-                                    rg_assembly *nodes) {
+                                    const rg_material *m, rg_assembly *nodes) {
     rg_constraints *k = RG_NEW(rg_constraints, 1);
     *k = (rg_constraints){
         .input = c, .domain = d, .lumped = c->mass == RG_MASS_LUMPED, .bad = {.which = RG_NOWHERE}};
@@ -197,7 +196,7 @@ rg_constraints *rg_constraints_make(const rg_case *c, const rg_domain *d, const 
                 int16_t which[RG_NODES];
                 unsigned mask = constrained_nodes(k, on_set, slot, comp, which);
                 if (mask != 0) {
-                    add_entry(k, slot, comp, mask, which);
+                    add_entry(k, rg_element_mass(d, m, slot), slot, comp, mask, which);
                 }
             }
         }

@@ -18,11 +18,11 @@
 typedef struct rg_constraints rg_constraints;
 typedef struct rg_state rg_state; /* state.h */
 
-/* The constraints of a case on this rank. Where elements share nodes by an assembly (else NULL), all copies
- * of a node on a face of the set are prescribed, also those of elements that only touch the set. Keeps
- * references to `c` and `d`. Collective; free with rg_constraints_free. */
+/* The constraints of a case, of the materials m, on this rank. Where elements share nodes by an assembly
+ * (else NULL), all copies of a node on a face of the set are prescribed, also those of elements that only
+ * touch the set. Keeps references to `c` and `d`. Collective; free with rg_constraints_free. */
 rg_constraints *rg_constraints_make(const rg_case *c, const rg_domain *d, const rg_part *part,
-                                    rg_assembly *nodes);
+                                    const rg_material *m, rg_assembly *nodes);
 
 /* Takes the fields at t = 0 as what the constrained nodes come from. Collective; ends the run with a message
  * (RG_USAGE) if a value is not finite then. */

@@ -90,6 +90,11 @@ static inline size_t rg_run_end(const rg_domain *d, const rg_tile *t, size_t beg
     return end;
 }
 
+/* Mass of an element (kg); `m`: the materials, by number. */
+static inline double rg_element_mass(const rg_domain *d, const rg_material *m, size_t slot) {
+    return m[d->material[slot / RG_LANES]].density * (double)d->geom[rg_geom_index(slot, RG_GEOM_VOLUME)];
+}
+
 /* The area vector of an interface (m^2), and its length. */
 double rg_interface_area(const rg_domain *d, size_t i, double normal[3]);
 

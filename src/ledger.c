@@ -36,7 +36,7 @@ static void add_all(rg_exact_sum *sum, const double *x, size_t count) {
  * nodes. */
 static void add_momentum(rg_exact_sum *sum, const rg_solver *s, size_t slot) {
     double mv[RG_NODES][3], p[3] = {0, 0, 0}, l[3] = {0, 0, 0};
-    rg_mass_times(s->lumped, rg_element_mass(s, slot), s->now, slot, mv);
+    rg_mass_times(s->lumped, rg_element_mass(s->domain, s->material, slot), s->now, slot, mv);
     for (int n = 0; n < RG_NODES; n++) {
         double x[3];
         rg_node_position(s->domain->corner + 12 * slot, n, x);

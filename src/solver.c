@@ -132,7 +132,7 @@ rg_solver *rg_solver_make_from_part(const rg_case *input, rg_part *part, MPI_Com
     }
     rg_interface_material m = {s->materials, s->material, input->interface.beta_s, input->interface.penalty};
     build_domain(s, &m);
-    s->constraints = rg_constraints_make(input, s->domain, s->part, s->assembly);
+    s->constraints = rg_constraints_make(input, s->domain, s->part, s->material, s->assembly);
     s->bodies = rg_bodies_make(input, s->domain, s->part, s->material, s->threads, comm);
     allocate_fields(s);
     place_fields(s);

@@ -42,11 +42,6 @@ static inline const rg_material *rg_material_of(const rg_solver *s, size_t slot)
     return &s->material[s->domain->material[slot / RG_LANES]];
 }
 
-/* Mass of an element (kg). */
-static inline double rg_element_mass(const rg_solver *s, size_t slot) {
-    return rg_material_of(s, slot)->density * (double)s->domain->geom[rg_geom_index(slot, RG_GEOM_VOLUME)];
-}
-
 /* Value `row` (layout.h) of the history of an element, whose material has one. */
 static inline rg_real rg_history_value(const rg_solver *s, size_t slot, size_t row) {
     return s->history[rg_history_index(slot, s->history_stride, row)];
