@@ -1,8 +1,8 @@
 /* The registry of a run's state: all that must outlive the program so that a restart goes on to the same
  * bits.
  *
- * To add state, add one line: to rg_state_of_solver (state.c) for what the solver holds, to the list in run.c
- * for what the run holds. Each line says what the values belong to:
+ * To add state, add one line: to rg_state_of_solver (state.c) for what the solver holds, to
+ * rg_restart_register (restart.c) for what the run holds. Each line says what the values belong to:
  *
  *   RG_OF_ELEMENT   `count` values of every element, in the layout of all fields, [block][count][lane]
  *   RG_OF_FACE      the same of the interfaces, [interface block][count][lane]; kept only for interfaces
