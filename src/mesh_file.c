@@ -404,7 +404,7 @@ static void take_all(reading *r, int64_t rows) {
 static void check_vertices(reading *r) {
     const stretch *s = &r->vertices;
     int64_t rows = r->slab->vertices;
-    if (rows > INT32_MAX) {
+    if (rows > INT32_MAX / 3) { /* so many positions have 32-bit numbers */
         refuse(r->file, "vertex", "%" PRId64 " vertices are too many at once", rows);
     }
     for (int64_t i = 0; i < rows && r->good; i++) {
