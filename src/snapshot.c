@@ -224,7 +224,8 @@ static void write_volume(rg_snapshots *w, const rg_solver *s, size_t fields, con
 static void write_nodal(rg_snapshots *w, const rg_solver *s, const char *name, const char *unit,
                         const rg_real *field) {
     nodal_records records = {s->domain, w->slab->slot, field};
-    write_volume(w, s, 1, &(rg_volume_field){name, unit, RG_CENTER_NODE, 3, 0}, NODAL, get_vector, &records);
+    write_volume(w, s, 1, &(rg_volume_field){name, unit, RG_CENTER_NODE, 3, 0, false}, NODAL, get_vector,
+                 &records);
 }
 
 /* What an element puts out of its state: mean Cauchy stress, mean stress, principal stresses, triaxiality,
@@ -243,13 +244,13 @@ static const struct {
     unsigned bit;
     rg_volume_field field;
 } state_field[] = {
-    {RG_FIELD_STRESS, {"stress", "Pa", RG_CENTER_CELL, 6, STRESS}},
-    {RG_FIELD_MEAN, {"mean_stress", "Pa", RG_CENTER_CELL, 1, MEAN}},
-    {RG_FIELD_PRINCIPAL, {"principal_stress", "Pa", RG_CENTER_CELL, 3, PRINCIPAL}},
-    {RG_FIELD_DAMAGE, {"damage", "1", RG_CENTER_CELL, 1, INTERNAL + RG_INTERNAL_DAMAGE}},
-    {RG_FIELD_REGIME, {"regime", "1", RG_CENTER_CELL, 1, INTERNAL + RG_INTERNAL_REGIME}},
-    {RG_FIELD_PLASTIC, {"plastic_strain", "1", RG_CENTER_CELL, 1, INTERNAL + RG_INTERNAL_PLASTIC}},
-    {RG_FIELD_TRIAXIALITY, {"triaxiality", "1", RG_CENTER_CELL, 1, TRIAXIALITY}},
+    {RG_FIELD_STRESS, {"stress", "Pa", RG_CENTER_CELL, 6, STRESS, false}},
+    {RG_FIELD_MEAN, {"mean_stress", "Pa", RG_CENTER_CELL, 1, MEAN, false}},
+    {RG_FIELD_PRINCIPAL, {"principal_stress", "Pa", RG_CENTER_CELL, 3, PRINCIPAL, false}},
+    {RG_FIELD_DAMAGE, {"damage", "1", RG_CENTER_CELL, 1, INTERNAL + RG_INTERNAL_DAMAGE, false}},
+    {RG_FIELD_REGIME, {"regime", "1", RG_CENTER_CELL, 1, INTERNAL + RG_INTERNAL_REGIME, false}},
+    {RG_FIELD_PLASTIC, {"plastic_strain", "1", RG_CENTER_CELL, 1, INTERNAL + RG_INTERNAL_PLASTIC, false}},
+    {RG_FIELD_TRIAXIALITY, {"triaxiality", "1", RG_CENTER_CELL, 1, TRIAXIALITY, false}},
 };
 enum { STATE_FIELDS = sizeof state_field / sizeof *state_field };
 
@@ -345,10 +346,10 @@ static void write_states(rg_snapshots *w, const rg_solver *s) {
     rg_free(records.thread);
 }
 
-/* One number of each element. */
+/* One whole number of each element. */
 static void write_numbers(rg_snapshots *w, const rg_solver *s, const char *name, rg_slab_move *get,
                           const void *of) {
-    write_volume(w, s, 1, &(rg_volume_field){name, "1", RG_CENTER_CELL, 1, 0}, 1, get, of);
+    write_volume(w, s, 1, &(rg_volume_field){name, "1", RG_CENTER_CELL, 1, 0, true}, 1, get, of);
 }
 
 static void get_rank(const void *of, size_t i, void *out) {

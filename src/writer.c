@@ -43,9 +43,9 @@ struct rg_writer {
 
 /* ---- datasets ---- */
 
-static rg_h5_slab real_slab(const rg_writer *w, const char *name, int columns) {
+static rg_h5_slab real_slab(const rg_writer *w, const char *name, int columns, bool exact) {
     return (rg_h5_slab){.name = name,
-                        .type = w->style.single ? H5T_NATIVE_FLOAT : H5T_NATIVE_DOUBLE,
+                        .type = w->style.single && !exact ? H5T_NATIVE_FLOAT : H5T_NATIVE_DOUBLE,
                         .columns = columns,
                         .deflate = w->style.deflate};
 }
@@ -105,7 +105,7 @@ static void extract(const rg_writer *w, const rg_volume_field *f, size_t n, size
     for (size_t i = 0; i < n; i++) {
         for (size_t k = 0; k < per_cell; k++) {
             double x = record[i * values + f->from + (f->components == 6 ? tensor[k] : k)];
-            if (w->style.single) {
+            if (w->style.single && !f->exact) {
                 narrow[i * per_cell + k] = (float)x;
             } else {
                 wide[i * per_cell + k] = x;
@@ -115,7 +115,7 @@ static void extract(const rg_writer *w, const rg_volume_field *f, size_t n, size
 }
 
 static rg_h5_slab slab_of(const rg_writer *w, const rg_volume_field *f) {
-    rg_h5_slab s = real_slab(w, f->name, f->components);
+    rg_h5_slab s = real_slab(w, f->name, f->components, f->exact);
     s.rows = nodes_of(f) * w->total;
     s.first = nodes_of(f) * w->first;
     return s;
@@ -175,7 +175,7 @@ static void create_file(rg_writer *w, int64_t frame) {
 }
 
 static void write_mesh(rg_writer *w, const rg_cell_source *x) {
-    static const rg_volume_field points = {"points", "m", RG_CENTER_NODE, 3, 0};
+    static const rg_volume_field points = {"points", "m", RG_CENTER_NODE, 3, 0, false};
     create_file(w, -1);
     write_fields(w, 1, &points, x);
     write_cells(w, w->h5.file, 10, w->total, w->first, w->count);
@@ -323,7 +323,7 @@ void rg_writer_volume(rg_writer *w, size_t fields, const rg_volume_field *field,
     w->h5.group[0] = '\0';
     write_fields(w, fields, field, source);
     for (size_t f = 0; w->xdmf != NULL && f < fields; f++) {
-        rg_xdmf_volume(w->xdmf, field[f].name, field[f].center, field[f].components);
+        rg_xdmf_volume(w->xdmf, &field[f]);
     }
 }
 
@@ -339,7 +339,7 @@ static void number_triangles(rg_writer *w, int64_t count) {
 void rg_writer_surface(rg_writer *w, int64_t count, const double *x) {
     number_triangles(w, count);
     w->crack = rg_h5_group(&w->h5, "crack");
-    rg_h5_slab s = real_slab(w, "points", 3);
+    rg_h5_slab s = real_slab(w, "points", 3, false);
     s.rows = 3 * w->triangles;
     s.first = 3 * w->triangle_first;
     s.count = 3 * count;
@@ -352,7 +352,7 @@ void rg_writer_surface(rg_writer *w, int64_t count, const double *x) {
 
 void rg_writer_surface_field(rg_writer *w, const char *name, const char *unit, int components,
                              const double *data) {
-    rg_h5_slab s = real_slab(w, name, components);
+    rg_h5_slab s = real_slab(w, name, components, false);
     s.rows = w->triangles;
     s.first = w->triangle_first;
     s.count = w->triangle_count;

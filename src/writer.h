@@ -14,12 +14,14 @@ enum rg_center { RG_CENTER_CELL, RG_CENTER_NODE };
 
 /* A field of the volume: its values in the record of a cell, [components] or [10][components], begin at
  * `from`. 1 component: a scalar, 3: a vector, 6: a symmetric tensor xx yy zz yz xz xy (XDMF's order is its
- * own affair). `unit` is stored as an attribute. */
+ * own affair). `unit` is stored as an attribute. `exact`: in double precision whatever the style, as numbers
+ * of elements want it. */
 typedef struct {
     const char *name, *unit;
     enum rg_center center;
     int components;
     size_t from;
+    bool exact;
 } rg_volume_field;
 
 /* Where the records of this rank's cells come from: window by window, so that nobody needs room for all. */

@@ -85,9 +85,10 @@ void rg_xdmf_frame(rg_xdmf *x, const char *file, double time) {
     append_grid(&x->volume, x, "volume", "Tetrahedron_10", x->total, 10, "fields/mesh.h5:");
 }
 
-void rg_xdmf_volume(rg_xdmf *x, const char *name, enum rg_center center, int components) {
-    int64_t rows = center == RG_CENTER_CELL ? x->total : 10 * x->total;
-    append_attribute(&x->volume, x->precision, name, center, components, rows, x->place.bytes);
+void rg_xdmf_volume(rg_xdmf *x, const rg_volume_field *field) {
+    int64_t rows = field->center == RG_CENTER_CELL ? x->total : 10 * x->total;
+    append_attribute(&x->volume, field->exact ? 8 : x->precision, field->name, field->center,
+                     field->components, rows, x->place.bytes);
 }
 
 void rg_xdmf_surface(rg_xdmf *x, int64_t triangles) {

@@ -18,7 +18,7 @@ rg_xdmf *rg_xdmf_new(int64_t total, bool single);
  * fields.
  */
 void rg_xdmf_frame(rg_xdmf *x, const char *file, double time);
-void rg_xdmf_volume(rg_xdmf *x, const char *name, enum rg_center center, int components);
+void rg_xdmf_volume(rg_xdmf *x, const rg_volume_field *field);
 
 /* Gives the frame a crack surface of `triangles`, described in the file's /crack, and adds fields per
  * triangle. Without triangles the frame has no crack grid, since a reader cannot make a grid of nothing. */

@@ -72,7 +72,7 @@ int MPI_File_write_at(MPI_File file, MPI_Offset offset, const void *data, int co
 
 /* ---- content ---- */
 
-enum tag { POINTS, SCALAR, VECTOR, TENSOR, NODAL, CRACK_POINTS, CRACK_SCALAR, CRACK_VECTOR };
+enum tag { POINTS, SCALAR, VECTOR, TENSOR, NODAL, IDS, CRACK_POINTS, CRACK_SCALAR, CRACK_VECTOR };
 
 static double value(enum tag tag, int frame, int64_t i) {
     return rg_hash_uniform(rg_hash(rg_hash((uint64_t)tag, (uint64_t)frame), (uint64_t)i)) - 0.5;
@@ -130,12 +130,12 @@ static rg_cell_source source_of(two_windows *x) {
 }
 
 static void put_volume(rg_writer *w, const char *name, enum rg_center center, int components, enum tag tag,
-                       int frame, share s) {
+                       int frame, share s) { /* those of IDS exactly */
     int64_t n = components * (center == RG_CENTER_NODE ? 10 : 1);
     double *data = content(tag, frame, n * s.first, n * s.count);
     two_windows x = {data, (size_t)s.count, (size_t)n};
     rg_cell_source source = source_of(&x);
-    rg_writer_volume(w, 1, &(rg_volume_field){name, "Pa", center, components, 0}, &source);
+    rg_writer_volume(w, 1, &(rg_volume_field){name, "Pa", center, components, 0, tag == IDS}, &source);
     rg_free(data);
 }
 
@@ -166,6 +166,7 @@ static void put_frame(rg_writer *w, int frame, share s, int idle) {
     if (crack_size[frame] >= 0) {
         put_crack(w, frame, idle);
     }
+    put_volume(w, "id", RG_CENTER_CELL, 1, IDS, frame, s);
     put_volume(w, "potential", RG_CENTER_NODE, 1, NODAL, frame, s);
     rg_writer_frame_end(w);
 }
@@ -203,7 +204,7 @@ static void *load(hid_t file, const char *path, hid_t type, int64_t rows, int co
 static bool same_doubles(hid_t file, const char *path, int64_t rows, int columns, enum tag tag, int frame) {
     double *found = load(file, path, H5T_NATIVE_DOUBLE, rows, columns);
     double *wanted = content(tag, frame, 0, rows * columns);
-    for (int64_t i = 0; style.single && i < rows * columns; i++) {
+    for (int64_t i = 0; style.single && tag != IDS && i < rows * columns; i++) {
         wanted[i] = (float)wanted[i];
     }
     bool same = found != NULL && memcmp(found, wanted, (size_t)(rows * columns) * sizeof *found) == 0;
@@ -269,6 +270,7 @@ static const char *in_frame(int frame, const char *name) {
 static bool frame_good(hid_t h5, int f, int64_t total) {
     return number(h5, in_frame(f, ""), "step") == 10 * f && number(h5, in_frame(f, ""), "time") == 1e-7 * f &&
            same_doubles(h5, in_frame(f, "/mean"), total, 1, SCALAR, f) &&
+           same_doubles(h5, in_frame(f, "/id"), total, 1, IDS, f) &&
            same_doubles(h5, in_frame(f, "/velocity"), 10 * total, 3, VECTOR, f) &&
            same_doubles(h5, in_frame(f, "/potential"), 10 * total, 1, NODAL, f) &&
            same_tensors(h5, in_frame(f, "/stress"), total, TENSOR, f) &&
