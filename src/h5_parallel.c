@@ -189,7 +189,9 @@ static void reserve(rg_h5_file *f, size_t bytes, const char *what) {
     int64_t more = (int64_t)bytes + METADATA_BYTES;
     bool ok = true;
     if (f->rank == 0) {
-        ok = fallocate(f->disk, 0, f->reserved, more) == 0 || errno == EOPNOTSUPP;
+        do { /* signals ask for checkpoints, and come while one is written */
+            ok = fallocate(f->disk, 0, f->reserved, more) == 0 || errno == EOPNOTSUPP;
+        } while (!ok && errno == EINTR);
         if (!ok) {
             snprintf(f->reason, sizeof f->reason, "%s", strerror(errno));
         }
