@@ -32,8 +32,8 @@ char *rg_faults_place(rg_faults *f, int64_t key, int64_t second);
 
 /* Ends the run (RG_USAGE) with all that was collected, a line each, if anything was: "name: words", then
  * "name: and so many more". The second one is collective and takes what all ranks of `comm` have; the ranks
- * agree, so none goes on, and one speaks. The same fault may be brought by several ranks as long as no rank
- * brings more than RG_FAULTS_TOLD. */
+ * agree, so none goes on, and one speaks. The same fault may be brought by several ranks where all together
+ * bring no more than RG_FAULTS_TOLD different ones; beyond that it may count twice. */
 void rg_faults_end(const rg_faults *f);
 void rg_faults_agree(const rg_faults *f, MPI_Comm comm);
 
