@@ -82,7 +82,9 @@ static double jacobian_at(const rg_solver *s, size_t slot, const double l[4]) {
     return determinant(F);
 }
 
-double rg_smallest_jacobian(const rg_solver *s, size_t slot) {
+/* Smallest determinant of the deformation gradient at the Gauss points of an element, from its own
+ * displacement (without jumps); not a number where that is not. */
+static double smallest_jacobian(const rg_solver *s, size_t slot) {
     double smallest = INFINITY;
     for (int g = 0; g < RG_GAUSS; g++) {
         double l[4] = {RG_GAUSS_A, RG_GAUSS_A, RG_GAUSS_A, RG_GAUSS_A};
@@ -124,7 +126,7 @@ static finding look_at(const rg_solver *s, size_t slot) {
     const double *corner = s->domain->corner + 12 * slot;
     finding f = {.volume = s->domain->geom[rg_geom_index(slot, RG_GEOM_VOLUME)],
                  .quality = quality(s, slot),
-                 .jacobian = rg_smallest_jacobian(s, slot),
+                 .jacobian = smallest_jacobian(s, slot),
                  .stiffening = s->stiffening[slot],
                  .displacement = largest_at_nodes(s->u, slot),
                  .speed = largest_at_nodes(s->velocity, slot),

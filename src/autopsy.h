@@ -12,8 +12,4 @@ enum { RG_FAILURE_WORDS = 1000 };
  * wrong; `good_time` (s) is the time of the last output that was in order. Collective. */
 void rg_autopsy_add(char *words, const rg_solver *s, int64_t step, double time, double good_time);
 
-/* Smallest determinant of the deformation gradient at the Gauss points of an element, from its own
- * displacement (without jumps); not a number where that is not. */
-double rg_smallest_jacobian(const rg_solver *s, size_t slot);
-
 #endif

@@ -334,12 +334,13 @@ bool rg_group_used(rg_key_group group, const rg_case *c) {
     }
 }
 
-const rg_material_input *rg_key_material(const rg_key *key, const void *base) {
+/* The material in the structure `base` whose block has the key. */
+static const rg_material_input *material_of(const rg_key *key, const void *base) {
     return (const rg_material_input *)(const void *)((const char *)base + key->input);
 }
 
 bool rg_key_used(const rg_key *key, const void *base) {
-    if (key->models != 0 && (key->models >> rg_key_material(key, base)->model & 1U) == 0) {
+    if (key->models != 0 && (key->models >> material_of(key, base)->model & 1U) == 0) {
         return false;
     }
     switch (key->group) {

@@ -96,9 +96,6 @@ const char *rg_key_allowed(const rg_key *key, char *text, size_t size);
 /* The models that use the key, in words. */
 void rg_models_words(const rg_key *key, char *text, size_t size);
 
-/* The material in the structure `base` whose block has the key. */
-const rg_material_input *rg_key_material(const rg_key *key, const void *base);
-
 /* Whether the key is used in the filled structure `base`. */
 bool rg_key_used(const rg_key *key, const void *base);
 

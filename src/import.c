@@ -46,7 +46,8 @@ static void map_nodes(rg_import *m) {
     m->mapped = m->nodes;
 }
 
-size_t rg_import_row(rg_import *m, size_t number) {
+/* Row of the node with this number, SIZE_MAX if there is none. */
+static size_t row_of(rg_import *m, size_t number) {
     if (m->mapped < m->nodes) {
         map_nodes(m);
     }
@@ -87,7 +88,7 @@ void rg_import_element(rg_import *m, rg_gid name, int nodes, const size_t *node,
     }
     size_t row[10];
     for (int i = 0; i < nodes; i++) {
-        row[i] = rg_import_row(m, node[i]);
+        row[i] = row_of(m, node[i]);
         if (row[i] == SIZE_MAX) {
             rg_fatal(RG_USAGE, "%s: element %" PRId64 " has node %zu, which is not there", m->path, name,
                      node[i]);
@@ -278,7 +279,7 @@ static struct triangle *list_triangles(rg_import *m, const rg_gid *vertex, const
         struct triangle t = {.name = m->face[i].name, .set = m->face[i].set};
         bool known = true;
         for (int k = 0; k < 3; k++) {
-            size_t n = rg_import_row(m, m->face[i].node[k]);
+            size_t n = row_of(m, m->face[i].node[k]);
             t.vertex[k] = n < SIZE_MAX ? vertex[n] : -1;
             known = known && t.vertex[k] >= 0;
         }

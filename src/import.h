@@ -42,9 +42,6 @@ typedef struct {
 /* Adds a node with coordinates x in units of the input; a number given twice keeps the last. */
 void rg_import_node(rg_import *m, size_t number, const double x[3]);
 
-/* Row of the node with this number, SIZE_MAX if there is none. */
-size_t rg_import_row(rg_import *m, size_t number);
-
 /* Adds a tetrahedron of 4 or 10 nodes (corners, then the middles of edges 01 12 20 30 23 13), whose nodes
  * must be there already; ends the run with a message if they are not. */
 void rg_import_element(rg_import *m, rg_gid name, int nodes, const size_t *node, int region);

@@ -34,7 +34,7 @@ double rg_tet_longest_edge(const double *x) {
     return edge;
 }
 
-bool rg_tet_has_volume(const double *x) {
+static bool has_volume(const double *x) {
     double edge = rg_tet_longest_edge(x);
     return fabs(rg_tet_volume(x, x + 3, x + 6, x + 9)) >
            least_volume * edge * edge * edge; /* no: not finite */
@@ -47,7 +47,7 @@ bool rg_tet_sound(const double *x, const rg_gid corner[4], rg_gid name, char *wh
                  ": its corners must be four different vertices in ascending order; they are "
                  "%" PRId64 ", %" PRId64 ", %" PRId64 ", %" PRId64,
                  name, corner[0], corner[1], corner[2], corner[3]);
-    } else if (!rg_tet_has_volume(x)) {
+    } else if (!has_volume(x)) {
         snprintf(what, RG_FAULT_WORDS,
                  "element %" PRId64 " at (%g, %g, %g) m has no volume: %g m3 with edges of up to %g m", name,
                  x[0], x[1], x[2], fabs(rg_tet_volume(x, x + 3, x + 6, x + 9)), rg_tet_longest_edge(x));

@@ -30,8 +30,7 @@ void rg_mesh_check_surface(const rg_mesh *mesh, rg_faults *faults);
  * not, what[RG_FAULT_WORDS] says so of element `name`. */
 bool rg_tet_sound(const double *x, const rg_gid corner[4], rg_gid name, char *what);
 
-/* Whether the element with corners x[4][3] (m) has a volume, as above; the longest of its edges (m). */
-bool rg_tet_has_volume(const double *x);
+/* The longest edge of the element with corners x[4][3] (m). */
 double rg_tet_longest_edge(const double *x);
 
 /* Parts that share no face: part[elements] numbers them by their first element. Returns how many there are.

@@ -19,10 +19,6 @@
 
 /* ---- Set-up ---- */
 
-size_t rg_solver_history(const rg_solver *s) {
-    return s->domain->blocks * s->history_stride;
-}
-
 static void allocate_fields(rg_solver *s) {
     const rg_domain *d = s->domain;
     size_t blocks = d->blocks, rows = d->own_rows + d->shared;
@@ -35,7 +31,7 @@ static void allocate_fields(rg_solver *s) {
     s->tile_pace = rg_law_steps(&s->law) > 0 ? RG_NEW(double, d->tiles) : NULL;
     s->crack_stride = rg_crack_stride(&s->law);
     s->crack = rg_alloc_sparse(d->iblocks * s->crack_stride, sizeof *s->crack);
-    s->history = s->history_stride > 0 ? RG_NEW(rg_real, rg_solver_history(s)) : NULL;
+    s->history = s->history_stride > 0 ? RG_NEW(rg_real, blocks * s->history_stride) : NULL;
     bool viscous = s->input->viscosity.linear > 0 || s->input->viscosity.quadratic > 0;
     s->heat = viscous ? RG_NEW(double, blocks *RG_LANES) : NULL;
     s->cracked = RG_NEW(uint8_t, blocks);

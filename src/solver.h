@@ -101,9 +101,6 @@ rg_solver *rg_solver_make_from_part(const rg_case *input, rg_part *part, MPI_Com
 /* Initial displacement and velocity, constraints, stiffening at t = 0. Collective. */
 void rg_solver_start(rg_solver *s);
 
-/* Values of `history` on this rank. */
-size_t rg_solver_history(const rg_solver *s);
-
 /* In its place where the state comes from a checkpoint (state.h): makes what follows from that. Collective.
  */
 void rg_solver_resume(rg_solver *s);

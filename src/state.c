@@ -53,18 +53,18 @@ void rg_state_of_solver(rg_state *st, rg_solver *s) {
     rg_bodies_register(s->bodies, st);
 }
 
-size_t rg_state_value(const rg_state_array *a) {
+static size_t value_bytes(const rg_state_array *a) {
     static const size_t bytes[] = {1, sizeof(int64_t), sizeof(rg_real), sizeof(double)};
     return bytes[a->type];
 }
 
 size_t rg_state_bytes(const rg_state_array *a) {
-    return rg_state_value(a) * (size_t)a->count;
+    return value_bytes(a) * (size_t)a->count;
 }
 
 /* Where value k of record i lies. */
 static char *place(const rg_state_array *a, size_t i, size_t k) {
-    size_t value = rg_state_value(a);
+    size_t value = value_bytes(a);
     if (a->of == RG_OF_LIST || a->of == RG_OF_RUN) {
         return (char *)a->data + i * a->stride + k * value;
     }
@@ -72,7 +72,7 @@ static char *place(const rg_state_array *a, size_t i, size_t k) {
 }
 
 void rg_state_get(const rg_state_array *a, size_t i, void *out) {
-    size_t value = rg_state_value(a);
+    size_t value = value_bytes(a);
     if (a->of == RG_OF_ELEMENT && a->type == RG_STATE_REAL) { /* nearly all there is */
         const rg_real *from =
             (const rg_real *)a->data + i / RG_LANES * (size_t)a->count * RG_LANES + i % RG_LANES;
@@ -87,7 +87,7 @@ void rg_state_get(const rg_state_array *a, size_t i, void *out) {
 }
 
 void rg_state_put(const rg_state_array *a, size_t i, const void *in) {
-    size_t value = rg_state_value(a);
+    size_t value = value_bytes(a);
     for (size_t k = 0; k < (size_t)a->count; k++) {
         memcpy(place(a, i, k), (const char *)in + k * value, value);
     }

@@ -51,8 +51,7 @@ void rg_state_add_list(rg_state *st, const char *name, rg_state_type type, int c
 /* Registers all that the solver holds. */
 void rg_state_of_solver(rg_state *st, rg_solver *s);
 
-/* Bytes of a value, and of all values of one element, face or row. */
-size_t rg_state_value(const rg_state_array *a);
+/* Bytes of all values of one element, face or row. */
 size_t rg_state_bytes(const rg_state_array *a);
 
 /* One record of an array out to or in from consecutive values; `i` is the slot, interface or row. */
