@@ -194,9 +194,7 @@ static void write_json(const char *reason, const rg_solver *s, int64_t step, dou
     rg_json_text(out, "step_limited_by", limited_by(s));
     rg_json_integer(out, "spectrum_element", s->limiting);
     fprintf(out, "  \"spectrum_faces\": \"%s\"\n}\n", s->limiting_state);
-    if (fclose(out) != 0) {
-        rg_fatal(RG_FAILURE, "%s/autopsy.json: cannot be written: %s", s->input->output.dir, strerror(errno));
-    }
+    rg_close_in(out, s->input->output.dir, "autopsy.json");
 }
 
 void rg_autopsy_add(char *words, const rg_solver *s, int64_t step, double time, double good_time) {

@@ -187,10 +187,9 @@ static void put_all(rg_h5_file *f, rg_checkpoints *k) {
     }
 }
 
-/* The name of a checkpoint is on the disk before an older one goes. Not all file systems bring a folder there
- * when asked: EINVAL. */
+/* The name of a checkpoint is on the disk before an older one goes. */
 static void sync_folder(const rg_checkpoints *k) {
-    bool ok = k->solver->rank != 0 || rg_sync(k->folder) || errno == EINVAL;
+    bool ok = k->solver->rank != 0 || rg_sync_folder(k->folder);
     rg_h5_file about = {.comm = k->solver->comm, .rank = k->solver->rank};
     rg_h5_agree_on(&about, ok, k->folder, "bring the folder to the disk", strerror(errno));
 }
@@ -330,11 +329,11 @@ static char *get_case(const rg_h5_file *f) {
 
 static bool check_case(const rg_checkpoints *k, const rg_h5_file *f, const char *path) {
     char *before = get_case(f), *here = rg_case_fixed(k->solver->input);
-    char *changes = before == NULL ? NULL : rg_case_changes(before, here);
+    bool ok = rg_h5_all(f->comm, before != NULL);
+    char *changes = ok ? rg_case_changes(before, here) : NULL;
     if (changes != NULL) {
         refuse(k->solver, path, changes);
     }
-    bool ok = before != NULL;
     rg_free(before);
     free(here);
     return ok;
@@ -376,7 +375,7 @@ static bool get_rows(hid_t group, const rg_state_array *a) {
 
 static bool get_group(const rg_h5_file *f, rg_checkpoints *k, const char *name, rg_state_of of) {
     hid_t group = H5Gopen2(f->file, name, H5P_DEFAULT);
-    bool ok = group >= 0;
+    bool ok = rg_h5_all(f->comm, group >= 0);
     for (int i = 0; ok && i < k->state->arrays; i++) {
         const rg_state_array *a = &k->state->array[i];
         if (a->of == of && of == RG_OF_RUN) {
@@ -384,7 +383,7 @@ static bool get_group(const rg_h5_file *f, rg_checkpoints *k, const char *name, 
         } else if (a->of == of) {
             ok = get_elements(group, k, a);
         }
-        MPI_Allreduce(MPI_IN_PLACE, &ok, 1, MPI_C_BOOL, MPI_LAND, f->comm);
+        ok = rg_h5_all(f->comm, ok);
     }
     if (group >= 0) {
         H5Gclose(group);
@@ -412,12 +411,12 @@ static bool load(rg_checkpoints *k, const char *path, char *reason, size_t size)
     }
     rg_h5_file f;
     identity found = {0};
-    bool ok = rg_h5_open(&f, path, k->solver->comm) && get_identity(f.file, &found);
+    bool ok =
+        rg_h5_open(&f, path, k->solver->comm) && rg_h5_all(k->solver->comm, get_identity(f.file, &found));
     if (ok) {
         check_identity(k, path, &found);
         ok = check_case(k, &f, path) && get_all(&f, k);
     }
-    MPI_Allreduce(MPI_IN_PLACE, &ok, 1, MPI_C_BOOL, MPI_LAND, k->solver->comm);
     if (!ok) {
         snprintf(reason, size, "it does not hold the state of this case: %s", f.reason);
     }
@@ -425,11 +424,14 @@ static bool load(rg_checkpoints *k, const char *path, char *reason, size_t size)
     return ok;
 }
 
-/* Out of the way of those that the run will write. */
+/* Out of the way of those that the run will write: one that stayed would count among the last that are kept.
+ */
 static void set_aside(const char *path) {
     char *name = rg_realloc(NULL, strlen(path) + 9, 1);
     sprintf(name, "%s.damaged", path);
-    rename(path, name);
+    if (rename(path, name) != 0) {
+        rg_fatal(RG_FAILURE, "%s: cannot be set aside as %s: %s", path, name, strerror(errno));
+    }
     rg_free(name);
 }
 

@@ -133,6 +133,18 @@ bool rg_sync(const char *path) {
     return ok;
 }
 
+bool rg_sync_folder(const char *path) {
+    return rg_sync(path) || errno == EINVAL;
+}
+
+void rg_close_in(FILE *file, const char *dir, const char *name) {
+    bool failed = ferror(file) != 0;
+    failed = fclose(file) != 0 || failed;
+    if (failed) {
+        rg_fatal(RG_FAILURE, "%s/%s: cannot be written: %s", dir, name, strerror(errno));
+    }
+}
+
 int64_t rg_settle(FILE *file, const char *name) {
     struct stat found;
     if (fflush(file) != 0 || fsync(fileno(file)) != 0 || fstat(fileno(file), &found) != 0) {

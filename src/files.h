@@ -13,8 +13,11 @@ void rg_make_directory(const char *path, MPI_Comm comm);
 /* Opens a file for reading; NULL, with errno set, where there is none or it is a directory. */
 FILE *rg_open_input(const char *path);
 
-/* Brings a file or directory to the disk; false, with errno set, where that fails. */
+/* Brings a file to the disk; false, with errno set, where that fails. */
 bool rg_sync(const char *path);
+
+/* The same for a directory, where the file system does that at all. */
+bool rg_sync_folder(const char *path);
 
 /* Length of an open file with all that was written to it, which this brings to the disk. Ends the run with a
  * message about `name` on failure. */
@@ -35,6 +38,9 @@ void rg_remove_frames(const char *dir, int rank);
 
 /* Opens dir/name for writing; ends the run with a message on failure. */
 FILE *rg_open_in(const char *dir, const char *name);
+
+/* Closes dir/name; ends the run with a message if some of it could not be written. */
+void rg_close_in(FILE *file, const char *dir, const char *name);
 
 /* Opens dir/name to go on with it behind its first `length` bytes; what follows them is removed. Ends the run
  * with a message if it is not that long. */

@@ -329,9 +329,13 @@ bool rg_h5_open(rg_h5_file *f, const char *path, MPI_Comm comm) {
     f->file = access < 0 ? -1 : H5Fopen(name, H5F_ACC_RDONLY, access);
     rg_free(name);
     H5Pclose(access);
-    int ok = f->file >= 0;
-    MPI_Allreduce(MPI_IN_PLACE, &ok, 1, MPI_INT, MPI_MIN, comm);
-    return ok;
+    return rg_h5_all(comm, f->file >= 0);
+}
+
+bool rg_h5_all(MPI_Comm comm, bool ok) {
+    int all = ok;
+    MPI_Allreduce(MPI_IN_PLACE, &all, 1, MPI_INT, MPI_MIN, comm);
+    return all;
 }
 
 static void release(rg_h5_file *f) {

@@ -53,6 +53,9 @@ void rg_h5_create(rg_h5_file *f, const char *path, hsize_t room, MPI_Comm comm);
 /* Opens a file for reading; the reason why not is in f->reason (all ranks return the same). */
 bool rg_h5_open(rg_h5_file *f, const char *path, MPI_Comm comm);
 
+/* Whether `ok` holds on all ranks: asked before what one rank alone must not leave out. */
+bool rg_h5_all(MPI_Comm comm, bool ok);
+
 /* Notes a failure on this rank unless `ok`, the first one: "cannot verb object: reason". `what` NULL: the
  * current group. The rank goes on taking part in what is collective until all agree. Not collective: on
  * thousands of ranks, or where ranks share cores, every agreement costs more than a small dataset. */

@@ -227,18 +227,12 @@ static bool keys_fit(const rg_sparse *rows, const rg_slab *slab, const uint8_t *
     return ok;
 }
 
-static bool all_ranks(MPI_Comm comm, bool ok) {
-    int all = ok;
-    MPI_Allreduce(MPI_IN_PLACE, &all, 1, MPI_INT, MPI_MIN, comm);
-    return all;
-}
-
 /* The slab's rows of the table. Collective; false on all ranks if they cannot be read. */
 static bool read_sorted(rg_h5_file *f, hid_t group, const rg_state_table *t, const rg_slab *slab,
                         rg_sparse *sorted) {
     uint8_t *of_element = RG_NEW(uint8_t, slab->count + 1);
     rg_h5_slab rows = rows_slab(slab);
-    bool ok = all_ranks(f->comm, rg_h5_read(group, &rows, of_element));
+    bool ok = rg_h5_all(f->comm, rg_h5_read(group, &rows, of_element));
     for (size_t i = 0; ok && i < slab->count; i++) {
         sorted->rows += of_element[i];
     }
@@ -249,10 +243,10 @@ static bool read_sorted(rg_h5_file *f, hid_t group, const rg_state_table *t, con
     size_t from = 0, size = 0;
     for (int k = -1; ok && k < t->arrays; k++) {
         rg_h5_slab c = column_slab(t, k, key_slab(sorted, first, total), &from, &size);
-        ok = all_ranks(f->comm, rg_h5_read(group, &c, column));
+        ok = rg_h5_all(f->comm, rg_h5_read(group, &c, column));
         column_in(sorted, from, size, column);
     }
-    ok = all_ranks(f->comm, ok && keys_fit(sorted, slab, of_element));
+    ok = rg_h5_all(f->comm, ok && keys_fit(sorted, slab, of_element));
     rg_free(column);
     rg_free(of_element);
     return ok;
@@ -261,10 +255,10 @@ static bool read_sorted(rg_h5_file *f, hid_t group, const rg_state_table *t, con
 bool rg_state_table_read(rg_h5_file *f, const rg_state_table *t, const rg_solver *s, const rg_slab *slab) {
     hid_t group = H5Gopen2(f->file, t->name, H5P_DEFAULT);
     rg_sparse sorted = {.bytes = row_bytes(t)};
-    bool ok = all_ranks(f->comm, group >= 0) && read_sorted(f, group, t, slab, &sorted);
+    bool ok = rg_h5_all(f->comm, group >= 0) && read_sorted(f, group, t, slab, &sorted);
     if (ok) {
         rg_sparse own = rg_sparse_to_owners(slab, &sorted);
-        ok = all_ranks(f->comm, scatter(t, s, &own));
+        ok = rg_h5_all(f->comm, scatter(t, s, &own));
         rg_free(own.row);
     }
     rg_free(sorted.row);

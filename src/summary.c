@@ -114,9 +114,7 @@ void rg_summary_write(rg_summary *m, rg_solver *s, const rg_ledger *l, const rg_
     rg_fragment_table_summary(fragments, f);
     rg_json_number(f, "bytes_per_tet", e->bytes_per_element);
     fprintf(f, "  \"state_hash\": \"%016" PRIx64 "\",\n  \"revision\": \"%s\"\n}\n", hash, RG_REVISION);
-    if (fclose(f) != 0) {
-        rg_fatal(RG_FAILURE, "%s/summary.json: cannot be written: %s", s->input->output.dir, strerror(errno));
-    }
+    rg_close_in(f, s->input->output.dir, "summary.json");
 }
 
 bool rg_completed(const char *dir) {

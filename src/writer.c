@@ -299,7 +299,8 @@ void rg_writer_sync(rg_writer *w) {
         ok = rg_sync(path);
         rg_free(path);
     }
-    ok = ok && (w->rank != 0 || (rg_sync(w->index_path) && (w->frames == 0 || rg_sync(w->xdmf_path))));
+    ok = ok && (w->rank != 0 || (rg_sync_folder(w->dir) && rg_sync(w->index_path) &&
+                                 (w->frames == 0 || rg_sync(w->xdmf_path))));
     w->synced = w->frames;
     rg_h5_file about = {.comm = w->comm, .rank = w->rank};
     rg_h5_agree_on(&about, ok, w->index_path, "bring the fields to the disk", strerror(errno));
