@@ -376,7 +376,11 @@ static void begin(run *r, MPI_Comm comm) {
     open_or_reopen(r);
     rg_schedule_warn(&r->schedule, r->solver);
     r->solver->phases = (rg_phases){.last = 0};
-    if (speaks && r->restart) {
+    if (r->restart && done(r) && r->solver->rank == 0) {
+        rg_warn("nothing is left to compute: the checkpoint is of step %" PRId64 ", time %.6g s; time.end or "
+                "time.steps must be beyond",
+                r->solver->step, r->solver->time);
+    } else if (speaks && r->restart) {
         printf("goes on from step %" PRId64 ", time %.6g s\n", r->solver->step, r->solver->time);
     }
     r->summary.first_step = r->solver->step;

@@ -169,6 +169,13 @@ def test_a_finished_run_can_be_made_longer(run, whole, tmp_path):
     assert_same_results(go_on(short, "--set", f"time.end={CASE['time.end']}", ranks=2), whole)
 
 
+def test_nothing_is_left_to_compute(whole, tmp_path):
+    again = go_on(copy(whole, tmp_path / "out"), "--set", "time.end=0.1e-6", ranks=2)
+    assert re.search(r"warning: nothing is left to compute: the checkpoint is of step \d+, time 2.5e-07 s", again.stderr)
+    assert again.summary["state_hash"] == whole.summary["state_hash"]
+    assert (again.dir / "energy.csv").read_bytes() == (whole.dir / "energy.csv").read_bytes()
+
+
 def test_checkpoints_do_not_depend_on_the_layout(stopped):
     """But for the speed of the machine, which the estimate of the next run starts from."""
     def content(directory):
