@@ -1,12 +1,10 @@
 #include "autopsy.h"
 
-#include <errno.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-#include "error.h"
 #include "files.h"
 #include "json.h"
 #include "mem.h"

@@ -1,11 +1,9 @@
 #include "summary.h"
 
-#include <errno.h>
 #include <inttypes.h>
 #include <math.h>
 #include <string.h>
 
-#include "error.h"
 #include "files.h"
 #include "h5_parallel.h"
 #include "json.h"
