@@ -3,6 +3,7 @@
 The program is the one that environment variable RHEGMA names, else build/rhegma of this tree. RHEGMA_TIMEOUT: seconds that
 a run may take."""
 
+import functools
 import json
 import os
 import pathlib
@@ -10,6 +11,7 @@ import shutil
 import subprocess
 import tempfile
 
+import figures
 import h5py
 import numpy as np
 import pytest
@@ -120,3 +122,20 @@ def spall(run):
 @pytest.fixture(scope="session")
 def spall_run(spall):
     return spall.dir
+
+
+@pytest.fixture
+def figure(request):
+    """figure(quantity, found, bound=..., theory=0, unit="", relative=False, why=""): see figures.py."""
+    return functools.partial(figures.state, request.node.nodeid, SINGLE)
+
+
+def pytest_addoption(parser):
+    parser.addoption("--figures", action="store_true", help="only the tests that state figures (figures.py)")
+
+
+def pytest_collection_modifyitems(config, items):
+    if config.getoption("figures"):
+        dropped = [item for item in items if "figure" not in item.fixturenames]
+        config.hook.pytest_deselected(items=dropped)
+        items[:] = [item for item in items if "figure" in item.fixturenames]

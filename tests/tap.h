@@ -6,6 +6,8 @@
 #include <stdbool.h>
 #include <stdio.h>
 
+#include "figures.h"
+
 static int rank, number, failures;
 
 /* One line of TAP: fine if it is on every rank. */
@@ -17,6 +19,23 @@ static void report(bool good, const char *mesh, const char *name) {
     if (rank == 0) {
         printf("%s %d - %s: %s\n", all ? "ok" : "not ok", number, mesh, name);
     }
+}
+
+/* A figure of figures.h, of the rank that found the largest deviation, as a line of TAP. */
+static inline void report_figure(const char *mesh, figure f) {
+    double mine = figure_deviation(&f), most, found;
+    mine = isnan(mine) ? INFINITY : mine;
+    MPI_Allreduce(&mine, &most, 1, MPI_DOUBLE, MPI_MAX, MPI_COMM_WORLD);
+    double one = mine == most ? f.found : -INFINITY; /* of several such ranks one */
+    MPI_Allreduce(&one, &found, 1, MPI_DOUBLE, MPI_MAX, MPI_COMM_WORLD);
+    f.found = found;
+    int ranks;
+    MPI_Comm_size(MPI_COMM_WORLD, &ranks);
+    if (rank == 0) {
+        figure_write(&f, ranks);
+        figure_print(&f, stdout);
+    }
+    report(most <= f.bound, mesh, f.quantity);
 }
 
 #endif
