@@ -1,0 +1,80 @@
+"""The rooms of the project that faults are planted in, by patterns of paths (the first that fits a file is its room), and
+the tests that touch each: programs of tests/ by the name that Meson knows, files of tests/ in Python.
+
+A test that stands in no row touches every room of src. What a row leaves out can only make the score lower."""
+
+import fnmatch
+
+ROOMS = {
+    "kernels": (["kernels/*"],
+                """kernels interface seams reference laws friction viscosity elastic j2 bulk_history deshpande_evans
+                deshpande_evans_kernel cost_model material test_invariance.py test_contact.py test_friction.py test_viscosity.py
+                test_laws.py test_ceramic.py test_solids.py test_ledger.py test_spall.py"""),
+    "mesh/import": (["src/import.*", "src/inp_read.*", "src/gmsh_*"],
+                    "mesh mesh_file fuzz-inp test_mesh_faults.py test_meshes.py"),
+    "mesh/improve": (["src/improve*"], "improve test_meshes.py"),
+    "mesh": (["src/mesh.*", "src/mesh_[fhiocr]*", "src/box.*", "src/gid_map.*", "src/tile_graph.*"],
+             """mesh mesh_file part part_read domain fuzz-mesh test_mesh_faults.py test_meshes.py test_invariance.py
+             test_partition.py test_cli.py"""),
+    "partition": (["src/partition.*", "src/tile_weight.*", "src/deal.*", "src/part.*", "src/part_*", "src/mesh_case.*",
+                   "src/material.*", "src/material_map.*", "src/patch.*"],
+                  """part part_read patch material verify test_mesh_faults.py test_bimaterials.py test_partition.py test_meshes.py
+                  test_cli.py test_continuous.py test_parallel.py"""),
+    "domain": (["src/domain.*", "src/interfaces.*", "src/element.*", "src/halo.*", "src/joint.*", "src/assembly*", "src/slab.*",
+                "src/sparse.*"],
+               """domain assembly slab patch fragment verify test_invariance.py test_contact.py test_bodies.py test_continuous.py
+               test_fragments.py test_solids.py test_bimaterials.py test_ledger.py test_spall.py test_parallel.py"""),
+    "solver": (["src/solver.*", "src/tile.*", "src/constraint.*", "src/body*", "src/law.*", "src/strength.*", "src/pace.*",
+                "src/phases.*", "src/spectrum.*", "src/balance.*", "src/state.*"],
+               """pace strength patch material verify case test_invariance.py test_contact.py test_friction.py test_viscosity.py
+               test_bodies.py test_output.py test_continuous.py test_ceramic.py test_laws.py test_ledger.py test_spall.py
+               test_solids.py test_waves.py test_bimaterials.py test_fragments.py test_impact.py test_partition.py
+               test_parallel.py test_restart.py"""),
+    "diagnostics": (["src/ledger.*", "src/fragment*", "src/overlap.*", "src/crack_surface.*", "src/state_hash.*", "src/probe.*",
+                     "src/autopsy.*"],
+                    """fragment verify test_output.py test_invariance.py test_friction.py test_viscosity.py test_bodies.py
+                    test_ceramic.py test_fragments.py test_ledger.py test_spall.py test_faults.py test_bimaterials.py test_cli.py
+                    test_impact.py test_parallel.py test_restart.py"""),
+    "output": (["src/snapshot.*", "src/writer.*", "src/xdmf.*", "src/progress.*", "src/summary.*", "src/estimate.*"],
+               """writer slab test_output.py test_invariance.py test_spall.py test_cli.py test_bimaterials.py test_fragments.py
+               test_faults.py test_parallel.py test_restart.py"""),
+    "restart": (["src/checkpoint*", "src/state_table.*", "src/seal.*", "src/restart.*", "src/schedule.*"],
+                "seal slab fuzz-checkpoint test_output.py test_faults.py test_cli.py test_restart.py test_partition.py"),
+    "verify": (["src/verify*"], "verify test_verify.py"),
+    "case": (["src/case*", "src/expr.*"],
+             """case case_mistakes numbers strength fuzz-case test_output.py test_laws.py test_bodies.py test_cli.py
+             test_bimaterials.py test_continuous.py test_restart.py"""),
+    "base": (["src/*"],
+             """numbers slab seal writer fragment verify test_output.py test_mesh_faults.py test_faults.py test_cli.py
+             test_fragments.py test_meshes.py test_partition.py test_restart.py"""),
+    "plot": (["bench/plot"], ""),
+}
+LEAST = 8  # faults of a room in a campaign
+PASSED_BY = ("src/main.c", "src/gmsh_main.c")  # the words of the command line, and nothing else
+
+
+def room_of(path):
+    if path in PASSED_BY:
+        return None
+    return next((room for room, (patterns, _) in ROOMS.items() if any(fnmatch.fnmatch(path, p) for p in patterns)), None)
+
+
+def touches(test, path, text):
+    """Whether a test touches a file. test: its name in Meson without the number of ranks, or its file; text: the file of it."""
+    if not path.startswith(("src/", "kernels/")):
+        return path in text or path.rsplit("/", 1)[-1] in text.split('"')
+    listed = ROOMS[room_of(path)][1].split()
+    if test in listed:
+        return True
+    return path.startswith("src/") and not any(test in tests.split() for _, tests in ROOMS.values())
+
+
+def shares(lines, count):
+    """How many of `count` faults each room gets: as it has lines, but no room less than `LEAST`."""
+    total = sum(lines.values())
+    least = min(LEAST, count // len(lines))
+    exact = {room: least + (count - least * len(lines)) * n / total for room, n in lines.items()}
+    share = {room: int(x) for room, x in exact.items()}
+    for room in sorted(exact, key=lambda r: share[r] - exact[r])[: count - sum(share.values())]:
+        share[room] += 1
+    return share
