@@ -1,0 +1,493 @@
+/* The step of the solver against its twin (step_twin.h), on any number of ranks: what lies between the
+ * kernels - tiles, seams, rows, links, materials, laws, strengths, shared nodes, prescribed motion, rigid
+ * bodies - in every form, with faces that hold, open, break and close. Tiles have several blocks, which
+ * meshes under a thousand elements have not by themselves. Prints TAP from rank 0. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "element.h"
+#include "hash.h"
+#include "material_map.h"
+#include "mem.h"
+#include "reference.h"
+#include "step_twin.h"
+#include "tap.h"
+#include "tile.h"
+
+enum { TILE = 40, STEPS = 16, OVERRIDES = 6 };
+
+/* Relative to the largest value of its kind; measured up to 9.5e-12, in what steep laws remember. The energy
+ * of an element at strains of 1e-3 is left of terms that are a million times as large: 2.6e-11. */
+#define BOUND        2e-11
+#define BOUND_STORED 7e-11
+
+static const char base[] =
+    "mesh: {cells: [2, 2, 12], size: [2e-4, 2e-4, 12e-4], origin: [-1e-4, -1e-4, -6e-4], jitter: 0.15}\n"
+    "material: {name: glass, model: neo-hookean, young: 260e9, poisson: 0.21, density: 3690}\n"
+    "interface: {law: linear, strength: 400e6, energy: 10}\n"
+    "boundary:\n"
+    "  - {set: z+, component: z, velocity: '2e9*t*(1 + 1e3*x)'}\n"
+    "  - {set: z+, component: x, velocity: 3}\n"
+    "  - {set: x-, component: x, displacement: '5e-9*sin(4e8*t)*(1 + 2e3*y)'}\n"
+    "time: {end: 1}\n"
+    "output: {fields: []}\n";
+
+typedef struct {
+    const char *name, *override[OVERRIDES];
+} variant;
+
+#define HALVES                                                                                               \
+    "materials=[{name: metal, model: j2, young: 200e9, poisson: 0.3, density: 7800, yield_stress: 3e8, "     \
+    "hardening: 1e9, where: 'z > 1e-4'}, {name: foam, model: linear-elastic, young: 100e9, poisson: 0.1, "   \
+    "density: 2000, where: 'z > 3e-4 && x > 0'}]"
+#define CERAMIC                                                                                              \
+    "material={name: glass, model: deshpande-evans, shear: 146e9, poisson: 0.2, density: 3700, "             \
+    "flaw_radius: "                                                                                          \
+    "19e-6, flaw_density: 1e12, toughness: 3e6, yield_stress: 4e9}"
+#define BODIES                                                                                               \
+    "bodies=[{name: ball, shape: sphere, motion: free, at: [1.2e-4, 0, 0], radius: 0.2e-4, density: 8e3, "   \
+    "velocity: {x: -50}}, {name: pin, shape: cylinder, motion: free, at: [0, 1.4e-4, 1e-4], axis: [2, 0, "   \
+    "0], radius: 0.4e-4, mass: 1e-9, velocity: {y: -30, x: 1}}, {name: wall, shape: plane, motion: "         \
+    "prescribed, at: [0, 0, -6e-4], normal: [0, 0, 2], velocity: {z: '30 + 1e9*t'}, faces: [z-, y+]}]"
+
+static const variant variants[] = {
+    {"variational", {NULL}},
+    {"incomplete, lumped", {"interface.form=incomplete", "mass=lumped"}},
+    {"total, flux", {"interface.form=incomplete", "interface.activation=total", "interface.contact=flux"}},
+    {"lifted flux", {"interface.activation=total", "interface.contact=flux"}},
+    {"conserving, rate, potential",
+     {"interface.activation=conserving", "interface.law=rate", "interface.contact=potential"}},
+    {"potential, isotropic", {"interface.contact=potential", "interface.penalty=isotropic"}},
+    {"friction", {"interface.friction=0.5"}},
+    {"friction, fatigue, beta", {"interface.friction=0.3", "interface.law=fatigue", "interface.beta=0.7"}},
+    {"normal criterion", {"interface.beta=0", "interface.beta_s=6"}},
+    {"intrinsic, steps",
+     {"interface.form=intrinsic", "interface.law=bilinear", "interface.bilinear={ascent: 0.05, steps: 20}"}},
+    {"intrinsic, friction",
+     {"interface.form=intrinsic", "interface.law=exponential", "interface.friction=0.4"}},
+    {"intrinsic, Xu-Needleman",
+     {"interface.form=intrinsic", "interface.law=xu-needleman", "interface.energy=40"}},
+    {"shared nodes", {"interface.form=continuous", "mass=lumped", "interface.faces=abs(nz) > 0.5"}},
+    {"shared nodes alone", {"interface={form: continuous, law: none}", "mass=lumped"}},
+    {"shared nodes, materials, viscosity",
+     {"interface.form=continuous", "mass=lumped", "interface.faces=abs(nx) > 0.5", HALVES,
+      "viscosity={linear: 0.06, quadratic: 1.2}"}},
+    {"materials, viscosity", {HALVES, "viscosity={linear: 0.06, quadratic: 1.2}"}},
+    {"ceramic and metal", {CERAMIC, HALVES}},
+    {"sets",
+     {HALVES,
+      "interface.sets=[{where: 'z < 0', strength: 500e6}, {where: 'abs(nz) > 0.9', strength: 300e6, "
+      "energy: 20}, {between: [metal, glass], energy: 50}, {between: [foam, metal], strength: 200e6}]"}},
+    {"bodies", {BODIES}},
+    {"bodies, shared nodes", {BODIES, "interface.form=continuous", "mass=lumped", "interface.faces=1"}},
+    {"no law", {"interface={law: none}", "mass=lumped"}},
+};
+
+/* ---- Quantities ---- */
+
+/* Of rg_energy, from `kinetic` to the end. */
+enum { ENERGIES = (sizeof(rg_energy) - offsetof(rg_energy, kinetic)) / sizeof(double), MOST_HISTORY = 20 };
+
+enum {
+    DISPLACEMENT,
+    VELOCITY,
+    NOW,
+    STIFFENING,
+    HEAT,
+    PACE,
+    BODY,
+    FORCE,
+    FIRST,
+    STORED,
+    ENERGY,
+    HISTORY = ENERGY + ENERGIES,
+    CRACK = HISTORY + 2 * MOST_HISTORY,
+    KINDS = CRACK + RG_CRACK + RG_LAW_MEMORY + RG_FRICTION
+};
+static const char *const kind_name[] = {
+    "displacement",    "velocity",       "velocity at the step", "stiffening", "heat",    "pace", "body",
+    "force on a body", "first fracture", "energy of an element", "energy",     "history", "crack"};
+static const int kind_begin[] = {DISPLACEMENT, VELOCITY, NOW,    STIFFENING, HEAT,    PACE,  BODY,
+                                 FORCE,        FIRST,    STORED, ENERGY,     HISTORY, CRACK, KINDS};
+
+/* Largest difference and largest value of each kind on this rank, over all steps. */
+typedef struct {
+    double error[KINDS], scale[KINDS];
+    int masks;     /* interfaces whose bits differ */
+    int displaced; /* nodes that are not quite where they are to be */
+    int watched, held, opened, parted, closed, seams, across_blocks;
+} record;
+
+static void note(record *r, int kind, double got, double expected) {
+    double error = fabs(got - expected);
+    r->error[kind] = isnan(error) ? INFINITY : fmax(r->error[kind], error);
+    r->scale[kind] = fmax(r->scale[kind], fabs(expected));
+}
+
+/* ---- Comparison ---- */
+
+static void compare_elements(record *r, const rg_solver *s, const twin *w, bool now) {
+    for (size_t slot = 0; slot < s->domain->blocks * RG_LANES; slot++) {
+        rg_gid id = s->domain->id[slot];
+        if (id < 0)
+            continue;
+        size_t at = w->slot[id];
+        for (int k = 0; k < 3 * RG_NODES; k++) {
+            size_t i = rg_node_index(slot, k / 3, k % 3), j = rg_node_index(at, k / 3, k % 3);
+            note(r, DISPLACEMENT, s->u[i], w->u[j]);
+            note(r, VELOCITY, s->velocity[i], w->velocity[j]);
+            if (now)
+                note(r, NOW, s->now[i], w->now[j]);
+        }
+        note(r, STIFFENING, s->stiffening[slot], w->stiffening[at]);
+        if (s->heat != NULL)
+            note(r, HEAT, s->heat[slot], w->heat[at]);
+        int values = rg_material_history(w->material[w->of[id]].model);
+        for (size_t k = 0; k < rg_history_rows(values); k++) {
+            size_t released = (size_t)(RG_GAUSS * values);
+            int kind = k < released ? (int)k % values : values + (int)(k - released);
+            note(r, HISTORY + MOST_HISTORY * (w->of[id] > 0) + kind, rg_history_value(s, slot, k),
+                 w->history[rg_history_index(at, w->history_stride, k)]);
+        }
+    }
+}
+
+/* What is prescribed as a displacement is there to the last bit. */
+static void compare_places(record *r, const rg_solver *s, const twin *w) {
+    for (size_t slot = 0; slot < s->domain->blocks * RG_LANES; slot++) {
+        rg_gid id = s->domain->id[slot];
+        for (int k = 0; k < 3 * RG_NODES && id >= 0; k++) {
+            int b = w->held[3 * RG_NODES * id + k];
+            if (b >= 0 && w->input->boundary[b].is_displacement) {
+                double x[3];
+                rg_node_position(s->domain->corner + 12 * slot, k / 3, x);
+                double there = rg_expr_value(w->input->boundary[b].value, x, s->time);
+                r->displaced += memcmp(&there, &s->u[rg_node_index(slot, k / 3, k % 3)], sizeof there) != 0;
+            }
+        }
+    }
+}
+
+/* Where value k of point q lies in a block of crack state: its kind, with what its law remembers and friction
+ * behind the state proper. */
+static size_t crack_row(const twin *w, size_t lane, int q, int k) {
+    size_t memory = (w->crack_stride - RG_CRACK_BLOCK - (w->law.friction > 0 ? RG_FRICTION_BLOCK : 0)) /
+                    (RG_POINTS * RG_LANES);
+    if (k < RG_CRACK)
+        return rg_crack_index(lane, q, k);
+    if (k < RG_CRACK + RG_LAW_MEMORY)
+        return (size_t)(k - RG_CRACK) < memory
+                   ? RG_CRACK_BLOCK + ((size_t)q * memory + (size_t)(k - RG_CRACK)) * RG_LANES + lane
+                   : SIZE_MAX;
+    return w->law.friction > 0 ? rg_friction_index(lane, q, k - RG_CRACK - RG_LAW_MEMORY, w->crack_stride)
+                               : SIZE_MAX;
+}
+
+/* Whether a broken point is pressed together; the normal of the body at rest will do. */
+static bool is_closed(const rg_solver *s, const rg_tile *t, size_t i, int q) {
+    double normal[3], open = 0, shape[RG_FNODES], l[3];
+    rg_interface_area(s->domain, i, normal);
+    rg_reference_face_point(q, l);
+    rg_reference_face_shape(l, shape);
+    for (int c = 0; c < 3; c++) {
+        double jump = -*rg_crack_value(s, i, q, RG_CRACK_ORIGIN + c);
+        for (int a = 0; a < RG_FNODES; a++)
+            jump += shape[a] * (rg_tile_trace(s, t, i, 1, a, c) - rg_tile_trace(s, t, i, 0, a, c));
+        open += jump * normal[c];
+    }
+    return open < 0;
+}
+
+static void count_point(record *r, const rg_solver *s, const rg_tile *t, size_t i, int q) {
+    bool broken = s->broken[i] >> q & 1;
+    r->held += !broken;
+    if (broken) {
+        bool parted = *rg_crack_value(s, i, q, RG_CRACK_OPENING) >= rg_separation(s, i);
+        r->parted += parted;
+        r->opened += !parted;
+        r->closed += is_closed(s, t, i, q);
+    }
+}
+
+static void compare_interface(record *r, const rg_solver *s, const twin *w, const rg_tile *t, size_t i) {
+    int32_t link = s->domain->side[0][i];
+    size_t slot = t->begin * RG_LANES + (size_t)link / RG_FACES;
+    size_t j = (size_t)w->face[RG_FACES * s->domain->id[slot] + link % RG_FACES];
+    r->masks += s->broken[i] != w->broken[j] || s->unlinked[i] != w->unlinked[j];
+    if (i < t->sbegin * RG_LANES)
+        r->across_blocks +=
+            s->domain->side[0][i] / (RG_FACES * RG_LANES) != s->domain->side[1][i] / (RG_FACES * RG_LANES);
+    else
+        r->seams++;
+    for (int q = 0; q < RG_POINTS; q++) {
+        for (int k = 0; k < RG_CRACK + RG_LAW_MEMORY + RG_FRICTION && (s->broken[i] >> q & 1); k++) {
+            size_t row = crack_row(w, j % RG_LANES, q, k), own = crack_row(w, i % RG_LANES, q, k);
+            if (row != SIZE_MAX)
+                note(r, CRACK + k, s->crack[i / RG_LANES * s->crack_stride + own],
+                     w->crack[j / RG_LANES * w->crack_stride + row]);
+        }
+        count_point(r, s, t, i, q);
+    }
+}
+
+static void compare_interfaces(record *r, const rg_solver *s, const twin *w) {
+    for (const rg_tile *t = s->domain->tile; t < s->domain->tile + s->domain->tiles; t++)
+        for (size_t i = t->ibegin * RG_LANES; i < t->iend * RG_LANES; i++) {
+            double normal[3];
+            if (rg_interface_area(s->domain, i, normal) > 0) /* not in padding */
+                compare_interface(r, s, w, t, i);
+        }
+}
+
+static void compare_bodies(record *r, const rg_solver *s, const twin *w) {
+    for (int i = 0; i < w->input->bodies; i++) {
+        const rg_body *a = &s->bodies->body[i];
+        const twin_body *b = &w->body[i];
+        for (int c = 0; c < 3; c++) {
+            note(r, BODY, a->v[c], b->v[c]);
+            note(r, BODY, a->seen.v[c], b->v_now[c]);
+            note(r, BODY, (a->x[c] - w->input->body[i].at[c]) / s->time, /* mean velocity */
+                 (b->x[c] - w->input->body[i].at[c]) / s->time);
+            note(r, FORCE, a->seen.force[c], b->force[c]);
+        }
+    }
+}
+
+static void compare_energies(record *r, rg_energy got, rg_energy want) {
+    const double *a = &got.kinetic, *b = &want.kinetic;
+    got.error = want.error = 0;
+    for (int k = 0; k < ENERGIES; k++)
+        note(r, ENERGY + k, a[k], b[k]);
+}
+
+/* ---- A run ---- */
+
+/* Velocities and displacements of neighbours that differ, the more the larger z is, so that faces hold at one
+ * end, and switch, part and close at the other; copies of a shared node move as one. */
+static void disturb(twin *w) {
+    for (size_t k = 0; k < RG_NODES * w->elements; k++) {
+        size_t e = k / RG_NODES;
+        int n = (int)(k % RG_NODES);
+        double z = w->mesh->x[3 * w->mesh->corner[4 * (w->node[k] / RG_NODES)] + 2] / 6e-4;
+        double strength = pow(0.5 + 0.5 * z, 2);
+        for (int c = 0; c < 3; c++) {
+            uint64_t h = rg_hash(rg_hash(11, w->node[k]), (uint64_t)c);
+            size_t at = rg_node_index(w->slot[e], n, c);
+            int held = w->held[3 * k + (size_t)c]; /* what is prescribed is 0 at first */
+            bool placed = held >= 0 && w->input->boundary[held].is_displacement;
+            w->u[at] = (rg_real)(placed ? 0 : 6e-8 * strength * (2 * rg_hash_uniform(h) - 1));
+            w->velocity[at] = (rg_real)(60 * strength * (2 * rg_hash_uniform(rg_hash(h, 1)) - 1));
+        }
+    }
+}
+
+static void start(rg_solver *s, twin *w) {
+    rg_solver_start(s);
+    disturb(w);
+    twin_start(w);
+    for (size_t slot = 0; slot < s->domain->blocks * RG_LANES; slot++)
+        for (int k = 0; k < 3 * RG_NODES && s->domain->id[slot] >= 0; k++) {
+            size_t i = rg_node_index(slot, k / 3, k % 3);
+            size_t j = rg_node_index(w->slot[s->domain->id[slot]], k / 3, k % 3);
+            s->u[i] = w->u[j];
+            s->velocity[i] = w->velocity[j];
+        }
+    rg_constraints_start(s->constraints, s->u, s->velocity, s->comm);
+    rg_solver_resume(s);
+    s->damping = w->damping = 0.4;
+}
+
+static rg_solver *make_solver(const rg_case *c, const rg_mesh *mesh) {
+    rg_part *part = rg_part_distribute(rank == 0 ? mesh : NULL, TILE, MPI_COMM_WORLD);
+    rg_materials_assign(c, part, MPI_COMM_WORLD);
+    return rg_solver_make_from_part(c, part, MPI_COMM_WORLD);
+}
+
+/* Looks at a tile between its kick and its drift. */
+typedef struct {
+    record *record;
+    const twin *twin;
+} watcher;
+
+static void watch(void *context, rg_solver *s, size_t tile, const rg_workspace *work) {
+    const watcher *own = context;
+    const twin *w = own->twin;
+    const rg_tile *t = &s->domain->tile[tile];
+    double *want = RG_NEW(double, w->blocks *RG_LANES), *got = RG_NEW(double, rg_tile_eblocks(t) * RG_LANES);
+    twin_bulk_energies(w, want);
+    rg_tile_state(s, t, work, got, NULL, NULL);
+    own->record->watched++;
+    for (size_t slot = t->begin * RG_LANES; slot < t->end * RG_LANES; slot++) {
+        rg_gid id = s->domain->id[slot];
+        for (int k = 0; k < 3 * RG_NODES && id >= 0; k++)
+            note(own->record, NOW, s->now[rg_node_index(slot, k / 3, k % 3)],
+                 w->now[rg_node_index(w->slot[id], k / 3, k % 3)]);
+        if (id >= 0)
+            note(own->record, STORED, got[slot - t->begin * RG_LANES], want[w->slot[id]]);
+    }
+    rg_free(want);
+    rg_free(got);
+}
+
+static void note_step(record *r, rg_solver *s, const twin *w) {
+    double most = 0, pace = 0;
+    for (size_t e = 0; e < w->elements; e++)
+        most = fmax(most, w->stiffening[w->slot[e]]);
+    note(r, STIFFENING, s->stiffening_anywhere, most);
+    for (size_t i = 0; i < w->interfaces && s->tile_pace != NULL; i++)
+        for (int q = 0; q < RG_POINTS; q++)
+            pace = fmax(pace, w->crack[i / RG_LANES * w->crack_stride +
+                                       crack_row(w, i % RG_LANES, q, RG_CRACK + RG_PACE_RATE)]);
+    note(r, PACE, s->pace, pace);
+    compare_interfaces(r, s, w);
+    compare_bodies(r, s, w);
+}
+
+static record follow(const rg_case *c, const rg_mesh *mesh) {
+    record r = {.masks = 0};
+    rg_solver *s = make_solver(c, mesh);
+    twin *w = twin_make(c, mesh);
+    rg_ledger ledger = {.begun = false};
+    start(s, w);
+    watcher own = {&r, w};
+    s->watch = watch;
+    s->watch_context = &own;
+    for (size_t t = 0; t < s->domain->tiles; t += 2)
+        s->watched[t] = 1;
+    for (int k = 0; k < STEPS; k++) {
+        double dt = 4e-10 * (1 + 0.3 * sin(k));
+        bool whole = k % 2 == 1;
+        twin_kick(w, dt);
+        if (whole) {
+            rg_solver_step(s, dt);
+        } else {
+            rg_solver_kick(s, dt);
+            compare_energies(&r, *rg_ledger_take(&ledger, s), twin_energy(w));
+            compare_elements(&r, s, w, true);
+            rg_solver_drift(s);
+        }
+        twin_drift(w);
+        compare_elements(&r, s, w, false);
+        note_step(&r, s, w);
+        compare_places(&r, s, w);
+    }
+    double first = twin_first_fracture(w), found = rg_first_fracture(s);
+    if (isfinite(first) || isfinite(found))
+        note(&r, FIRST, found, first);
+    rg_solver_free(s);
+    twin_free(w);
+    return r;
+}
+
+/* ---- Verdict ---- */
+
+static void gather(record *r) {
+    MPI_Allreduce(MPI_IN_PLACE, r->error, 2 * KINDS, MPI_DOUBLE, MPI_MAX, MPI_COMM_WORLD);
+    MPI_Allreduce(MPI_IN_PLACE, &r->masks, 9, MPI_INT, MPI_SUM, MPI_COMM_WORLD);
+}
+
+static void judge(const variant *v, const record *r) {
+    for (int kind = 0; kind_begin[kind] < KINDS; kind++) {
+        double worst = 0, scale = 0, bound = kind_begin[kind] == STORED ? BOUND_STORED : BOUND;
+        for (int k = kind_begin[kind]; k < kind_begin[kind + 1]; k++) {
+            double here = r->scale[k] > 0 ? r->error[k] / r->scale[k] : r->error[k] > 0 ? INFINITY : 0;
+            worst = here <= worst ? worst : here;
+            scale = fmax(scale, r->scale[k]);
+            if (rank == 0 && !(here <= bound)) {
+                printf("# %s %d: %g of %g\n", kind_name[kind], k - kind_begin[kind], r->error[k],
+                       r->scale[k]);
+            }
+        }
+        if (scale > 0)
+            report(worst <= bound, v->name, kind_name[kind]);
+    }
+    report(r->masks == 0, v->name, "broken and unlinked points");
+    report(r->displaced == 0, v->name, "prescribed places");
+    bool none = v->override[0] != NULL && strstr(v->override[0], "law: none") != NULL;
+    bool parts =
+        r->across_blocks > 1000 && r->seams > 1000 && r->opened > 500 && r->parted > 10 && r->closed > 300;
+    report(r->watched > 0 && none != parts, v->name, "there was something to compare");
+    if (rank == 0)
+        printf("# %d points hold, %d open, %d parted, %d closed; %d interfaces between blocks, %d seams\n",
+               r->held, r->opened, r->parted, r->closed, r->across_blocks, r->seams);
+}
+
+static rg_case *read_case(const variant *v) {
+    int count = 0;
+    while (count < OVERRIDES && v->override[count] != NULL)
+        count++;
+    rg_case *c = rg_case_read_text("test_step", base, sizeof base - 1, count, v->override, stderr);
+    if (c == NULL)
+        MPI_Abort(MPI_COMM_WORLD, 1);
+    return c;
+}
+
+/* ---- The start, and a state that is none ---- */
+
+static rg_mesh *make_mesh(const rg_case *c) {
+    return rg_mesh_box(c->mesh.cells, c->mesh.origin, c->mesh.size, c->mesh.jitter, c->mesh.seed);
+}
+
+/* The initial fields are those of the case, and no face has broken though the stress is beyond the strength.
+ */
+static void check_start(void) {
+    const variant stretched = {
+        "start",
+        {"initial={displacement: {x: '1e-3*y', z: '-1e-2*z'}, velocity: {y: '5*x/1e-4', "
+         "z: '2 + z/1e-4'}}",
+         "boundary=[]"}};
+    rg_case *c = read_case(&stretched);
+    rg_mesh *mesh = make_mesh(c);
+    rg_solver *s = make_solver(c, mesh);
+    bool fields = true, whole = true;
+    rg_solver_start(s);
+    for (size_t slot = 0; slot < s->domain->blocks * RG_LANES; slot++)
+        for (int n = 0; n < RG_NODES && s->domain->id[slot] >= 0; n++) {
+            double x[3];
+            rg_node_position(s->domain->corner + 12 * slot, n, x);
+            const double want[6] = {1e-3 * x[1], 0, -1e-2 * x[2], 0, 5 * x[0] / 1e-4, 2 + x[2] / 1e-4};
+            for (int k = 0; k < 6; k++) {
+                double got = (k < 3 ? s->u : s->velocity)[rg_node_index(slot, n, k % 3)];
+                fields = fields && fabs(got - want[k]) <= 1e-15 * fabs(want[k]);
+            }
+        }
+    for (size_t i = 0; i < s->domain->iblocks * RG_LANES; i++)
+        whole = whole && s->broken[i] == 0;
+    report(fields, "start", "fields");
+    report(whole, "start", "nothing is broken");
+    report(s->stiffening_anywhere > 1 && isfinite(s->stiffening_anywhere), "start", "stiffening");
+    rg_solver_step(s, 1e-10);
+    if (rank == 0)
+        s->velocity[rg_node_index(0, 3, 1)] = NAN;
+    rg_solver_step(s, 1e-10);
+    rg_solver_step(s, 1e-10);
+    report(isinf(s->stiffening_anywhere), "start", "a state that is not finite is known to all");
+    rg_solver_free(s);
+    rg_mesh_free(mesh);
+    rg_case_free(c);
+}
+
+int main(int argc, char **argv) {
+    MPI_Init(&argc, &argv);
+    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+    for (size_t k = 0; k < sizeof variants / sizeof *variants; k++) {
+        if (argc > 1 && strcmp(argv[1], variants[k].name) != 0)
+            continue;
+        rg_case *c = read_case(&variants[k]);
+        rg_mesh *mesh =
+            rg_mesh_box(c->mesh.cells, c->mesh.origin, c->mesh.size, c->mesh.jitter, c->mesh.seed);
+        rg_mesh_sort(mesh);
+        rg_mesh_connect(mesh);
+        record r = follow(c, mesh);
+        gather(&r);
+        judge(&variants[k], &r);
+        rg_mesh_free(mesh);
+        rg_case_free(c);
+    }
+    check_start();
+    if (rank == 0)
+        printf("1..%d\n", number);
+    MPI_Finalize();
+    return failures > 0;
+}
