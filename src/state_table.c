@@ -219,8 +219,7 @@ static bool keys_fit(const rg_sparse *rows, const rg_slab *slab, const uint8_t *
     bool ok = true;
     for (size_t i = 0; ok && i < rows->rows; i++) {
         int64_t element = rg_sparse_key(rows, i) / 4 - slab->first;
-        ok = rg_sparse_key(rows, i) >= 0 && element >= 0 && element < (int64_t)slab->count &&
-             left[element] > 0;
+        ok = element >= 0 && element < (int64_t)slab->count && left[element] > 0;
         left[ok ? element : (int64_t)slab->count]--;
     }
     rg_free(left);

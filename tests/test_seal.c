@@ -11,7 +11,7 @@
 #include "hash.h"
 #include "mem.h"
 
-enum { PLANNED = 7, BYTES = RG_SEAL + 2 * (1 << 20) + 12345, RANDOM = 1000 };
+enum { PLANNED = 9, BYTES = RG_SEAL + 2 * (1 << 20) + 12345, RANDOM = 1000 };
 
 static int rank, ranks, done, failed;
 static char path[200], reason[300];
@@ -42,6 +42,16 @@ static void flip(off_t position, int bit) {
         }
         close(file);
     }
+}
+
+/* Whether the file is refused for that reason on every rank. */
+static bool refused(const char *why) {
+    int good = !holds() && strcmp(reason, why) == 0, all;
+    if (!good) {
+        printf("# '%s', not '%s'\n", reason, why);
+    }
+    MPI_Allreduce(&good, &all, 1, MPI_INT, MPI_LAND, MPI_COMM_WORLD);
+    return all;
 }
 
 /* Whether the file is refused with this bit flipped, and taken once it is flipped back. */
@@ -93,9 +103,44 @@ static void check_length(void) {
         MPI_Barrier(MPI_COMM_WORLD);
         good = rg_seal_put(path, 77, MPI_COMM_WORLD) && holds() && good;
         good = (rank != 0 || truncate(path, lengths[i]) == 0) && good;
-        good = !holds() && good;
+        char why[100];
+        snprintf(why, sizeof why, "it has %lld bytes and should have %d", (long long)lengths[i], BYTES);
+        good = refused(lengths[i] < 100 ? "its head is not that of a checkpoint" : why) && good;
     }
     ok(good, "any other length");
+}
+
+/* What is written stays readable for later versions: of a file of 3 parts, by any number of ranks. */
+static void check_text(void) {
+    static const char wanted[] =
+        "rhegma checkpoint 1\nstep 77\nbytes 2110009\nsum 173403126ea03d38\ncheck 25686768156c05eb\n";
+    char found[RG_SEAL + 1] = {0};
+    bool good = true;
+    if (rank == 0) {
+        int file = open(path, O_RDONLY);
+        good = pread(file, found, RG_SEAL, 0) == RG_SEAL && strcmp(found, wanted) == 0;
+        for (size_t i = strlen(wanted); i < RG_SEAL; i++) {
+            good = good && found[i] == '\0';
+        }
+        close(file);
+    }
+    if (!good) {
+        printf("# %s", found);
+    }
+    ok(good, "its text");
+}
+
+static void check_reasons(void) {
+    flip(3, 0);
+    bool good = refused("its head is not that of a checkpoint");
+    flip(3, 0);
+    flip(RG_SEAL - 1, 6);
+    good = refused("its head is damaged") && good;
+    flip(RG_SEAL - 1, 6);
+    flip(BYTES - 5, 2);
+    good = refused("its checksum is wrong: it is damaged") && good;
+    flip(BYTES - 5, 2);
+    ok(good, "what is wrong");
 }
 
 int main(int argc, char **argv) {
@@ -111,13 +156,16 @@ int main(int argc, char **argv) {
     MPI_Bcast(path, sizeof path, MPI_CHAR, 0, MPI_COMM_WORLD);
     ok(!holds(), "a file without a seal");
     ok(rg_seal_put(path, 77, MPI_COMM_WORLD) && holds(), "a file with one");
+    check_text();
+    check_reasons();
     check_bits();
     check_length();
     if (rank == 0) {
         unlink(path);
     }
     MPI_Barrier(MPI_COMM_WORLD);
-    ok(!holds() && !rg_seal_put(path, 77, MPI_COMM_WORLD), "no file");
+    ok(refused("cannot be read: No such file or directory") && !rg_seal_put(path, 77, MPI_COMM_WORLD),
+       "no file");
     int bad = rank == 0 && (failed > 0 || done != PLANNED);
     MPI_Bcast(&bad, 1, MPI_INT, 0, MPI_COMM_WORLD);
     MPI_Finalize();

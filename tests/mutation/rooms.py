@@ -39,7 +39,8 @@ ROOMS = {
                """writer slab progress xdmf test_output.py test_invariance.py test_spall.py test_cli.py test_bimaterials.py test_fragments.py
                test_faults.py test_parallel.py test_restart.py"""),
     "restart": (["src/checkpoint*", "src/state_table.*", "src/seal.*", "src/restart.*", "src/schedule.*"],
-                "seal slab schedule fuzz-checkpoint test_output.py test_faults.py test_cli.py test_restart.py test_partition.py"),
+                """seal slab schedule restart checkpoint_file fuzz-checkpoint test_output.py test_faults.py test_cli.py test_restart.py
+               test_partition.py"""),
     "verify": (["src/verify*"], "verify test_verify.py"),
     "case": (["src/case*", "src/expr.*"],
              """case case_mistakes numbers strength fuzz-case test_output.py test_laws.py test_bodies.py test_cli.py
