@@ -76,8 +76,25 @@ class Bench:
         self.programs = {t["name"]: t for t in json.loads(listed)}
         self.files = sorted(p.name for p in (self.tree / "tests").glob("test_*.py"))
 
-    def ninja(self):
-        return command(["ninja", "-C", "build", "-j", "1"], self.tree, 1200)
+    def ninja(self, *targets):
+        return command(["ninja", "-C", "build", "-j", "1", *targets], self.tree, 1200)
+
+    def compiles(self):
+        """Compiles the tree as it is, without linking the programs: None where that fails, else whether it holds other
+        machine code than that of the tree without a fault."""
+        for targets in (["rhegma", "libkernels-reference.a"], []):
+            if self.ninja(*targets)[0] != 0:
+                return None
+            if self.changed():
+                return True
+        return False
+
+    def link(self, name):
+        """The programs that a test runs."""
+        if name in self.files:
+            return self.ninja(*[t for t in ("rhegma", "rhegma-mesh", "rhegma-bench", "rhegma-pattern") if (self.build / t).exists()])
+        inside = [word for word in self.programs[name]["cmd"] if word.startswith(f"{self.build}/")]
+        return self.ninja(*[str(pathlib.Path(word).relative_to(self.build)) for word in inside])
 
     def codes(self):
         """Hash and time of every object file: what a fault that changes no machine code leaves alone."""
@@ -107,6 +124,7 @@ class Bench:
         """Runs one test: whether it passed, seconds, and what told that it did not."""
         shutil.rmtree(self.scratch, ignore_errors=True)
         self.scratch.mkdir(parents=True)
+        self.link(name)
         begin = time.monotonic()
         if name in self.programs:
             test = self.programs[name]
