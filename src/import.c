@@ -17,17 +17,9 @@ static const int edge_end[6][2] = {{0, 1}, {1, 2}, {2, 0}, {3, 0}, {2, 3}, {1, 3
 
 /* ---- adding ---- */
 
-static size_t more(size_t room, size_t need) {
-    return need <= room ? room : need + need / 2 + 64;
-}
-
 void rg_import_node(rg_import *m, size_t number, const double x[3]) {
-    size_t room = more(m->node_room, m->nodes + 1);
-    if (room > m->node_room) {
-        m->x = rg_realloc(m->x, 3 * room, sizeof *m->x);
-        m->number = rg_realloc(m->number, room, sizeof *m->number);
-        m->node_room = room;
-    }
+    m->x = rg_grow(m->x, &m->x_room, m->nodes, 3 * sizeof *m->x);
+    m->number = rg_grow(m->number, &m->number_room, m->nodes, sizeof *m->number);
     m->number[m->nodes] = number;
     for (size_t i = 0; i < 3; i++) {
         m->x[3 * m->nodes + i] = m->scale * x[i];
@@ -79,14 +71,10 @@ static void look_at_orientation(rg_import *m, rg_gid name, const size_t *row) {
 }
 
 void rg_import_element(rg_import *m, rg_gid name, int nodes, const size_t *node, int region) {
-    size_t room = more(m->element_room, (size_t)m->elements + 1);
-    if (room > m->element_room) {
-        m->corner = rg_realloc(m->corner, 4 * room, sizeof *m->corner);
-        m->name = rg_realloc(m->name, room, sizeof *m->name);
-        m->region = rg_realloc(m->region, room, sizeof *m->region);
-        m->element_room = room;
-    }
-    size_t row[10];
+    size_t row[10], count = (size_t)m->elements;
+    m->corner = rg_grow(m->corner, &m->corner_room, count, 4 * sizeof *m->corner);
+    m->name = rg_grow(m->name, &m->name_room, count, sizeof *m->name);
+    m->region = rg_grow(m->region, &m->region_room, count, sizeof *m->region);
     for (int i = 0; i < nodes; i++) {
         row[i] = row_of(m, node[i]);
         if (row[i] == SIZE_MAX) {
@@ -104,11 +92,7 @@ void rg_import_element(rg_import *m, rg_gid name, int nodes, const size_t *node,
 }
 
 void rg_import_add_face(rg_import *m, rg_gid name, const size_t node[3], int set) {
-    size_t room = more(m->face_room, m->faces + 1);
-    if (room > m->face_room) {
-        m->face = rg_realloc(m->face, room, sizeof *m->face);
-        m->face_room = room;
-    }
+    m->face = rg_grow(m->face, &m->face_room, m->faces, sizeof *m->face);
     m->face[m->faces++] = (rg_import_face){{node[0], node[1], node[2]}, name, set};
 }
 

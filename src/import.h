@@ -36,7 +36,7 @@ typedef struct {
     double worst;          /* how far, as a fraction of the edge */
     size_t faces;
     rg_import_face *face;
-    size_t node_room, element_room, face_room;
+    size_t x_room, number_room, corner_room, name_room, region_room, face_room;
 } rg_import;
 
 /* Adds a node with coordinates x in units of the input; a number given twice keeps the last. */

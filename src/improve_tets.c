@@ -96,10 +96,7 @@ static rg_labelled_face face_of(const rg_tet *tet, int f) {
 /* ---- coming and going ---- */
 
 static void enter(rg_star *star, rg_gid tet) {
-    if (star->count == star->room) {
-        star->room = star->room > 0 ? 2 * star->room : 32;
-        star->tet = rg_realloc(star->tet, (size_t)star->room, sizeof *star->tet);
-    }
+    star->tet = rg_grow(star->tet, &star->room, (size_t)star->count, sizeof *star->tet);
     star->tet[star->count++] = tet;
 }
 
@@ -113,10 +110,7 @@ static void leave(rg_star *star, rg_gid tet) {
 }
 
 static rg_gid add(rg_tets *t, const rg_tet *tet) {
-    if (t->count == t->room) {
-        t->room += t->room / 2 + 64;
-        t->tet = rg_realloc(t->tet, (size_t)t->room, sizeof *t->tet);
-    }
+    t->tet = rg_grow(t->tet, &t->room, (size_t)t->count, sizeof *t->tet);
     t->tet[t->count] = *tet;
     for (int i = 0; i < 4; i++) {
         enter(t->star + tet->corner[i], t->count);

@@ -22,13 +22,15 @@ typedef struct {
 
 /* The tetrahedra around a vertex. */
 typedef struct {
-    int count, room;
+    int count;
+    size_t room;
     rg_gid *tet;
 } rg_star;
 
 typedef struct {
     rg_mesh *mesh; /* vertices are its own and move in place */
-    rg_gid count, room;
+    rg_gid count;
+    size_t room;
     rg_tet *tet;   /* [count], gone ones among them */
     rg_star *star; /* [vertices] */
 } rg_tets;

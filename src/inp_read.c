@@ -22,6 +22,7 @@ typedef enum { FROM_LINE, FROM_ELSET, FROM_SECTION } rank;
 typedef struct {
     char name[RG_SET_NAME];
     rank rank;
+    long line;     /* where it begins */
     bool internal; /* made by the preprocessor for a *SURFACE */
     rg_gid *member;
     size_t count, room;
@@ -35,7 +36,8 @@ typedef struct {
 
 typedef struct {
     char name[RG_SET_NAME], of[RG_SET_NAME]; /* `of`: an element or a set of elements */
-    int face;                                /* 0 to 3: S1 to S4; 4: the triangle itself */
+    long line;
+    int face; /* 0 to 3: S1 to S4; 4: the triangle itself */
 } patch;
 
 /* What a data line means. */
@@ -118,9 +120,8 @@ static const char *parameter(const reader *r, const char *line, const char *name
 
 static rg_gid read_number(const reader *r, const char *word) {
     char *end;
-    errno = 0;
     long long value = strtoll(word, &end, 10);
-    if (end == word || *end != '\0' || errno != 0 || value < 1 || value > INT64_C(4000000000)) {
+    if (end == word || *end != '\0' || value < 1 || value > INT64_C(4000000000)) {
         refuse(r, "'%s' is not the number of a node or element", word);
     }
     return value;
@@ -145,7 +146,7 @@ static size_t need_set(reader *r, const char *name, rank from) {
     size_t i = find_set(r, name, from);
     if (i == r->sets) {
         r->set = rg_realloc(r->set, r->sets + 1, sizeof *r->set);
-        r->set[r->sets] = (elset){.rank = from};
+        r->set[r->sets] = (elset){.rank = from, .line = r->line};
         strcpy(r->set[r->sets++].name, name);
     }
     return i;
@@ -159,10 +160,7 @@ static void add_member(reader *r, size_t set, rg_gid number) {
     if (s->count == most) {
         refuse(r, "set '%s' has more than %zu members, with %zu elements so far", s->name, most, r->elements);
     }
-    if (s->count == s->room) {
-        s->room = 2 * s->room + 64;
-        s->member = rg_realloc(s->member, s->room, sizeof *s->member);
-    }
+    s->member = rg_grow(s->member, &s->room, s->count, sizeof *s->member);
     s->member[s->count++] = number;
 }
 
@@ -284,10 +282,7 @@ static void read_node(reader *r, char *line) {
 
 static void end_element(reader *r) {
     element *e = &r->pending;
-    if (r->elements == r->element_room) {
-        r->element_room = 2 * r->element_room + 64;
-        r->element = rg_realloc(r->element, r->element_room, sizeof *r->element);
-    }
+    r->element = rg_grow(r->element, &r->element_room, r->elements, sizeof *r->element);
     e->nodes = r->expected < 4 || r->expected == 6 ? 3 : r->expected;
     if (e->nodes == 10) { /* the last two middles stand the other way round */
         size_t swap = e->node[8];
@@ -346,7 +341,7 @@ static void read_surface(reader *r, char *line) {
     static const char *const labels[] = {"S1", "S2", "S3", "S4", "SPOS", "SNEG"};
     char *rest = line;
     const char *of = next_word(&rest), *label = next_word(&rest);
-    patch p = {.face = -1};
+    patch p = {.line = r->line, .face = -1};
     for (int i = 0; i < 6 && label != NULL; i++) {
         p.face = strcasecmp(label, labels[i]) == 0 ? (i < 4 ? i : 4) : p.face;
     }
@@ -448,6 +443,7 @@ static void fill_sections(reader *r) {
     for (size_t i = 0; i < r->sets; i++) {
         if (r->set[i].rank == FROM_SECTION) {
             char name[RG_SET_NAME];
+            r->line = r->set[i].line;
             strcpy(name, r->set[i].name);
             add_set(r, i, name);
         }
@@ -508,6 +504,7 @@ static void take_face(reader *r, const patch *p, int set, rg_gid number) {
 static void take_surfaces(reader *r, rg_mesh *names) {
     for (size_t i = 0; i < r->patches; i++) {
         const patch *p = &r->patch[i];
+        r->line = p->line;
         int set = name_set(r, p->name, &names->sets, names->set_name);
         if (is_number(p->of)) {
             take_face(r, p, set, read_number(r, p->of));

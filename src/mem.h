@@ -14,6 +14,16 @@ void *rg_alloc_sparse(size_t count, size_t size);
 /* Grows or shrinks a block from rg_realloc(NULL, ...); not aligned, for set-up only. Free with rg_free. */
 void *rg_realloc(void *block, size_t count, size_t size);
 
+/* Makes room for more than `count` items in a block from rg_realloc that has it for *room of them: by so much
+ * at once that to add one after the other takes a time that grows with their number. */
+static inline void *rg_grow(void *block, size_t *room, size_t count, size_t size) {
+    if (count < *room) {
+        return block;
+    }
+    *room = count + count / 2 + 64;
+    return rg_realloc(block, *room, size);
+}
+
 void rg_free(void *block);
 
 /* Bytes that rg_alloc has given and rg_free has not taken back (address space; untouched pages cost nothing).

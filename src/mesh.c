@@ -52,16 +52,13 @@ static rg_gid *list_faces(rg_mesh *mesh) {
 
 struct bundle {
     struct face *face;
-    size_t count, capacity;
+    size_t count, room;
 };
 
 /* Takes the list that starts at `slot` into `b`. */
 static void collect(const rg_mesh *mesh, rg_gid slot, struct bundle *b) {
     for (b->count = 0; slot >= 0; slot = mesh->neighbour[slot], b->count++) {
-        if (b->count == b->capacity) {
-            b->capacity = b->capacity > 0 ? 2 * b->capacity : 64;
-            b->face = rg_realloc(b->face, b->capacity, sizeof *b->face);
-        }
+        b->face = rg_grow(b->face, &b->room, b->count, sizeof *b->face);
         b->face[b->count] = (struct face){face_vertex(mesh, slot, 1), face_vertex(mesh, slot, 2), slot};
     }
 }
@@ -107,8 +104,8 @@ void rg_mesh_connect(rg_mesh *mesh) {
     struct bundle bundle = {0};
     rg_faults faults = {.name = "mesh"};
     for (rg_gid v = 0; v < mesh->vertices; v++) {
-        collect(mesh, head[v], &bundle);
-        if (bundle.count > 0) {
+        if (head[v] >= 0) {
+            collect(mesh, head[v], &bundle);
             match(mesh, v, &bundle, &faults);
         }
     }

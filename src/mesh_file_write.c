@@ -193,14 +193,12 @@ static int64_t tile_vertices(const target *w, const rg_mesh *mesh, int64_t t, in
 }
 
 static void find_vertices(target *w, const rg_mesh *mesh) {
-    int64_t list[4 * RG_TILE], room = 0;
+    int64_t list[4 * RG_TILE];
+    size_t room = 0;
     w->vertex_start = RG_NEW(int64_t, (size_t)w->tiles + 1);
     for (int64_t t = 0; t < w->tiles; t++) {
         int64_t n = tile_vertices(w, mesh, t, list), at = w->vertex_start[t];
-        if (at + n > room) {
-            room = 2 * (at + n);
-            w->vertex = rg_realloc(w->vertex, (size_t)room, sizeof *w->vertex);
-        }
+        w->vertex = rg_grow(w->vertex, &room, (size_t)(at + n), sizeof *w->vertex);
         memcpy(w->vertex + at, list, (size_t)n * sizeof *list);
         w->vertex_start[t + 1] = at + n;
     }

@@ -123,7 +123,7 @@ static void rank_height(struct totals *t, rg_gid e, double height) {
 }
 
 /* Upper ends of the classes of aspect ratio, but for the last. */
-static const double aspect_end[ASPECT_BINS - 1] = {1.5, 2, 3, 5, 10, 20, 50};
+static const double aspect_end[] = {1.5, 2, 3, 5, 10, 20, 50};
 
 static void count_aspect(struct totals *t, rg_gid e, double aspect) {
     int b = 0;

@@ -185,10 +185,7 @@ typedef struct {
 } quarrels;
 
 static void quarrel(quarrels *q, rg_gid a, rg_gid b) {
-    if (q->count == q->room) {
-        q->room = 2 * q->room + 16;
-        q->pair = rg_realloc(q->pair, q->room, sizeof *q->pair);
-    }
+    q->pair = rg_grow(q->pair, &q->room, q->count, sizeof *q->pair);
     q->pair[q->count][0] = a < b ? a : b;
     q->pair[q->count++][1] = a < b ? b : a;
 }

@@ -29,18 +29,15 @@ static void collect(const rg_mesh *mesh, int tile, int64_t t, struct list *l) {
 }
 
 /* Appends the different entries of the list, with their numbers, to the graph. */
-static void append(rg_tile_graph *g, int64_t t, const struct list *l, size_t *room) {
+static void append(rg_tile_graph *g, int64_t t, const struct list *l, size_t room[2]) {
     int64_t n = g->start[t];
     for (size_t i = 0; i < l->count; i++) {
         if (i > 0 && l->tile[i] == l->tile[i - 1]) {
             g->faces[n - 1]++;
             continue;
         }
-        if ((size_t)n == *room) {
-            *room = 2 * *room + 64;
-            g->neighbour = rg_realloc(g->neighbour, *room, sizeof *g->neighbour);
-            g->faces = rg_realloc(g->faces, *room, sizeof *g->faces);
-        }
+        g->neighbour = rg_grow(g->neighbour, &room[0], (size_t)n, sizeof *g->neighbour);
+        g->faces = rg_grow(g->faces, &room[1], (size_t)n, sizeof *g->faces);
         g->neighbour[n] = l->tile[i];
         g->faces[n++] = 1;
     }
@@ -49,7 +46,7 @@ static void append(rg_tile_graph *g, int64_t t, const struct list *l, size_t *ro
 
 rg_tile_graph *rg_tile_graph_make(const rg_mesh *mesh, int tile) {
     rg_tile_graph *g = RG_NEW(rg_tile_graph, 1);
-    size_t room = 0;
+    size_t room[2] = {0, 0};
     struct list list = {.tile = RG_NEW(int64_t, 4 * (size_t)tile)};
     g->elements = mesh->elements;
     g->tile = tile;
@@ -57,7 +54,7 @@ rg_tile_graph *rg_tile_graph_make(const rg_mesh *mesh, int tile) {
     g->start = RG_NEW(int64_t, (size_t)g->tiles + 1);
     for (int64_t t = 0; t < g->tiles; t++) {
         collect(mesh, tile, t, &list);
-        append(g, t, &list, &room);
+        append(g, t, &list, room);
     }
     rg_free(list.tile);
     return g;
