@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from conftest import BENCH, CASES
+from figures import ROUNDING
 
 TOUGHNESS = 34.0  # J/m^2, of every case here
 RUNS = {
@@ -37,23 +38,26 @@ def test_stored_energies_are_not_negative(energy):
         assert (energy[name] >= -1e-9 * energy[name].max()).all(), name
 
 
-def test_total_is_the_sum_of_its_parts(energy):
+def test_total_is_the_sum_of_its_parts(energy, figure):
     parts = sum(energy[name] for name in ("kinetic", "bodies", "bulk", "penalty", "cohesive", "contact", "dissipated"))
     scale = np.abs(energy["external_work"]).max() + parts.max()
-    assert np.abs(parts - energy["external_work"] - energy["total"]).max() < 1e-14 * scale
+    figure("ledger: total against the sum of its parts", np.abs(parts - energy["external_work"] - energy["total"]).max() / scale,
+           bound=1e-15, why=ROUNDING)
     error = (energy["total"] - energy["total"][0])[1:] / np.maximum.accumulate(parts)[1:]
-    assert energy["error_rel"][1:] == pytest.approx(error, rel=1e-6, abs=1e-12)
+    figure("ledger: relative error against that of the total", np.abs(energy["error_rel"][1:] - error).max(), bound=1e-15,
+           why=ROUNDING)
 
 
-@pytest.mark.parametrize("jitter, velocity, bounds", [(0, 15, (1.0, 0.1)), (0.12, 15, (0.3, 0.1)), (0, 40, (0.3, 0.2))])
-def test_conserving_activation_keeps_the_energy_of_a_violent_break(run, jitter, velocity, bounds):
+@pytest.mark.parametrize("jitter, velocity, bounds", [(0, 15, (1.0, 0.02)), (0.12, 15, (0.3, 0.014)), (0, 40, (0.3, 0.2))])
+def test_conserving_activation_keeps_the_energy_of_a_violent_break(run, figure, jitter, velocity, bounds):
     """The first 500 steps of the bars of bench/endurance.md, undamped; bounds in %: the default is worse, the other better."""
     sets = {"mesh.jitter": jitter, "initial.velocity": {"z": f"-{velocity}*cos(pi*z/4e-3)"}, "time.steps": 500,
             "viscosity.linear": 0, "output.interval": 10, "output.fields": []}
     default = run(BENCH / "endurance.yaml", threads=2, sets={**sets, "interface.activation": "continuous"})
     conserving = run(BENCH / "endurance.yaml", threads=2, sets=sets)
     assert default.summary["energy_error_rel"] > bounds[0] / 100
-    assert conserving.summary["energy_error_rel"] < bounds[1] / 100
+    figure(f"bar torn at {velocity} m/s, jittered by {jitter}, activation conserving: energy error after 500 steps",
+           conserving.summary["energy_error_rel"], bound=bounds[1] / 100)
     energy = conserving.energy
     assert energy["broken_area"][-1] > 1e-6 and energy["failed_area"][-1] > 0.5e-6
     assert (np.diff(energy["dissipated"]) >= -1e-14 * energy["dissipated"][-1]).all()
@@ -61,10 +65,11 @@ def test_conserving_activation_keeps_the_energy_of_a_violent_break(run, jitter, 
     assert (energy["dissipated"] >= TOUGHNESS * energy["failed_area"] * (1 - 1e-12)).all()
 
 
-@pytest.mark.parametrize("name", ["spall", "jittered"])
-def test_work_of_the_ends_is_accounted_for(run, name):
+@pytest.mark.parametrize("name, bound", [("spall", 1.5e-5), ("jittered", 7e-6)])
+def test_work_of_the_ends_is_accounted_for(run, figure, name, bound):
     case, sets = RUNS[name]
     spall = run(case, threads=2, sets=sets)
     whole = spall.energy[spall.energy["time"] < spall.summary["first_fracture_time_s"]]
     assert len(whole) > 20 and whole["external_work"][-1] > 1e-5
-    assert np.abs(whole["error_rel"]).max() < 1e-3
+    mesh = "regular" if name == "spall" else name
+    figure(f"spall, {mesh}: energy error until it breaks", np.abs(whole["error_rel"]).max(), bound=bound)

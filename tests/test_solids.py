@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from conftest import BENCH, CASES, SINGLE, launch, overrides
+from figures import ROUNDING
 from test_parallel import assert_same_bits
 
 PLASTIC = CASES / "plastic.yaml"
@@ -43,13 +44,14 @@ FORMS = {
 }
 
 
-@pytest.mark.parametrize("form", FORMS)
+@pytest.mark.parametrize("form, bound", [("incomplete", 0.01), ("intrinsic", 2e-4), ("continuous", 3e-3)])
 @pytest.mark.parametrize("solid", EACH)
-def test_every_form_takes_every_solid(run, solid, form):
+def test_every_form_takes_every_solid(run, figure, solid, form, bound):
     sets = {**SHORT, "mesh.cells": [1, 1, 10], "time.end": 0.2e-6, **SOLIDS[solid],
             **FORMS[form]}
     summary = run(TORN, sets=sets).summary
-    assert summary["status"] == "completed" and abs(summary["energy_error_rel"]) < 5e-3
+    assert summary["status"] == "completed"
+    figure(f"torn bar, worst solid, {form} form: energy error", summary["energy_error_rel"], bound=bound)
     assert solid != "metal" or summary["plastic_J"] > 0
 
 
@@ -59,8 +61,8 @@ QUIET = {"interface": {"law": "none"}, "mesh.cells": [2, 2, 20], "time.end": 0.3
          "output.fields": ["stress"], "output.energy_limit": 1e9}
 
 
-@pytest.mark.parametrize("model", ["linear-elastic", "st-venant-kirchhoff"])
-def test_small_strains_are_those_of_the_neo_hookean_solid(run, model):
+@pytest.mark.parametrize("model, bound", [("linear-elastic", 6e-3), ("st-venant-kirchhoff", 0.035)])
+def test_small_strains_are_those_of_the_neo_hookean_solid(run, figure, model, bound):
     def difference(speed):
         sets = {**QUIET, "initial.velocity.z": f"-{speed}*cos(pi*z/4e-3)"}
         one = run(TORN, sets=sets).frames()[-1]["stress"]
@@ -69,10 +71,11 @@ def test_small_strains_are_those_of_the_neo_hookean_solid(run, model):
 
     large, small = difference(40), difference(4)
     assert 1e-5 < small < 2e-3
-    assert large / small == pytest.approx(10, rel=0.1)  # of first order in the strain
+    figure(f"{model} against neo-hookean: stress apart at 10 times the strain, over that at one", large / small, theory=10,
+           bound=bound, relative=True)  # of first order in the strain
 
 
-def test_a_spinning_body_grows_if_it_is_linear(run):
+def test_a_spinning_body_grows_if_it_is_linear(run, figure):
     """A cube that spins freely keeps its size, but for what the centrifugal force stretches it. The linear solid feels
     nothing of u = t w x r, however large: its points fly along tangents, and it grows by sqrt(1 + (w t)^2)."""
     rate, end = 0.8e6, 1e-6  # rad/s, s
@@ -87,9 +90,14 @@ def test_a_spinning_body_grows_if_it_is_linear(run):
         corner = np.abs(before).min(axis=1) > 0.09e-3
         return np.hypot(*after[corner, :2].T) / np.hypot(*before[corner, :2].T)
 
-    assert np.allclose(growth("neo-hookean"), 1, atol=1e-3)
-    assert np.allclose(growth("st-venant-kirchhoff"), 1, atol=1e-3)
-    assert np.allclose(growth("linear-elastic"), np.sqrt(1 + (rate * end) ** 2), rtol=1e-3)
+    def worst(model, theory):
+        return max(growth(model), key=lambda size: abs(size - theory))
+
+    for model in ("neo-hookean", "st-venant-kirchhoff"):
+        figure(f"spinning cube, {model}: size over that at the start", worst(model, 1), theory=1, bound=2.5e-4, relative=True)
+    theory = np.sqrt(1 + (rate * end) ** 2)
+    figure("spinning cube, linear-elastic: size over that at the start", worst("linear-elastic", theory), theory=theory,
+           bound=2e-14, relative=True, why=ROUNDING)
 
 
 def test_check_tells_the_material(tmp_path):
@@ -121,46 +129,53 @@ def simple_wave():
 
 
 @double_only
-def test_plastic_wave_follows_an_elastic_precursor(run):
+def test_plastic_wave_follows_an_elastic_precursor(run, figure):
     """Uniaxial strain, an end pushed at 60 m/s: a precursor of the elastic limit, then a wave at the plastic speed."""
     history = run(PLASTIC).history
     time, stress, speed = history["time"], -history["p4_szz"], history["p4_vz"]
     v, sigma, c = simple_wave()
     first, last = LIMIT / (DENSITY * ELASTIC_SPEED), 60
     rising = speed[:np.argmax(speed > 0.98 * last)]
+    late = {}
     for level in (first / 2, 30, 40, 50):  # m/s: passes the probe 4 mm away so long after the end moved at that speed
         travelled = np.interp(level, rising, time[:len(rising)]) - 0.1e-6 * np.arctanh(level / last)
-        assert travelled == pytest.approx(4e-3 / np.interp(level, v, c), rel=2e-3)
+        late[level] = travelled / (4e-3 / np.interp(level, v, c)) - 1
+    figure("plastic wave: passage of the precursor, relative", late.pop(first / 2), bound=4e-4)
+    figure("plastic wave: passage of 30, 40 and 50 m/s, relative", max(late.values(), key=abs), bound=1.8e-3)
     between, after = (time > 0.76e-6) & (time < 0.83e-6), time > 1.4e-6
-    assert np.mean(speed[between]) == pytest.approx(first, rel=5e-3)
-    assert np.mean(stress[between]) == pytest.approx(np.interp(first, v, sigma), rel=5e-3)
-    assert np.mean(speed[after]) == pytest.approx(last, rel=5e-4)
-    assert np.mean(stress[after]) == pytest.approx(np.interp(last, v, sigma), rel=1e-3)
+    figure("plastic wave: speed behind the precursor", np.mean(speed[between]), theory=first, bound=1.7e-3, unit="m/s", relative=True)
+    figure("plastic wave: stress behind the precursor", 1e-6 * np.mean(stress[between]), theory=1e-6 * np.interp(first, v, sigma),
+           bound=5e-3, unit="MPa", relative=True)
+    figure("plastic wave: speed behind the wave", np.mean(speed[after]), theory=last, bound=3e-4, unit="m/s", relative=True)
+    figure("plastic wave: stress behind the wave", 1e-6 * np.mean(stress[after]), theory=1e-6 * np.interp(last, v, sigma),
+           bound=4.5e-4, unit="MPa", relative=True)
 
 
 @double_only
-def test_ledger_of_a_plastic_wave(run):
-    one = run(PLASTIC)
-    energy = one.energy
+def test_ledger_of_a_plastic_wave(run, figure):
+    energy = run(PLASTIC).energy
     assert energy["plastic"][-1] > 0.05 * energy["kinetic"].max() and (energy["damage"] == 0).all()
     assert (np.diff(energy["plastic"]) >= 0).all()
-    assert np.abs(energy["error_rel"]).max() < 1e-5
+    figure("plastic wave: energy error", np.abs(energy["error_rel"]).max(), bound=9e-6)
     parts = ("kinetic", "bulk", "penalty", "cohesive", "contact", "dissipated", "plastic", "damage")
     assert np.allclose(sum(energy[name] for name in parts) - energy["external_work"], energy["total"], rtol=1e-12)
 
 
 @double_only
-def test_fields_show_the_plastic_strain(run):
+def test_fields_show_the_plastic_strain(run, figure):
     last = run(PLASTIC).frames()[-1]
     assert "damage" not in last and "regime" not in last
     strain, stress = last["plastic_strain"].ravel(), last["stress"]  # xx xy xz yy yz zz
     mean = (stress[:, 0] + stress[:, 3] + stress[:, 5]) / 3
     mises = np.sqrt(1.5 * ((stress[:, [0, 3, 5]] - mean[:, None]) ** 2).sum(axis=1)
                     + 3 * (stress[:, [1, 2, 4]] ** 2).sum(axis=1))
-    assert np.allclose(last["triaxiality"].ravel() * mises, mean, rtol=0, atol=1e-9 * np.abs(stress).max())
+    figure("plastic wave: mean stress by the field of triaxiality, of the largest stress",
+           np.abs(last["triaxiality"].ravel() * mises - mean).max() / np.abs(stress).max(), bound=5e-16, why=ROUNDING)
     flowed = strain > 1e-3
     assert flowed.sum() > 100 and (strain >= 0).all() and (strain[-20:] == 0).any()
-    assert np.allclose(mises[flowed], YIELD + HARDENING * strain[flowed], rtol=0.02)  # Cauchy, not Kirchhoff stress
+    # Cauchy stress, not Kirchhoff's, and fields are means over the points of an element
+    figure("plastic wave: von Mises stress in the fields against the yield curve, relative",
+           np.abs(mises[flowed] / (YIELD + HARDENING * strain[flowed]) - 1).max(), bound=0.02)
 
 
 @double_only
