@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 from conftest import BENCH, CASES
+from figures import ROUNDING
 
 MODULUS = 260e9 * 0.79 / (1.21 * 0.58)  # of spring-bar.yaml, without strain across (Pa)
 SLOPED = ["exponential", "bilinear", "tvergaard", "polynomial", "needleman", "xu-needleman"]
@@ -48,14 +49,18 @@ PULLED = {"mesh.cells": [2, 2, 6], "mesh.size": [0.2e-3, 0.2e-3, 0.6e-3], "mesh.
           "boundary": [{"set": "z+", "component": "z", "velocity": 2}, {"set": "z-", "component": "z", "velocity": -2}]}
 
 
-@pytest.mark.parametrize("law", ["linear", "rate", "fatigue", "free", *SLOPED, "linear conserving", "rate conserving"])
-def test_ledger_closes(run, law):
+# Where DG points switch the ledger of the default activation has the error that the README tells of.
+LEDGERS = {"linear": 0.03, "rate": 0.027, "fatigue": 0.03, "free": 0.03, "exponential": 3.5e-4, "bilinear": 6e-4, "tvergaard": 5e-4,
+           "polynomial": 1.6e-4, "needleman": 2.5e-4, "xu-needleman": 2e-4, "linear conserving": 6e-4, "rate conserving": 4e-4}
+
+
+@pytest.mark.parametrize("law", LEDGERS)
+def test_ledger_closes(run, figure, law):
     name, *conserving = law.split()
     run = run(BENCH / "spall.yaml", threads=2,
               sets={**PULLED, **interface(name, **({"activation": "conserving"} if conserving else {}))})
     energy = run.energy
-    # where DG points switch the ledger of the default activation has the error that the README tells of
-    assert run.summary["energy_error_rel"] < (0.01 if law in SLOPED or conserving else 0.03)
+    figure(f"bar pulled apart, law {law}: energy error", run.summary["energy_error_rel"], bound=LEDGERS[law])
     parts = sum(energy[name] for name in ("kinetic", "bulk", "penalty", "cohesive", "contact", "dissipated"))
     assert energy["external_work"].max() > 0.5 * parts.max()
     assert (np.diff(energy["dissipated"]) >= -1e-12 * energy["external_work"].max()).all()
@@ -63,7 +68,7 @@ def test_ledger_closes(run, law):
         assert energy["penalty"].max() == 0 and energy["cohesive"].max() > 0
 
 
-def test_step_follows_the_opening(run):
+def test_step_follows_the_opening(run, figure):
     """(3.14): while faces climb to the strength or soften, the step shrinks, the more the larger N; and the ledger
     closes."""
     def pulled(steps):
@@ -74,12 +79,14 @@ def test_step_follows_the_opening(run):
     fixed, once, twice = (np.diff(pulled(steps).history["time"])[:-1] for steps in (0, 60, 120))
     assert np.ptp(fixed) < 1e-9 * fixed[0] and once[0] == pytest.approx(fixed[0])
     assert once.min() < 0.5 * fixed[0]
-    assert 0.35 < twice.min() / once.min() < 0.7
+    figure("bilinear law: smallest step for twice the steps an opening, over that for once", twice.min() / once.min(), theory=0.5,
+           bound=2e-12, why=ROUNDING)
     assert pulled(60).summary["broken_area_m2"] > 0
-    assert pulled(60).summary["energy_error_rel"] < 1e-4 and pulled(0).summary["energy_error_rel"] < 2e-4
+    for steps, bound in ((0, 1.5e-4), (60, 3e-5)):
+        figure(f"bilinear law, {steps} steps an opening: energy error", pulled(steps).summary["energy_error_rel"], bound=bound)
 
 
-def test_wave_speed_of_intrinsic_faces(run):
+def test_wave_speed_of_intrinsic_faces(run, figure):
     """Formula (3.10) for s h/E = 1."""
     rate = math.sqrt(MODULUS / 3690 / 2)
     expected = 2e-3 / rate
@@ -94,8 +101,9 @@ def test_wave_speed_of_intrinsic_faces(run):
         return np.linalg.lstsq(basis, kinetic, rcond=None)[1][0]
 
     half = min(expected * np.linspace(0.9, 1.1, 2001), key=misfit)
-    assert abs(expected / half - 1) < 0.02
-    assert run.summary["energy_error_rel"] < 1e-5
+    figure("bar of springs, s h/E = 1: wave speed against formula (3.10)", expected / half * rate, theory=rate, bound=0.012, unit="m/s",
+           relative=True)
+    figure("bar of springs, s h/E = 1: energy error", run.summary["energy_error_rel"], bound=1.6e-6)
     assert run.summary["limiting_state"] == "cohesive and closed"
 
 
