@@ -39,6 +39,15 @@ static inline double figure_deviation(const figure *f) {
     return f->relative ? apart / fabs(f->theory) : apart;
 }
 
+/* For a figure of many values, which is the worst of them: raises the error found so far to that of one more.
+ */
+static inline void raise_figure(figure *f, double got, double expected, double scale) {
+    double error = fabs(got - expected) / scale;
+    if (!isnan(f->found) && !(error <= f->found)) {
+        f->found = error;
+    }
+}
+
 /* A JSON number; what is none becomes null. */
 static inline const char *figure_number(char text[32], double value) {
     snprintf(text, 32, isfinite(value) ? "%.17g" : "null", value);

@@ -216,7 +216,8 @@ static void check(const subject *s, const rg_mesh *mesh) {
             masks = masks && (many.mask[slot] >> k / 3 & 1) == any[at];
         }
     }
-    report(error < 1e-13, s->name, "means over the nodes of the mesh");
+    report_figure(s->name, (figure){"shared nodes: means against those by the node numbers of the mesh",
+                                    .found = error, .bound = 2e-15, .why = ROUNDING});
     report(bits, s->name, "the same bits on one rank");
     report(masks, s->name, "marks reach all copies");
     long long interfaces = (long long)many.domain->interfaces;

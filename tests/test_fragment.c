@@ -72,41 +72,44 @@ static void cut(rg_solver *s, int axis, double place, double damage) {
     }
 }
 
-/* Largest deviations of fragments from closed forms, in shares of the largest value of their kind. */
-typedef struct {
-    double mass, centroid, momentum, energy, inertia, axis, size;
-} errors;
-
-static void raise(double *most, double found, double theory, double scale) {
-    double error = fabs(found - theory) / scale;
-    *most = error <= *most ? *most : error; /* one that is no number, too */
-}
+/* Of the fragments of a box that is cut, against closed forms, in shares of the largest value of their kind.
+ */
+enum { MASS, CENTROID, MOMENTUM, ENERGY, INERTIA, AXIS, SIDE, BOX_FIGURES };
+static figure box[BOX_FIGURES] = {
+    [MASS] = {"fragments, boxes: mass", .bound = EXACT, .why = ROUNDING},
+    [CENTROID] = {"fragments, boxes: centroid", .bound = EXACT, .why = ROUNDING},
+    [MOMENTUM] = {"fragments, boxes: momentum", .bound = EXACT, .why = ROUNDING},
+    [ENERGY] = {"fragments, boxes: kinetic energy and that of the rotation", .bound = EXACT, .why = ROUNDING},
+    [INERTIA] = {"fragments, boxes: principal moments of inertia", .bound = EXACT, .why = ROUNDING},
+    [AXIS] = {"fragments, boxes: axes", .bound = EXACT, .why = ROUNDING},
+    [SIDE] = {"fragments, boxes: sides of the box of equal inertia", .bound = EXACT, .why = ROUNDING},
+};
 
 /* Against a homogeneous box with the given sides, one of those into which the body is cut. */
-static void compare_box(const rg_fragment *f, const double side[3], errors *most) {
+static void compare_box(const rg_fragment *f, const double side[3]) {
     double mass = DENSITY * side[0] * side[1] * side[2], moment[3], sorted[3] = {side[2], side[1], side[0]};
     double rotational = 0, speed2 = 0, at[3];
     for (int c = 0; c < 3; c++) {
         at[c] = (floor((f->centroid[c] - away[c]) / side[c]) + 0.5) * side[c];
-        raise(&most->centroid, f->centroid[c], away[c] + at[c], fabs(away[c]));
+        raise_figure(&box[CENTROID], f->centroid[c], away[c] + at[c], fabs(away[c]));
     }
-    raise(&most->mass, f->mass, mass, mass);
-    raise(&most->mass, f->volume, mass / DENSITY, mass / DENSITY);
+    raise_figure(&box[MASS], f->mass, mass, mass);
+    raise_figure(&box[MASS], f->volume, mass / DENSITY, mass / DENSITY);
     for (int c = 0; c < 3; c++) {
         int a = (c + 1) % 3, b = (c + 2) % 3;
         double v = flight[c] + spin[a] * at[b] - spin[b] * at[a];
         moment[c] = mass * (side[a] * side[a] + side[b] * side[b]) / 12;
         rotational += 0.5 * moment[c] * spin[c] * spin[c];
         speed2 += v * v;
-        raise(&most->momentum, f->momentum[c], mass * v, mass * 40);
-        raise(&most->axis, f->axis[c][2 - c], 1, 1);
+        raise_figure(&box[MOMENTUM], f->momentum[c], mass * v, mass * 40);
+        raise_figure(&box[AXIS], f->axis[c][2 - c], 1, 1);
     }
     for (int c = 0; c < 3; c++) { /* sides are longest along z, and shortest along x */
-        raise(&most->inertia, f->inertia[c], moment[2 - c], moment[0]);
-        raise(&most->size, f->size[c], sorted[c], side[2]);
+        raise_figure(&box[INERTIA], f->inertia[c], moment[2 - c], moment[0]);
+        raise_figure(&box[SIDE], f->size[c], sorted[c], side[2]);
     }
-    raise(&most->energy, f->rotational, rotational, 0.5 * mass * speed2);
-    raise(&most->energy, f->kinetic, 0.5 * mass * speed2 + rotational, 0.5 * mass * speed2);
+    raise_figure(&box[ENERGY], f->rotational, rotational, 0.5 * mass * speed2);
+    raise_figure(&box[ENERGY], f->kinetic, 0.5 * mass * speed2 + rotational, 0.5 * mass * speed2);
 }
 
 /* Takes the fragments; their number on all ranks. */
@@ -124,17 +127,16 @@ static int64_t measure(rg_solver *s, rg_fragment **rows, size_t *own, double *ma
     return count;
 }
 
-static void check_boxes(rg_solver *s, const char *name, int64_t expected, const double side[3],
-                        errors *most) {
+static void check_boxes(rg_solver *s, const char *name, int64_t expected, const double side[3]) {
     rg_fragment *rows;
     size_t own;
     double mass, whole = DENSITY * size[0] * size[1] * size[2];
     int64_t count = measure(s, &rows, &own, &mass);
     report(count == expected, name, "number of fragments");
-    raise(&most->mass, mass, whole, whole);
+    raise_figure(&box[MASS], mass, whole, whole);
     bool good = true;
     for (size_t i = 0; i < own; i++) {
-        compare_box(&rows[i], side, most);
+        compare_box(&rows[i], side);
         good = good && rows[i].elements == ELEMENTS / expected && (i == 0 || rows[i].id > rows[i - 1].id);
     }
     report(good, name, "as many elements in each");
@@ -144,29 +146,16 @@ static void check_boxes(rg_solver *s, const char *name, int64_t expected, const 
 static void check_cuts(void) {
     rg_case c;
     rg_solver *s = make_solver(&c);
-    errors most = {0};
     set_motion(s, 0);
-    check_boxes(s, "whole", 1, size, &most);
+    check_boxes(s, "whole", 1, size);
     cut(s, 0, 1, 1);
     cut(s, 1, 1.5, 1);
     cut(s, 2, 3, 0.99);
-    check_boxes(s, "cut along", 4, (double[3]){1, 1.5, 6}, &most);
+    check_boxes(s, "cut along", 4, (double[3]){1, 1.5, 6});
     cut(s, 2, 3, 1);
-    check_boxes(s, "cut across", 8, (double[3]){1, 1.5, 3}, &most);
-    const figure stated[] = {
-        {"fragments, boxes: mass", .found = most.mass},
-        {"fragments, boxes: centroid", .found = most.centroid},
-        {"fragments, boxes: momentum", .found = most.momentum},
-        {"fragments, boxes: kinetic energy and that of the rotation", .found = most.energy},
-        {"fragments, boxes: principal moments of inertia", .found = most.inertia},
-        {"fragments, boxes: axes", .found = most.axis},
-        {"fragments, boxes: sides of the box of equal inertia", .found = most.size},
-    };
-    for (size_t k = 0; k < sizeof stated / sizeof *stated; k++) {
-        figure f = stated[k];
-        f.bound = EXACT;
-        f.why = ROUNDING;
-        report_figure("boxes", f);
+    check_boxes(s, "cut across", 8, (double[3]){1, 1.5, 3});
+    for (int k = 0; k < BOX_FIGURES; k++) {
+        report_figure("boxes", box[k]);
     }
     rg_solver_free(s);
 }

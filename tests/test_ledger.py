@@ -73,3 +73,19 @@ def test_work_of_the_ends_is_accounted_for(run, figure, name, bound):
     assert len(whole) > 20 and whole["external_work"][-1] > 1e-5
     mesh = "regular" if name == "spall" else name
     figure(f"spall, {mesh}: energy error until it breaks", np.abs(whole["error_rel"]).max(), bound=bound)
+
+
+@pytest.mark.parametrize("velocity, bound", [(15, 0.03), (40, 0.012)])
+def test_lumped_mass_keeps_the_energy_of_a_violent_break_better(run, figure, velocity, bound):
+    """At the same step size, to 1 us."""
+    def torn(**sets):
+        start = {"initial.velocity.z": f"-{velocity}*cos(pi*z/4e-3)", "time.end": 1e-6, "output.fields": []}
+        return run(BENCH / "torn-bar.yaml", threads=2, sets={**start, **sets}).summary
+
+    consistent = torn()
+    safety = consistent["dt_first"] / torn(**{"mass": "lumped", "time.steps": 1})["dt_critical"]
+    lumped = torn(**{"mass": "lumped", "time.safety": safety})
+    assert lumped["dt_first"] == pytest.approx(consistent["dt_first"], rel=1e-12)
+    figure(f"bar torn at {velocity} m/s, consistent mass: energy error after 1 us", consistent["energy_error_rel"], bound=bound)
+    figure(f"bar torn at {velocity} m/s, lumped mass: its energy error over that", lumped["energy_error_rel"] / consistent["energy_error_rel"],
+           bound=0.7)
