@@ -6,6 +6,7 @@
 #include <strings.h>
 
 #include "case_expr.h"
+#include "case_tree.h"
 #include "cohesive_facts.h"
 #include "mem.h"
 
@@ -224,84 +225,95 @@ _Static_assert(sizeof(rg_form) == sizeof(int), "choices are stored as int");
 
 /* ---- words ---- */
 
+/* Each appends to `text`. */
+
 /* "number > 0 and < 0.5", "integer >= 1" */
-static int range_words(const rg_key *key, char *text, size_t size) {
-    const char *noun = key->type == RG_KEY_INTEGER ? "integer" : "number";
-    char low[32] = "", high[32] = "";
-    if (isfinite(key->low)) {
-        snprintf(low, sizeof low, " %s %g", key->low_open ? ">" : ">=", key->low);
-    }
-    if (isfinite(key->high)) {
-        const char *and = low[0] != '\0' ? " and" : "";
-        snprintf(high, sizeof high, "%s %s %.10g", and, key->high_open ? "<" : "<=", key->high);
-    }
+static void range_words(const rg_key *key, char *text, size_t size) {
     const char *list = key->type == RG_KEY_REALS ? "ascending list, each " : "[x, y, z], each ";
-    return snprintf(text, size, "%s%s%s%s", key->count == 1 ? "" : list, noun, low, high);
+    rg_text_add(text, size, "%s%s", key->count == 1 ? "" : list,
+                key->type == RG_KEY_INTEGER ? "integer" : "number");
+    if (isfinite(key->low)) {
+        rg_text_add(text, size, " %s %g", key->low_open ? ">" : ">=", key->low);
+    }
+    if (isfinite(key->high)) { /* then the other is, too */
+        rg_text_add(text, size, " and %s %.10g", key->high_open ? "<" : "<=", key->high);
+    }
 }
 
 /* "none, linear" */
-static int choice_words(const rg_key *key, char *text, size_t size) {
-    bool list = key->type == RG_KEY_FLAGS || key->type == RG_KEY_TEXTS;
-    int used = snprintf(text, size, "%s", list ? "list from " : "");
-    for (int i = 0; key->choice[i] != NULL && (size_t)used < size; i++) {
-        used += snprintf(text + used, size - (size_t)used, "%s%s", i > 0 ? ", " : "", key->choice[i]);
+static void choice_words(const rg_key *key, char *text, size_t size) {
+    const char *join = key->type == RG_KEY_FLAGS || key->type == RG_KEY_TEXTS ? "list from " : "";
+    for (int i = 0; key->choice[i] != NULL; i++) {
+        rg_text_add(text, size, "%s%s", join, key->choice[i]);
+        join = ", ";
     }
-    return used;
 }
 
-static int list_words(const rg_key_table *entry, char *text, size_t size) {
-    int used = snprintf(text, size, "list of {");
-    for (int i = 0; i < entry->keys && (size_t)used < size; i++) {
-        const char *join = i == 0 ? "" : entry->key[i].group == RG_GROUP_DISPLACEMENT ? " or " : ", ";
-        if (entry->key[i].of_material) {
-            used += snprintf(text + used, size - (size_t)used, "%sand the keys of material", join);
-            break;
-        }
-        used += snprintf(text + used, size - (size_t)used, "%s%s", join, entry->key[i].name);
+static void list_words(const rg_key_table *entry, char *text, size_t size) {
+    const char *join = "list of {";
+    for (int i = 0; i < entry->keys && !entry->key[i].of_material; i++) {
+        join = entry->key[i].group == RG_GROUP_DISPLACEMENT ? " or " : join;
+        rg_text_add(text, size, "%s%s", join, entry->key[i].name);
+        join = ", ";
     }
-    return used + ((size_t)used < size ? snprintf(text + used, size - (size_t)used, "}") : 0);
+    rg_text_add(text, size, "%s}", entry == &rg_material_table ? ", and the keys of material" : "");
 }
 
-static int type_words(const rg_key *key, char *text, size_t size) {
+static void expr_words(const rg_key *key, char *text, size_t size) {
+    rg_text_add(text, size, "number or expression in %s%s%s", key->no_place ? "" : "x, y, z",
+                key->no_time    ? ""
+                : key->no_place ? "t"
+                                : ", t",
+                key->normal ? ", nx, ny, nz" : "");
+}
+
+static void type_words(const rg_key *key, char *text, size_t size) {
     switch (key->type) {
     case RG_KEY_REAL:
     case RG_KEY_REALS:
     case RG_KEY_INTEGER:
-        return range_words(key, text, size);
+        range_words(key, text, size);
+        break;
     case RG_KEY_CHOICE:
     case RG_KEY_FLAGS:
-        return choice_words(key, text, size);
+        choice_words(key, text, size);
+        break;
     case RG_KEY_TEXT:
-        return key->choice != NULL ? choice_words(key, text, size) : snprintf(text, size, "text");
     case RG_KEY_TEXTS:
-        return key->choice != NULL ? choice_words(key, text, size) : snprintf(text, size, "list of texts");
+        if (key->choice != NULL) {
+            choice_words(key, text, size);
+        } else {
+            rg_text_add(text, size, "%s", key->type == RG_KEY_TEXT ? "text" : "list of texts");
+        }
+        break;
     case RG_KEY_EXPR:
-        return snprintf(text, size, "number or expression in %s%s%s", key->no_place ? "" : "x, y, z",
-                        key->no_time    ? ""
-                        : key->no_place ? "t"
-                                        : ", t",
-                        key->normal ? ", nx, ny, nz" : "");
+        expr_words(key, text, size);
+        break;
     case RG_KEY_INTERVAL:
-        return snprintf(text, size, "integer >= 1 (steps), or number > 0 and < 1 (simulated seconds)");
+        rg_text_add(text, size, "integer >= 1 (steps), or number > 0 and < 1 (simulated seconds)");
+        break;
     case RG_KEY_LIST:
-        return list_words(key->entry, text, size);
+        list_words(key->entry, text, size);
+        break;
     }
-    return 0;
 }
 
 const char *rg_key_allowed(const rg_key *key, char *text, size_t size) {
-    int used = type_words(key, text, size);
-    if (key->unit != NULL && (size_t)used < size) {
-        snprintf(text + used, size - (size_t)used, " (%s)", key->unit);
+    text[0] = '\0';
+    type_words(key, text, size);
+    if (key->unit != NULL) {
+        rg_text_add(text, size, " (%s)", key->unit);
     }
     return text;
 }
 
 void rg_models_words(const rg_key *key, char *text, size_t size) {
-    int used = 0;
-    for (int m = 0; m < RG_MATERIAL_MODELS && (size_t)used < size; m++) {
+    const char *join = "";
+    text[0] = '\0';
+    for (int m = 0; m < RG_MATERIAL_MODELS; m++) {
         if ((key->models >> m & 1U) != 0) {
-            used += snprintf(text + used, size - (size_t)used, "%s%s", used > 0 ? ", " : "", models[m]);
+            rg_text_add(text, size, "%s%s", join, models[m]);
+            join = ", ";
         }
     }
 }

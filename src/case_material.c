@@ -117,10 +117,11 @@ void rg_material_rule(rg_check *ck, const rg_node *list, int i, const char *path
 
 /* "alumina, steel" */
 static void list_names(const rg_case *c, char *text, size_t size) {
-    size_t used = (size_t)snprintf(text, size, "names of two materials, or one twice: ");
-    for (int m = 0; m <= c->others && used < size; m++) {
-        used += (size_t)snprintf(text + used, size - used, "%s%s", m > 0 ? ", " : "",
-                                 rg_case_material_name(c, m));
+    const char *join = "names of two materials, or one twice: ";
+    text[0] = '\0';
+    for (int m = 0; m <= c->others; m++) {
+        rg_text_add(text, size, "%s%s", join, rg_case_material_name(c, m));
+        join = ", ";
     }
 }
 

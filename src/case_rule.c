@@ -102,11 +102,11 @@ const char *rg_why_unused(rg_key_group group, const rg_case *c) {
 
 /* "with form intrinsic: free, exponential" */
 static void laws_for(const demand *d, char *text, size_t size) {
-    int used = snprintf(text, size, "with %s:", d->words);
-    const char *join = " ";
-    for (int law = 0; law <= (int)RG_LAWS && (size_t)used < size; law++) {
+    snprintf(text, size, "with %s", d->words);
+    const char *join = ": ";
+    for (int law = 0; law <= (int)RG_LAWS; law++) {
         if (fits(d, (rg_law)law)) {
-            used += snprintf(text + used, size - (size_t)used, "%s%s", join, law_word((rg_law)law));
+            rg_text_add(text, size, "%s%s", join, law_word((rg_law)law));
             join = ", ";
         }
     }

@@ -26,6 +26,14 @@ char *rg_text_format(const char *format, ...) {
     return text;
 }
 
+void rg_text_add(char *text, size_t size, const char *format, ...) {
+    size_t used = strlen(text);
+    va_list args;
+    va_start(args, format);
+    vsnprintf(text + used, size - used, format, args);
+    va_end(args);
+}
+
 rg_node *rg_node_find(const rg_node *mapping, const char *key, size_t length) {
     for (int i = 0; i < mapping->children; i++) {
         const char *name = mapping->child[i].key;

@@ -55,4 +55,7 @@ char *rg_text_copy(const char *text, size_t size);
 /* A new string from a format. Free with rg_free. */
 char *rg_text_format(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
+/* Appends to the string in text[0..size) as much as it has room for. */
+void rg_text_add(char *text, size_t size, const char *format, ...) __attribute__((format(printf, 3, 4)));
+
 #endif
