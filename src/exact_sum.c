@@ -41,13 +41,10 @@ void rg_exact_add(rg_exact_sum *sum, double x) {
 }
 
 void rg_exact_merge(rg_exact_sum *sum, const rg_exact_sum *other) {
-    rg_exact_sum b = *other;
-    carry(sum);
-    carry(&b);
     for (int k = 0; k < RG_EXACT_LIMBS; k++) {
-        sum->limb[k] += b.limb[k];
+        sum->limb[k] += other->limb[k]; /* each below 2^61 */
     }
-    sum->not_finite += b.not_finite;
+    sum->not_finite += other->not_finite;
     carry(sum);
 }
 
@@ -65,14 +62,10 @@ double rg_exact_value(rg_exact_sum *sum) {
         }
         carry(&magnitude);
     }
-    int top = RG_EXACT_LIMBS - 1;
-    while (top > 0 && magnitude.limb[top] == 0) {
-        top--;
-    }
-    /* The three highest limbs hold 65 to 96 bits; the rest only decides a tie and is dropped: the bits are
+    /* What lies below the three highest limbs, 65 to 96 bits, is less than half an ulp and goes. The bits are
      * the same wherever the same sum is formed, which is what counts here. */
     double value = 0;
-    for (int k = top; k >= 0 && k > top - 3; k--) {
+    for (int k = RG_EXACT_LIMBS - 1; k >= 0; k--) {
         value += ldexp((double)magnitude.limb[k], 32 * k - 1074);
     }
     return sign * value;
