@@ -76,26 +76,32 @@ static void merge(void *in, void *inout, int *length, MPI_Datatype *type) {
     }
 }
 
-void rg_faults_agree(const rg_faults *f, MPI_Comm comm) {
+bool rg_faults_gather(const rg_faults *f, rg_faults *all, MPI_Comm comm) {
     int64_t count = f->count;
-    int rank;
     MPI_Allreduce(MPI_IN_PLACE, &count, 1, MPI_INT64_T, MPI_SUM, comm);
     if (count == 0) {
-        return;
+        return false;
     }
-    rg_faults all = *f;
     MPI_Datatype type;
     MPI_Op op;
-    MPI_Comm_rank(comm, &rank);
-    MPI_Type_contiguous(sizeof all, MPI_BYTE, &type);
+    MPI_Type_contiguous(sizeof *all, MPI_BYTE, &type);
     MPI_Type_commit(&type);
     MPI_Op_create(merge, 1, &op);
-    MPI_Reduce(f, &all, 1, type, op, 0, comm);
+    MPI_Reduce(f, all, 1, type, op, 0, comm);
     MPI_Op_free(&op);
     MPI_Type_free(&type);
-    if (rank == 0) {
-        all.name = f->name; /* not another rank's pointer */
-        rg_faults_end(&all);
+    all->name = f->name; /* not another rank's pointer */
+    return true;
+}
+
+void rg_faults_agree(const rg_faults *f, MPI_Comm comm) {
+    rg_faults all = *f;
+    if (rg_faults_gather(f, &all, comm)) {
+        int rank;
+        MPI_Comm_rank(comm, &rank);
+        if (rank == 0) {
+            rg_faults_end(&all);
+        }
+        MPI_Barrier(comm); /* until rank 0 ends the job */
     }
-    MPI_Barrier(comm); /* until rank 0 ends the job */
 }

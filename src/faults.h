@@ -4,6 +4,7 @@
 #define RG_FAULTS_H
 
 #include <mpi.h>
+#include <stdbool.h>
 #include <stdint.h>
 
 enum { RG_FAULTS_TOLD = 10, RG_FAULT_WORDS = 400 };
@@ -29,6 +30,9 @@ void rg_faults_add(rg_faults *f, int64_t key, int64_t second, const char *format
 
 /* The same for words that are dear: where to put them, [RG_FAULT_WORDS]; NULL: they are not wanted. */
 char *rg_faults_place(rg_faults *f, int64_t key, int64_t second);
+
+/* Collective: whether any rank of `comm` has faults; then those of all of them are in *all of rank 0. */
+bool rg_faults_gather(const rg_faults *f, rg_faults *all, MPI_Comm comm);
 
 /* Ends the run (RG_USAGE) with all that was collected, a line each, if anything was: "name: words", then
  * "name: and so many more". The second one is collective and takes what all ranks of `comm` have; the ranks
