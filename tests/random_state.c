@@ -88,7 +88,8 @@ double drawn_heat(uint64_t seed, rg_gid id) {
 
 /* Of four faces one is whole, one has failed, one is held by a point, one has broken points at random. */
 static int kind_of(uint64_t seed, rg_gid face) {
-    return (int)(2 * (drawn(seed, DRAW_BITS, face, 0) + 1));
+    double x = drawn(seed, DRAW_BITS, face, 0);
+    return seed >= RANDOM_DEBRIS && x < 0.6 ? 1 : (int)(2 * (x + 1));
 }
 
 uint8_t drawn_broken(uint64_t seed, rg_gid face) {

@@ -24,6 +24,9 @@ void random_state_free(random_state *r);
  * tells states apart. Collective. */
 void random_state_draw(random_state *r, uint64_t seed);
 
+/* From this seed on most faces have failed, so that the body is debris. */
+enum { RANDOM_DEBRIS = 1000 };
+
 /* What is drawn, in [-1, 1), by the kind of value, an element or face, and a number. */
 typedef enum {
     DRAW_U,

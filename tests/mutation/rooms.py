@@ -32,15 +32,15 @@ ROOMS = {
                test_parallel.py test_restart.py"""),
     "diagnostics": (["src/ledger.*", "src/fragment*", "src/overlap.*", "src/crack_surface.*", "src/state_hash.*", "src/probe.*",
                      "src/autopsy.*"],
-                    """fragment ledger verify test_output.py test_invariance.py test_friction.py test_viscosity.py test_bodies.py
+                    """fragment fragment_twin ledger verify test_output.py test_invariance.py test_friction.py test_viscosity.py test_bodies.py
                     test_ceramic.py test_fragments.py test_ledger.py test_spall.py test_faults.py test_bimaterials.py test_cli.py
                     test_impact.py test_parallel.py test_restart.py"""),
     "output": (["src/snapshot.*", "src/writer.*", "src/xdmf.*", "src/progress.*", "src/summary.*", "src/estimate.*"],
                """writer slab progress xdmf test_output.py test_invariance.py test_spall.py test_cli.py test_bimaterials.py test_fragments.py
                test_faults.py test_parallel.py test_restart.py"""),
     "restart": (["src/checkpoint*", "src/state_table.*", "src/seal.*", "src/restart.*", "src/schedule.*"],
-                """seal slab schedule restart checkpoint_file fuzz-checkpoint test_output.py test_faults.py test_cli.py test_restart.py
-               test_partition.py"""),
+                """seal slab schedule restart checkpoint checkpoint_file fuzz-checkpoint test_output.py test_faults.py test_cli.py
+               test_restart.py test_partition.py"""),
     "verify": (["src/verify*"], "verify test_verify.py"),
     "case": (["src/case*", "src/expr.*"],
              """case case_text case_echo case_ranges case_mistakes numbers strength fuzz-case test_output.py test_laws.py test_bodies.py test_cli.py
