@@ -32,7 +32,7 @@ ROOMS = {
                test_parallel.py test_restart.py"""),
     "diagnostics": (["src/ledger.*", "src/fragment*", "src/overlap.*", "src/crack_surface.*", "src/state_hash.*", "src/probe.*",
                      "src/autopsy.*"],
-                    """fragment fragment_twin ledger verify test_output.py test_invariance.py test_friction.py test_viscosity.py test_bodies.py
+                    """fragment fragment_table fragment_twin ledger probe verify test_output.py test_invariance.py test_friction.py test_viscosity.py test_bodies.py
                     test_ceramic.py test_fragments.py test_ledger.py test_spall.py test_faults.py test_bimaterials.py test_cli.py
                     test_impact.py test_parallel.py test_restart.py"""),
     "output": (["src/snapshot.*", "src/writer.*", "src/xdmf.*", "src/progress.*", "src/summary.*", "src/estimate.*"],
