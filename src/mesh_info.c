@@ -227,12 +227,10 @@ static void print_counts(const rg_mesh *mesh, const struct totals *t, FILE *out)
             box[0][1], box[1][1], box[0][2], box[1][2], t->volume);
 }
 
-static void print_bins(const char *title, const char *unit, double top, int bins, const rg_gid *number,
-                       FILE *out) {
+static void print_bins(const char *title, double top, int bins, const rg_gid *number, FILE *out) {
     fprintf(out, "%s\n", title);
     for (int b = 0; b < bins; b++) {
-        fprintf(out, "  %5.4g .. %-5.4g %s %12" PRId64 "\n", top * b / bins, top * (b + 1) / bins, unit,
-                number[b]);
+        fprintf(out, "  %5.4g .. %-5.4g  %12" PRId64 "\n", top * b / bins, top * (b + 1) / bins, number[b]);
     }
 }
 
@@ -273,11 +271,11 @@ void rg_mesh_info(const rg_mesh *mesh, double speed, FILE *out) {
     print_counts(mesh, &t, out);
     print_parts(mesh, out);
     print_sets(mesh, out);
-    print_bins("quality        3 inradius / circumradius, elements", "", 1, QUALITY_BINS, t.quality, out);
+    print_bins("quality        3 inradius / circumradius, elements", 1, QUALITY_BINS, t.quality, out);
     fprintf(out, "  worst %.4g: element %" PRId64 " (%" PRId64 " in the input)\n", t.worst_quality, t.worst,
             rg_mesh_original(mesh, t.worst));
     print_aspects(mesh, &t, out);
-    print_bins("angles         between faces, degrees", "", 180, ANGLE_BINS, t.angle, out);
+    print_bins("angles         between faces, degrees", 180, ANGLE_BINS, t.angle, out);
     fprintf(out, "  from %.4g to %.4g degrees\n", t.low_angle, t.high_angle);
     print_smallest(mesh, &t, out);
     print_classes(&t, speed, out);
