@@ -10,7 +10,7 @@
 #ifdef RG_SINGLE
 #define TOLERANCE 1e-4
 #else
-#define TOLERANCE 1e-11
+#define TOLERANCE 7e-12
 #endif
 
 #endif

@@ -10,6 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "kernel_input.h"
+#include "figures.h"
 #include "precision.h"
 
 /* All that the kernels write. */
@@ -181,6 +182,10 @@ static double turning(const output *ref) {
     return 1e-3 * largest;
 }
 
+/* Of all that is compared here, in shares of the largest value of its kind. */
+static figure twin = {"kernels of every instruction set against the scalar reference", .bound = TOLERANCE,
+                      .why = ROUNDING};
+
 static void compare_kind(const char *set, int f, size_t kind, const output *out, const output *ref) {
     const size_t rows = fields[f].rows;
     double scale = f == TURN_FIELD ? turning(ref) : 0;
@@ -193,6 +198,8 @@ static void compare_kind(const char *set, int f, size_t kind, const output *out,
                 scale = fmax(scale, fabs(value(ref, f, k)));
             else if (!(fabs(value(out, f, k) - value(ref, f, k)) <= TOLERANCE * scale))
                 fail_at(set, fields[f].name, k, value(out, f, k), value(ref, f, k));
+            else if (scale > 0)
+                raise_figure(&twin, value(out, f, k), value(ref, f, k), scale);
         }
 }
 
@@ -552,6 +559,11 @@ static void test_other_solids(void **state) {
     assert_true(solids >= 4);
 }
 
+static void test_worst(void **state) {
+    (void)state;
+    assert_true(twin.found > 0 && state_figure(twin));
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_against_reference),
@@ -564,6 +576,7 @@ int main(void) {
         cmocka_unit_test(test_inverted),
         cmocka_unit_test(test_unbreakable),
         cmocka_unit_test(test_other_solids),
+        cmocka_unit_test(test_worst),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
