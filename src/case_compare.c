@@ -59,7 +59,7 @@ static const char *find_line(const char *text, const char *line) {
     size_t key = key_length(line) + 1;
     while (text != NULL && strncmp(text, line, key) != 0) {
         text = strchr(text, '\n');
-        text = text == NULL || text[1] == '\0' ? NULL : text + 1;
+        text = text == NULL ? NULL : text + 1;
     }
     return text;
 }

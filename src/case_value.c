@@ -115,10 +115,10 @@ static bool read_numbers(rg_check *ck, const rg_key *key, const rg_node *node, c
 
 /* ---- words ---- */
 
-/* YAML takes plain true, 12 or nothing for a truth value, a number or null. */
+/* YAML takes plain true, 12 or ~ for a truth value, a number or null. */
 static const char *not_a_text(const rg_node *node) {
     bool integer = false;
-    if (node->kind != RG_NODE_SCALAR || node->text[0] == '\0') {
+    if (node->kind != RG_NODE_SCALAR || rg_node_is_null(node) || node->text[0] == '\0') {
         return "not a text";
     }
     bool truth = strcmp(node->text, "true") == 0 || strcmp(node->text, "false") == 0;
@@ -172,16 +172,15 @@ static bool read_flags(rg_check *ck, const rg_key *key, const rg_node *node, con
 }
 
 static bool read_text(rg_check *ck, const rg_key *key, const rg_node *node, const char *path, void *value) {
+    rg_key any = *key;
+    any.choice = NULL;
     if (key->choice != NULL && ck->usage[RG_GROUP_BOX] != RG_UNUSED) { /* the file's sets are its own */
         if (read_choice(ck, key, node, path) < 0) {
             return false;
         }
-    } else {
-        const char *wrong = not_a_text(node);
-        if (wrong != NULL) {
-            rg_value_wrong(ck, key, node, path, NULL, wrong);
-            return false;
-        }
+    } else if (not_a_text(node) != NULL) {
+        rg_value_wrong(ck, &any, node, path, NULL, not_a_text(node));
+        return false;
     }
     rg_pointer_set(value, rg_text_copy(node->text, strlen(node->text)));
     return true;

@@ -15,6 +15,7 @@
 #include <cmocka.h>
 
 #include "../src/case.h"
+#include "../src/mem.h"
 
 /* The smallest case; the tests of mistakes change one place of it and know its lines and columns. */
 static const char base[] = "mesh:\n"
@@ -98,10 +99,24 @@ static inline void expect_messages(int overrides, const char *const override[], 
         snprintf(expected + used, sizeof expected - used, "%s%.*s", *line == ':' ? path : "", length, line);
         line += length;
     }
+    size_t before = rg_alloc_total();
     rg_case *c = read_case(path, overrides, override, &messages);
     assert_string_equal(messages, expected);
     assert_null(c);
+    assert_int_equal(rg_alloc_total(), before);
     free(messages);
+}
+
+/* A change of the base case, as in write_changed, and what is said of it. */
+typedef struct {
+    const char *from, *to, *messages;
+} mistake;
+
+static inline void expect_mistakes(const mistake *list, size_t count) {
+    for (size_t i = 0; i < count; i++) {
+        write_changed(list[i].from, list[i].to);
+        expect_messages(0, NULL, list[i].messages);
+    }
 }
 
 /* Of the ceramic's table, with the constants that the base case has; in place of `elastic`. */

@@ -18,6 +18,7 @@ static char *echo_of(const rg_case *c) {
 
 /* Expects the echo of case `text` with `count` overrides, and that it reads back to itself. */
 static void expect_echo(const char *text, int count, const char *const set[], const char *expected) {
+    size_t before = rg_alloc_total();
     for (int again = 0; again < 2; again++) {
         rg_case *c = again ? rg_case_read_text("a/m.yaml", expected, strlen(expected), 0, NULL, stderr)
                            : rg_case_read_text("a/m.yaml", text, strlen(text), count, set, stderr);
@@ -26,6 +27,7 @@ static void expect_echo(const char *text, int count, const char *const set[], co
         assert_string_equal(found, expected);
         free(found);
         rg_case_free(c);
+        assert_int_equal(rg_alloc_total(), before);
     }
 }
 

@@ -181,7 +181,7 @@ static void test_numbers(void **state) {
 }
 
 static rg_expr *expression(const char *text) {
-    char *message = NULL;
+    char before = 'x', *message = &before;
     rg_expr *e = rg_expr_new(text, &message);
     if (e == NULL) {
         fail_msg("%s: %s", text, message);

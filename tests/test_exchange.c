@@ -157,27 +157,49 @@ static bool kept(const rg_faults *f, int count, const int keys[][2], const char 
     return good;
 }
 
-/* 23 of them in a scrambled order: the lowest ten stay, sorted by both keys. */
+/* Keys of fault k of `total`, in no order; distinct. */
+static void key_of(int k, int total, int key[2]) {
+    key[0] = k % 3 - 1;
+    key[1] = 5 * k % total - total / 2;
+}
+
+/* Those of all of them, sorted. */
+static void sorted_keys(int total, int keys[][2]) {
+    for (int k = 0; k < total; k++) {
+        int key[2], at = k;
+        key_of(k, total, key);
+        for (;
+             at > 0 && (keys[at - 1][0] > key[0] || (keys[at - 1][0] == key[0] && keys[at - 1][1] > key[1]));
+             at--) {
+            memcpy(keys[at], keys[at - 1], sizeof key);
+        }
+        memcpy(keys[at], key, sizeof key);
+    }
+}
+
+/* The lowest ten stay, in order; one says where its words go, or that they are not wanted. */
 static void test_faults_of_one(void) {
+    enum { TOTAL = 23 };
     rg_faults f = {.name = "f"};
-    int keys[10][2];
-    bool wanted = true;
-    for (int n = 0; n < 23; n++) {
-        int k = n * 7 % 23;
-        rg_faults_add(&f, k / 2, 5 - k % 2, "fault %d %d", k / 2, 5 - k % 2);
+    int keys[TOTAL][2];
+    sorted_keys(TOTAL, keys);
+    for (int k = 0; k < TOTAL; k++) {
+        int key[2];
+        key_of(k, TOTAL, key);
+        rg_faults_add(&f, key[0], key[1], "fault %d %d", key[0], key[1]);
     }
-    for (int n = 0; n < 10; n++) {
-        keys[n][0] = n / 2;
-        keys[n][1] = 4 + n % 2;
-    }
-    report(f.count == 23 && kept(&f, 10, (const int(*)[2])keys, "fault"), "faults",
+    report(f.count == TOTAL && kept(&f, RG_FAULTS_TOLD, (const int(*)[2])keys, "fault"), "faults",
            "the lowest ones are kept");
-    wanted = rg_faults_place(&f, 4, 6) == NULL && f.count == 24;
-    char *words = rg_faults_place(&f, 4, 3); /* in place of the last two */
-    report(wanted && words == f.fault[8].words && f.fault[8].key[1] == 3 && f.fault[9].key[1] == 4 &&
-               f.count == 25,
-           "faults", "one says where its words go, or that they are not wanted");
-    rg_faults_add(&f, -1, 0, "%0500d", 7);
+    const int64_t *last = f.fault[9].key, *third = f.fault[2].key;
+    bool good = rg_faults_place(&f, last[0], last[1] + 1) == NULL && f.count == TOTAL + 1;
+    char *words = rg_faults_place(&f, third[0], third[1] - 1);
+    good = good && words == f.fault[2].words && f.count == TOTAL + 2 && f.kept == RG_FAULTS_TOLD;
+    good = good && f.fault[2].key[0] == keys[2][0] && f.fault[2].key[1] == keys[2][1] - 1;
+    for (int k = 3; k < RG_FAULTS_TOLD; k++) {
+        good = good && f.fault[k].key[0] == keys[k - 1][0] && f.fault[k].key[1] == keys[k - 1][1];
+    }
+    report(good, "faults", "a low one takes its place, and the last one goes");
+    rg_faults_add(&f, -9, 0, "%0500d", 7);
     report(strlen(f.fault[0].words) == RG_FAULT_WORDS - 1, "faults", "long words are cut");
 }
 
@@ -185,21 +207,17 @@ static void test_faults_of_one(void) {
 static void test_faults_of_all(int total, int told) {
     rg_faults f = {.name = rank == 0 ? "zero" : "other"}, all = {0};
     int64_t brought = 0;
-    int keys[10][2];
+    int keys[32][2];
+    sorted_keys(total, keys);
     for (int n = 0; n < total; n++) {
-        int k = n * 3 % total;
+        int k = n * 3 % total, key[2];
+        key_of(k, total, key);
         for (int r = 0; r < ranks; r++) {
             bool once = k % ranks == r || (2 * k + 1) % ranks == r;
             brought += once;
             if (once && r == rank) {
-                rg_faults_add(&f, k % 3, k, "of all %d %d", k % 3, k);
+                rg_faults_add(&f, key[0], key[1], "of all %d %d", key[0], key[1]);
             }
-        }
-    }
-    for (int n = 0, k = 0; k < 3; k++) {
-        for (int m = k; m < total && n < told; m += 3, n++) {
-            keys[n][0] = k;
-            keys[n][1] = m;
         }
     }
     bool good = rg_faults_gather(&f, &all, MPI_COMM_WORLD);
@@ -244,7 +262,7 @@ int main(int argc, char **argv) {
     test_sums();
     test_spots();
     test_faults_of_one();
-    test_faults_of_all(RG_FAULTS_TOLD, RG_FAULTS_TOLD);
+    test_faults_of_all(8, 8);
     test_faults_of_all(7, 7);
     test_faults_of_all(29, RG_FAULTS_TOLD);
     test_no_faults();

@@ -18,6 +18,7 @@
 
 #include "child.h"
 #include "error.h"
+#include "faults.h"
 #include "files.h"
 #include "mem.h"
 
@@ -73,6 +74,33 @@ static void test_fatal(void **state) {
     expect_end(end_with_words, 7, "rhegma: warning: a warning of 3\nrhegma: 5 and text\n");
     expect_file("out", "said before");
     remove("out");
+}
+
+static void end_with_faults(void) {
+    rg_faults none = {.name = "none"}, f = {.name = "a.inp"};
+    rg_faults_end(&none); /* goes on */
+    rg_faults_add(&f, 2, 0, "the second");
+    rg_faults_add(&f, 1, 0, "the first, %d", 1);
+    rg_faults_end(&f);
+}
+
+static void end_with_many_faults(void) {
+    rg_faults f = {.name = "b"};
+    for (int i = 0; i < 12; i++) {
+        rg_faults_add(&f, i, 0, "%0600d", i); /* cut */
+    }
+    rg_faults_agree(&f, MPI_COMM_SELF);
+}
+
+static void test_faults(void **state) {
+    (void)state;
+    expect_end(end_with_faults, RG_USAGE, "rhegma: a.inp: the first, 1\nrhegma: a.inp: the second\n");
+    char expected[8192] = "";
+    for (size_t i = 0, used = 0; i < 10; i++) {
+        used += (size_t)snprintf(expected + used, sizeof expected - used, "rhegma: b: %0399d\n", 0);
+    }
+    snprintf(expected + strlen(expected), 64, "rhegma: b: and 2 more\n");
+    expect_end(end_with_many_faults, RG_USAGE, expected);
 }
 
 /* ---- memory ---- */
@@ -540,13 +568,14 @@ static void test_busy_table(void **state) {
 
 int main(int argc, char **argv) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_fatal),          cmocka_unit_test(test_memory),
-        cmocka_unit_test(test_out_of_memory),  cmocka_unit_test(test_directories),
-        cmocka_unit_test(test_input),          cmocka_unit_test(test_sync),
-        cmocka_unit_test(test_open_and_close), cmocka_unit_test(test_reopen),
-        cmocka_unit_test(test_removing),       cmocka_unit_test(test_own_case),
-        cmocka_unit_test(test_echo),           cmocka_unit_test(test_table),
-        cmocka_unit_test(test_energy_table),   cmocka_unit_test(test_busy_table),
+        cmocka_unit_test(test_fatal),       cmocka_unit_test(test_faults),
+        cmocka_unit_test(test_memory),      cmocka_unit_test(test_out_of_memory),
+        cmocka_unit_test(test_directories), cmocka_unit_test(test_input),
+        cmocka_unit_test(test_sync),        cmocka_unit_test(test_open_and_close),
+        cmocka_unit_test(test_reopen),      cmocka_unit_test(test_removing),
+        cmocka_unit_test(test_own_case),    cmocka_unit_test(test_echo),
+        cmocka_unit_test(test_table),       cmocka_unit_test(test_energy_table),
+        cmocka_unit_test(test_busy_table),
     };
     MPI_Init(&argc, &argv);
     int failed = cmocka_run_group_tests(tests, set_up, tear_down);

@@ -43,7 +43,7 @@ ROOMS = {
                test_restart.py test_partition.py"""),
     "verify": (["src/verify*"], "verify test_verify.py"),
     "case": (["src/case*", "src/expr.*"],
-             """case case_text case_echo case_ranges case_mistakes numbers strength fuzz-case test_output.py test_laws.py test_bodies.py test_cli.py
+             """case case_text case_echo case_ranges case_rules case_values case_mistakes numbers strength fuzz-case test_output.py test_laws.py test_bodies.py test_cli.py
              test_bimaterials.py test_continuous.py test_restart.py"""),
     "base": (["src/*"],
              """numbers exchange files slab seal writer fragment verify test_output.py test_mesh_faults.py test_faults.py test_cli.py
