@@ -32,23 +32,21 @@ static cpu_set_t rank_mask(void) {
     return all;
 }
 
-/* "0-3,8" */
-static void list_cpus(const cpu_set_t *mask, char text[TEXT]) {
+void rg_affinity_list(const bool *allowed, int count, char *text, size_t size) {
     size_t used = 0;
     text[0] = '\0';
-    for (int begin = 0; begin < CPU_SETSIZE && used + 16 < TEXT; begin++) {
-        if (!CPU_ISSET((size_t)begin, mask)) {
-            continue;
-        }
+    for (int begin = 0; begin < count && used + 16 < size; begin++) {
         int end = begin;
-        while (end + 1 < CPU_SETSIZE && CPU_ISSET((size_t)end + 1, mask)) {
+        while (end < count && allowed[end]) {
             end++;
         }
-        const char *comma = used > 0 ? "," : "";
-        int n = end > begin ? snprintf(text + used, TEXT - used, "%s%d-%d", comma, begin, end)
-                            : snprintf(text + used, TEXT - used, "%s%d", comma, begin);
-        used += (size_t)n;
-        begin = end;
+        if (end > begin) {
+            const char *comma = used > 0 ? "," : "";
+            int n = end > begin + 1 ? snprintf(text + used, size - used, "%s%d-%d", comma, begin, end - 1)
+                                    : snprintf(text + used, size - used, "%s%d", comma, begin);
+            used += (size_t)n;
+            begin = end;
+        }
     }
 }
 
@@ -63,7 +61,11 @@ static placement place(MPI_Comm comm) {
     p.allowed = CPU_COUNT(&mask);
     p.host_cpus = CPU_COUNT(&all);
     gethostname(p.host, HOST - 1);
-    list_cpus(&mask, p.cpus);
+    bool allowed[CPU_SETSIZE];
+    for (size_t i = 0; i < CPU_SETSIZE; i++) {
+        allowed[i] = CPU_ISSET(i, &mask);
+    }
+    rg_affinity_list(allowed, CPU_SETSIZE, p.cpus, TEXT);
     return p;
 }
 
