@@ -74,12 +74,13 @@ double drawn_now(uint64_t seed, rg_gid id, int node, int component) {
     return narrow(20 * drawn(seed, DRAW_NOW, id, 3 * node + component) + 5 * component - 7);
 }
 
-double drawn_history(uint64_t seed, rg_gid id, int row) {
+/* Histories end with the six components of the plastic flow; what stands before them is not negative. */
+double drawn_history(uint64_t seed, rg_gid id, int values, int row) {
     double x = drawn(seed, DRAW_HISTORY, id, row);
-    if (row >= RG_GAUSS * RG_J2_HISTORY) {
+    if (row >= RG_GAUSS * values) {
         return narrow(1e-5 * (1.5 + x)); /* set free (J) */
     }
-    return narrow(row % RG_J2_HISTORY == RG_J2_STRAIN ? 0.02 * (1.1 + x) : 2e-3 * x);
+    return narrow(row % values < values - 6 ? 0.02 * (1.1 + x) : 2e-3 * x);
 }
 
 double drawn_heat(uint64_t seed, rg_gid id) {
@@ -138,10 +139,10 @@ static void draw_element(rg_solver *s, size_t slot, uint64_t seed) {
         s->now[at] = (rg_real)drawn_now(seed, id, k / 3, k % 3);
         s->velocity[at] = (rg_real)(20 * drawn(seed, DRAW_VELOCITY, id, k));
     }
-    int rows = (int)rg_history_rows(rg_material_history(rg_material_of(s, slot)->model));
+    int values = rg_material_history(rg_material_of(s, slot)->model), rows = (int)rg_history_rows(values);
     for (int row = 0; row < rows; row++) {
         s->history[rg_history_index(slot, s->history_stride, (size_t)row)] =
-            (rg_real)drawn_history(seed, id, row);
+            (rg_real)drawn_history(seed, id, values, row);
     }
     if (s->heat != NULL) {
         s->heat[slot] = drawn_heat(seed, id);

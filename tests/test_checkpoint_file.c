@@ -3,6 +3,7 @@
  * rank 0. */
 #include "../src/checkpoint.h"
 
+#include <errno.h>
 #include <hdf5.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -24,7 +25,7 @@
 
 enum { STEEL_ROWS = RG_GAUSS * RG_J2_HISTORY + RG_RELEASED, WINDOW = 7 };
 
-/* ---- stand-ins: the end of the run, warnings, small windows ---- */
+/* ---- stand-ins: the end of the run, warnings, small windows, disks that fail ---- */
 
 static jmp_buf escape;
 static bool expect_fatal;
@@ -53,6 +54,22 @@ void rg_warn(const char *format, ...) {
 }
 
 size_t __wrap_rg_slab_window(size_t bytes);
+
+static bool seal_fails, sync_fails;
+bool __wrap_rg_seal_put(const char *path, int64_t step, MPI_Comm comm);
+bool __real_rg_seal_put(const char *path, int64_t step, MPI_Comm comm);
+bool __wrap_rg_sync_folder(const char *path);
+bool __real_rg_sync_folder(const char *path);
+
+bool __wrap_rg_seal_put(const char *path, int64_t step, MPI_Comm comm) {
+    errno = EIO;
+    return !seal_fails && __real_rg_seal_put(path, step, comm);
+}
+
+bool __wrap_rg_sync_folder(const char *path) {
+    errno = EIO;
+    return !sync_fails && __real_rg_sync_folder(path);
+}
 
 size_t __wrap_rg_slab_window(size_t bytes) {
     (void)bytes;
@@ -282,7 +299,7 @@ static bool elements_good(hid_t file, const run *x, uint64_t seed) {
             good = good && u[30 * id + k] == drawn_u(seed, id, k / 3, k % 3);
         }
         for (int row = 0; row < STEEL_ROWS && mesh_material(&x->r, id) == 1; row++) {
-            good = good && history[STEEL_ROWS * id + row] == drawn_history(seed, id, row);
+            good = good && history[STEEL_ROWS * id + row] == drawn_history(seed, id, RG_J2_HISTORY, row);
         }
         good = good && heat[id] == drawn_heat(seed, id);
     }
@@ -658,6 +675,36 @@ static bool check_older(run *x) {
     return good;
 }
 
+/* Whether writing ends the run with these words, and which checkpoints are there then. */
+static bool write_fails(run *x, const char *words, const char *names) {
+    said[0] = '\0';
+    fatal_status = RG_OK;
+    expect_fatal = true;
+    if (setjmp(escape) == 0) {
+        rg_checkpoint_write(&x->k, 1);
+    }
+    expect_fatal = false;
+    return good_of(
+        fatal_status == RG_FAILURE && strstr(said, words) != NULL && names_are(in("failing"), names), words);
+}
+
+/* The checkpoint before stays. */
+static bool check_failures(run *x) {
+    point_to(x, in("failing"));
+    draw(x, 1);
+    rg_checkpoint_write(&x->k, 1);
+    draw(x, 2);
+    seal_fails = true;
+    bool good = write_fails(x, "step-000000000102.h5: cannot seal the file: Input/output error", "101 ");
+    seal_fails = false;
+    sync_fails = true;
+    good = write_fails(x, "failing/checkpoints: cannot bring the folder to the disk: Input/output error",
+                       "101 102 ") &&
+           good;
+    sync_fails = false;
+    return good;
+}
+
 static bool check_none(run *x) {
     point_to(x, in("nowhere"));
     bool good = good_of(
@@ -709,7 +756,7 @@ static bool check_mesh_hash(run *x) {
 }
 
 static void check_refusals(void) {
-    bool tampered = true, older = true, none = true, hash = true;
+    bool tampered = true, older = true, none = true, failing = true, hash = true;
     if (rank == 0) {
         run *x = make_run(in("good"), 0, NULL, MPI_COMM_SELF);
         draw(x, 7);
@@ -717,6 +764,7 @@ static void check_refusals(void) {
         tampered = check_tampers(x);
         older = check_older(x);
         none = check_none(x);
+        failing = check_failures(x);
         hash = check_mesh_hash(x);
         free_run(x);
         warnings = 0;
@@ -724,6 +772,7 @@ static void check_refusals(void) {
     report(tampered, "refused", "files that hold something else");
     report(older, "refused", "files that are damaged");
     report(none, "refused", "no files");
+    report(failing, "failed", "disks that cannot take a checkpoint");
     report(hash, "mesh", "its hash");
 }
 

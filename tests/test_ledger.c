@@ -128,8 +128,10 @@ static sums add_up(const random_state *r) {
     for (rg_gid id = 0; id < r->mesh->elements; id++) {
         sum.heat += drawn_heat(SEED, id);
         if (mesh_material(r, id) == 1) {
-            sum.plastic += drawn_history(SEED, id, RG_GAUSS * RG_J2_HISTORY + RG_RELEASED_PLASTIC);
-            sum.damage += drawn_history(SEED, id, RG_GAUSS * RG_J2_HISTORY + RG_RELEASED_DAMAGE);
+            sum.plastic +=
+                drawn_history(SEED, id, RG_J2_HISTORY, RG_GAUSS * RG_J2_HISTORY + RG_RELEASED_PLASTIC);
+            sum.damage +=
+                drawn_history(SEED, id, RG_J2_HISTORY, RG_GAUSS * RG_J2_HISTORY + RG_RELEASED_DAMAGE);
         }
         for (int f = 0; f < 4; f++) {
             if (r->mesh->neighbour[4 * id + f] > id) {
