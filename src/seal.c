@@ -66,8 +66,7 @@ static bool sum_parts(int file, int64_t bytes, int rank, int ranks, uint64_t *su
     int failed = -1; /* errno of a thread, 0 included */
 #pragma omp parallel reduction(+ : all) reduction(max : failed)
     {
-        int64_t most = bytes - RG_SEAL < PART ? bytes - RG_SEAL : PART;
-        uint64_t *data = RG_NEW(uint64_t, (size_t)most / sizeof(uint64_t) + 1), hash;
+        uint64_t *data = RG_NEW(uint64_t, PART / sizeof(uint64_t)), hash;
 #pragma omp for schedule(static)
         for (int64_t p = rank; p < parts; p += ranks) {
             if (hash_part(file, bytes, p, data, &hash)) {

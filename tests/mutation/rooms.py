@@ -36,7 +36,8 @@ ROOMS = {
                     test_ceramic.py test_fragments.py test_ledger.py test_spall.py test_faults.py test_bimaterials.py test_cli.py
                     test_impact.py test_parallel.py test_restart.py"""),
     "output": (["src/snapshot.*", "src/writer.*", "src/xdmf.*", "src/progress.*", "src/summary.*", "src/estimate.*"],
-               """writer slab progress snapshot xdmf test_output.py test_invariance.py test_spall.py test_cli.py test_bimaterials.py
+               """writer slab estimate progress snapshot summary xdmf test_output.py test_invariance.py test_spall.py test_cli.py
+               test_bimaterials.py
                test_fragments.py test_faults.py test_parallel.py test_restart.py"""),
     "restart": (["src/checkpoint*", "src/state_table.*", "src/seal.*", "src/restart.*", "src/schedule.*"],
                 """seal slab schedule restart checkpoint checkpoint_file fuzz-checkpoint test_output.py test_faults.py test_cli.py
