@@ -11,7 +11,7 @@
 #include "hash.h"
 #include "mem.h"
 
-enum { PART = 1 << 20, LANES = 4 };
+enum { WORDS = 1 << 17, PART = 8 * WORDS, LANES = 4 }; /* of a part, its bytes */
 
 /* Hash of words in LANES chains, which the processor follows at once. */
 static uint64_t hash_words(uint64_t seed, const uint64_t *word, size_t words) {
@@ -66,7 +66,7 @@ static bool sum_parts(int file, int64_t bytes, int rank, int ranks, uint64_t *su
     int failed = -1; /* errno of a thread, 0 included */
 #pragma omp parallel reduction(+ : all) reduction(max : failed)
     {
-        uint64_t *data = RG_NEW(uint64_t, PART / sizeof(uint64_t)), hash;
+        uint64_t *data = RG_NEW(uint64_t, WORDS), hash;
 #pragma omp for schedule(static)
         for (int64_t p = rank; p < parts; p += ranks) {
             if (hash_part(file, bytes, p, data, &hash)) {
