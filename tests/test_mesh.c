@@ -516,7 +516,7 @@ static void test_partition_balance(void **state) {
     rg_mesh *m = rg_mesh_box(n, origin, size, 0, 0);
     const int tiles[] = {1, 8, 40, rg_tile_elements(m->elements)};
     for (size_t k = 0; k < sizeof tiles / sizeof tiles[0]; k++) {
-        for (int parts = 1; parts <= 16; parts++) {
+        for (int parts = 1; parts <= 16; parts += parts < 4 ? 1 : 4) {
             check_partition(m, tiles[k], parts);
         }
     }

@@ -14,11 +14,12 @@ ROOMS = {
                     "mesh mesh_file inp import fuzz-inp test_mesh_faults.py test_meshes.py"),
     "mesh/improve": (["src/improve*"], "improve test_meshes.py"),
     "mesh": (["src/mesh.*", "src/mesh_[fhiocr]*", "src/box.*", "src/gid_map.*", "src/tile_graph.*"],
-             """mesh mesh_check mesh_command mesh_damage mesh_info mesh_file part part_read domain fuzz-mesh test_mesh_faults.py test_meshes.py test_invariance.py
+             """mesh mesh_check mesh_command mesh_damage mesh_info mesh_file tiles part part_read domain
+             fuzz-mesh test_mesh_faults.py test_meshes.py test_invariance.py
              test_partition.py test_cli.py"""),
     "partition": (["src/partition.*", "src/tile_weight.*", "src/deal.*", "src/part.*", "src/part_*", "src/mesh_case.*",
                    "src/material.*", "src/material_map.*", "src/patch.*"],
-                  """part part_read patch material verify test_mesh_faults.py test_bimaterials.py test_partition.py test_meshes.py
+                  """tiles part part_read patch material verify test_mesh_faults.py test_bimaterials.py test_partition.py test_meshes.py
                   test_cli.py test_continuous.py test_parallel.py"""),
     "domain": (["src/domain.*", "src/interfaces.*", "src/element.*", "src/halo.*", "src/joint.*", "src/assembly*", "src/slab.*",
                 "src/sparse.*"],
