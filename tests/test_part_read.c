@@ -23,13 +23,16 @@ static const struct box {
     {"bar", {3, 3, 30}, {-0.2e-3, -0.2e-3, -2e-3}, {0.4e-3, 0.4e-3, 4e-3}, 0.12},
     {"block", {24, 22, 27}, {1, 2, 3}, {1.6, 1.2, 2.0}, 0.1}, /* more tiles than are read at once */
 };
-enum { BOXES = sizeof boxes / sizeof boxes[0], CHECKS = 5 };
+enum { BOXES = sizeof boxes / sizeof boxes[0], CHECKS = 8 };
 
 static bool same_counts(const rg_part *a, const rg_part *b) {
     bool good = a->total == b->total && a->interfaces == b->interfaces && a->tile == b->tile &&
                 a->sets == b->sets && memcmp(a->box, b->box, sizeof a->box) == 0;
     for (int s = 0; good && s < a->sets; s++) {
         good = strcmp(a->set_name[s], b->set_name[s]) == 0;
+    }
+    for (int r = 0; good && r < 2; r++) {
+        good = a->regions == 2 && b->regions == 2 && strcmp(a->region_name[r], b->region_name[r]) == 0;
     }
     return good;
 }
@@ -107,8 +110,51 @@ static void write_silly(int64_t tiles) {
     rg_free(owner);
 }
 
-static void check_box(const struct box *b) {
+/* A box of which each third element is in no volume set. */
+static rg_mesh *make_mesh(const struct box *b) {
     rg_mesh *mesh = rg_mesh_box(b->cells, b->origin, b->size, b->jitter, 5);
+    mesh->region = RG_NEW(int8_t, (size_t)mesh->elements);
+    mesh->regions = 2;
+    for (int r = 0; r < 2; r++) {
+        mesh->region_name[r] = RG_NEW(char, 8);
+        strcpy(mesh->region_name[r], r == 0 ? "core" : "shell");
+    }
+    for (rg_gid e = 0; e < mesh->elements; e++) {
+        mesh->region[e] = (int8_t)(e % 3 - 1);
+        mesh->original[e] = 2 * mesh->original[e] + 7;
+    }
+    return mesh;
+}
+
+/* Costs that rise along the curve; taken over by who partitions. */
+static double *make_weights(const rg_mesh *mesh, int tile) {
+    size_t tiles = (size_t)((mesh->elements + tile - 1) / tile);
+    double *weight = rank == 0 ? RG_NEW(double, tiles) : NULL;
+    for (size_t t = 0; rank == 0 && t < tiles; t++) {
+        weight[t] = 1 + 4.0 * (double)t / (double)tiles;
+    }
+    return weight;
+}
+
+static void check_weights(const struct box *b, const rg_mesh *mesh, int tile) {
+    double *weight = make_weights(mesh, tile);
+    rg_part *given = rg_part_distribute_weighted(rank == 0 ? mesh : NULL, tile, weight, MPI_COMM_WORLD);
+    rg_part *read =
+        rg_part_read(path, make_weights(mesh, tile), MPI_COMM_WORLD); /* the stored partition knows of none */
+    report(same_part(read, given), b->name, "parts by weight have the bits of those that rank 0 deals out");
+    const rg_partition_quality *q = &read->quality;
+    const rg_partition_quality *other = &given->quality;
+    report(q->imbalance == other->imbalance && q->cost_imbalance == other->cost_imbalance &&
+               q->cut_faces == other->cut_faces && q->neighbours_max == other->neighbours_max &&
+               q->neighbours_mean == other->neighbours_mean,
+           b->name, "the same quality");
+    report(mesh->elements < 1000 || q->cost_imbalance < 1.1, b->name, "the costs are balanced");
+    rg_part_free(given);
+    rg_part_free(read);
+}
+
+static void check_box(const struct box *b) {
+    rg_mesh *mesh = make_mesh(b);
     int tile = rg_tile_elements(mesh->elements);
     if (rank == 0) {
         rg_mesh_file_write(path, mesh, 0, NULL);
@@ -130,6 +176,7 @@ static void check_box(const struct box *b) {
     report(quality_right(read), b->name, "its quality");
     rg_part_free(read);
     rg_part_free(alone);
+    check_weights(b, mesh, tile);
     rg_mesh_free(mesh);
 }
 

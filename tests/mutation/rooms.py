@@ -19,7 +19,7 @@ ROOMS = {
              test_partition.py test_cli.py"""),
     "partition": (["src/partition.*", "src/tile_weight.*", "src/deal.*", "src/part.*", "src/part_*", "src/mesh_case.*",
                    "src/material.*", "src/material_map.*", "src/patch.*"],
-                  """tiles part part_read patch material verify test_mesh_faults.py test_bimaterials.py test_partition.py test_meshes.py
+                  """tiles part part_read patch material materials material_map verify test_mesh_faults.py test_bimaterials.py test_partition.py test_meshes.py
                   test_cli.py test_continuous.py test_parallel.py"""),
     "domain": (["src/domain.*", "src/interfaces.*", "src/element.*", "src/halo.*", "src/joint.*", "src/assembly*", "src/slab.*",
                 "src/sparse.*"],
