@@ -1,13 +1,12 @@
 """Pictures of a record of perf/simulate: model as lines, simulated as open points, measured as full ones."""
 
-import matplotlib
+from drawing import plt, save  # of bench/, whose folder perf/simulate adds to the path
 
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
+__all__ = ["draw", "save"]
 
-# Thesis, Figure 5-18: 223,394 tets on cores of 7.2 GF/s. Of its scan only the axis can be read; the curve starts at 16
+# Thesis, Figure 5-18, on cores of 7.2 GF/s. Of its scan only the axis can be read; the curve starts at 16
 # cores at about 1.8 s.
-THESIS = {"cores": 16, "seconds": 1.8, "most": 48}
+THESIS = {"tets": 223_394, "cores": 16, "seconds": 1.8, "most": 48}
 STYLE = {"tree": ("C0", "100 Gb/s fat tree"), "ethernet": ("C1", "10 Gb/s Ethernet")}
 
 
@@ -20,7 +19,7 @@ def modelled(p):
     return p["model"]["step_s"]
 
 
-def draw(axis, rows, value, color, label):
+def draw_study(axis, rows, value, color, label):
     """value(point, seconds of a step)."""
     axis.plot([p["cores"] for p in rows], [value(p, modelled(p)) for p in rows], color=color, lw=1, label=f"{label}, model")
     simulated = [p for p in rows if "simulated_s" in p]
@@ -33,10 +32,13 @@ def plot_thesis(axis, record):
     axis.plot(cores, [THESIS["seconds"] * THESIS["cores"] / n for n in cores], "k:", lw=1, label="thesis, linear from there")
     axis.plot(cores[:1], [THESIS["seconds"]], "ks", label="thesis, Fig. 5-18, read off")
     for network, (color, label) in STYLE.items():
-        draw(axis, points_of(record, "thesis mesh", network), lambda _, seconds: seconds, color, label)
-    measured = [c for c in record["checks"] if c["tets"] > 150_000]
-    axis.plot([c["ranks"] for c in measured], [c["measured_s"] for c in measured], "r^", label="measured, 202,500 tets")
-    axis.set(xscale="log", yscale="log", xlabel="cores", ylabel="time per step (s)", title="224,100 tets (thesis: 223,394)")
+        draw_study(axis, points_of(record, "thesis mesh", network), lambda _, seconds: seconds, color, label)
+    largest = max(c["tets"] for c in record["checks"])
+    measured = [c for c in record["checks"] if c["tets"] == largest]
+    axis.plot([c["ranks"] for c in measured], [c["measured_s"] for c in measured], "r^", label=f"measured, {largest:,} tets")
+    tets = points_of(record, "thesis mesh", "tree")[0]["tets"]
+    axis.set(xscale="log", yscale="log", xlabel="cores", ylabel="time per step (s)",
+             title=f"{tets:,} tets (thesis: {THESIS['tets']:,})")
 
 
 def share_of_sweeps(p, seconds):
@@ -46,7 +48,7 @@ def share_of_sweeps(p, seconds):
 def plot_strong(axis, record):
     for study, shade in (("strong, 1 million", 0), ("strong, 10 million", 2), ("strong, 10 million, 16 threads", 4)):
         for k, (network, (_, label)) in enumerate(STYLE.items()):
-            draw(axis, points_of(record, study, network), share_of_sweeps, f"C{shade + k}", f"{study[8:]}, {label}")
+            draw_study(axis, points_of(record, study, network), share_of_sweeps, f"C{shade + k}", f"{study[8:]}, {label}")
     axis.axhline(0.8, color="k", lw=0.5, ls=":")
     axis.set(xscale="log", xlabel="cores", ylabel="sweeps / time of the step", ylim=(0, 1.05), title="strong scaling")
 
@@ -54,18 +56,18 @@ def plot_strong(axis, record):
 def plot_weak(axis, record):
     for study, shade in (("weak", 0), ("weak, 16 threads", 4)):
         for k, (network, (_, label)) in enumerate(STYLE.items()):
-            draw(axis, points_of(record, study, network), share_of_sweeps, f"C{shade + k}", f"{study[6:] or '1 thread'}, {label}")
+            draw_study(axis, points_of(record, study, network), share_of_sweeps, f"C{shade + k}", f"{study[6:] or '1 thread'}, {label}")
     axis.axhline(0.95, color="k", lw=0.5, ls=":")
     axis.set(xscale="log", xlabel="cores", ylabel="sweeps / time of the step", ylim=(0, 1.05),
              title="weak scaling, 50,000 tets a core")
 
 
-def plot(record, prefix):
+def draw(record):
+    """{"thesis": figure, "clusters": figure}."""
+    figures = {}
     for name, panels in (("thesis", [plot_thesis]), ("clusters", [plot_strong, plot_weak])):
-        figure, axes = plt.subplots(1, len(panels), figsize=(5.6 * len(panels), 4.4), squeeze=False)
+        figures[name], axes = plt.subplots(1, len(panels), figsize=(5.6 * len(panels), 4.4), squeeze=False, layout="constrained")
         for axis, panel in zip(axes[0], panels):
             panel(axis, record)
-            axis.grid(alpha=0.3, which="both")
             axis.legend(fontsize=6.5)
-        figure.tight_layout()
-        figure.savefig(f"{prefix}-{name}.png", dpi=130)
+    return figures

@@ -9,14 +9,16 @@ import os
 import pathlib
 import shutil
 import subprocess
+import sys
 import tempfile
 
 import figures
-import h5py
-import numpy as np
 import pytest
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(ROOT / "bench"))
+import rhegma  # noqa: E402  (of bench/)
+
 PROGRAM = pathlib.Path(os.environ.get("RHEGMA", ROOT / "build" / "rhegma")).resolve()
 BENCH = ROOT / "bench" / "cases"
 CASES = ROOT / "tests" / "cases"
@@ -60,31 +62,27 @@ class Run:
 
     @property
     def summary(self):
-        return json.loads((self.dir / "summary.json").read_text())
+        return rhegma.summary(self.dir)
 
     @property
     def energy(self):
-        return np.atleast_1d(np.genfromtxt(self.dir / "energy.csv", delimiter=",", names=True))
+        return rhegma.energy(self.dir)
 
     @property
     def history(self):
-        return np.atleast_1d(np.genfromtxt(self.dir / "history.csv", delimiter=",", names=True))
+        return rhegma.history(self.dir)
+
+    @property
+    def fragments(self):
+        return rhegma.fragments(self.dir)
 
     def frames(self):
         """Every output moment: {"time", field name, "crack/" + field name: array}."""
-        with h5py.File(self.dir / "fields.h5") as file:
-            return [frame(file["frames"][name]) for name in sorted(file["frames"])]
+        return [rhegma.frame(self.dir, k) for k in range(len(rhegma.frame_times(self.dir)))]
 
     def points(self):
         """Reference positions of the nodes, in the order of the nodal fields."""
-        with h5py.File(self.dir / "fields.h5") as file:
-            return file["mesh/points"][:]
-
-
-def frame(group):
-    values = {"time": group.attrs["time"]}
-    group.visititems(lambda name, node: values.update({name: node[:]}) if isinstance(node, h5py.Dataset) else None)
-    return values
+        return rhegma.mesh(self.dir)[0]
 
 
 @pytest.fixture(scope="session")

@@ -120,7 +120,7 @@ def test_reflection_from_the_softer_side_does_not(run):
 
 
 def test_fragments_have_the_masses_of_their_materials(delamination, figure):
-    rows = np.genfromtxt(delamination.dir / "fragments.csv", delimiter=",", names=True)
+    rows = delamination.fragments
     last = rows[rows["time"] == rows["time"].max()]
     volume = 0.3e-3**2 * LENGTH
     theory = np.array([3690 * volume, 7800 * volume])

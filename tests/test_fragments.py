@@ -20,12 +20,8 @@ def torn(run):
     return run(CASES / "fragments.yaml", sets=SETS)
 
 
-def table(run):
-    return np.atleast_1d(np.genfromtxt(run.dir / "fragments.csv", delimiter=",", names=True))
-
-
 def by_step(run):
-    rows = table(run)
+    rows = run.fragments
     return [(step, rows[rows["step"] == step]) for step in np.unique(rows["step"])]
 
 
@@ -61,7 +57,7 @@ def test_fragments_add_up_to_the_body(torn, figure):
 
 
 def test_moving_and_turning_take_no_more_than_the_kinetic_energy(torn):
-    rows = table(torn)
+    rows = torn.fragments
     moving = sum(rows[f"momentum_{axis}"] ** 2 for axis in "xyz") / (2 * rows["mass"])
     assert (rows["rotational"] >= 0).all()
     assert (moving + rows["rotational"] <= rows["kinetic"] * (1 + rounding(1e-12, 1e-5))).all()

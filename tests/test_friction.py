@@ -16,7 +16,7 @@ PRESSED = 0.15e-6  # s: from here on
 def table(run):
     """Of the times at which the two blocks are fragments: velocity and place of the upper one, those of the other,
     energy dissipated by friction."""
-    rows = np.genfromtxt(run.dir / "fragments.csv", delimiter=",", names=True)
+    rows = run.fragments
     rows = rows[rows["elements"] < rows["elements"].max()] if len(set(rows["elements"])) > 1 else rows
     upper, lower = rows[rows["centroid_z"] > 0], rows[rows["centroid_z"] < 0]
     late = upper["time"] > PRESSED

@@ -1,0 +1,232 @@
+"""What a run of Rhegma left in its output directory, as numpy arrays, and moduli and wave speeds of the materials of its
+case; SI units. What pictures, studies and tests have in common.
+
+    case, energy = rhegma.case(out), rhegma.energy(out)
+    speed = rhegma.one_material(case, "the study").dilatational_speed
+"""
+
+import contextlib
+import dataclasses
+import math
+import re
+import sys
+
+import launch
+from launch import NAME, BadInput, read_mapping, read_text
+
+try:
+    import h5py
+    import numpy as np
+    import yaml
+except ImportError as missing:
+    sys.exit(f"{NAME}: {missing} (Debian: python3-h5py python3-numpy python3-yaml)")
+
+ELASTIC = ("neo-hookean", "linear-elastic", "st-venant-kirchhoff")
+
+
+# ---- cases ----
+
+
+class CaseLoader(yaml.SafeLoader):
+    """With the numbers of YAML 1.2, of which 1e-8 is one."""
+
+
+CaseLoader.add_implicit_resolver("tag:yaml.org,2002:float", re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?$"),
+                                 list("-+.0123456789"))
+
+
+def parse_yaml(text):
+    try:
+        return yaml.load(text, CaseLoader)
+    except yaml.YAMLError as error:
+        raise ValueError(error) from error
+
+
+def read_case(path, overrides=()):
+    """A case file as nested dictionaries, with "a.b=value" put in as the program does."""
+    data = read_mapping(path, parse_yaml)
+    for text in overrides:
+        key, _, value = text.partition("=")
+        *sections, last = key.split(".")
+        inner = data
+        try:
+            for section in sections:
+                inner = inner.setdefault(section, {})
+            inner[last] = parse_yaml(value)
+        except (AttributeError, TypeError, ValueError) as error:
+            raise BadInput(f"--set {text}: {error}") from error
+    return data
+
+
+summary = launch.summary
+
+
+def case(directory):
+    """The case of a run with all values that it used."""
+    return read_case(directory / "case.yaml")
+
+
+# ---- tables and fields ----
+
+
+def read_table(path, needed=()):
+    """The rows of a CSV file as a structured array; its columns by name."""
+    lines = read_text(path).splitlines()
+    names = [name.strip() for name in lines[0].split(",")] if lines else []
+    missing = [name for name in needed if name not in names]
+    if missing:
+        raise BadInput(f"{path}: no column {missing[0]!r}")
+    if len(lines) < 2:
+        raise BadInput(f"{path}: has no rows")
+    try:
+        return np.loadtxt(lines[1:], delimiter=",", dtype=[(name, float) for name in names], ndmin=1)
+    except ValueError as error:
+        raise BadInput(f"{path}: {error}") from error
+
+
+def energy(directory, needed=()):
+    return read_table(directory / "energy.csv", ["time", "total", *needed])
+
+
+def history(directory, needed=()):
+    return read_table(directory / "history.csv", ["time", *needed])
+
+
+def fragments(directory):
+    """None where the run did not write the table."""
+    path = directory / "fragments.csv"
+    return read_table(path, ["time", "id", "mass"]) if path.is_file() else None
+
+
+@contextlib.contextmanager
+def _fields(directory):
+    path = directory / "fields.h5"
+    if not path.is_file():
+        raise BadInput(f"{path}: no such file")
+    try:
+        with h5py.File(path, "r") as file:
+            yield file
+    except (OSError, KeyError, ValueError) as error:
+        raise BadInput(f"{path}: {error}") from error
+
+
+def _frame_names(file, directory):
+    names = sorted(file["frames"])
+    if not names:
+        raise BadInput(f"{directory / 'fields.h5'}: has no frames")
+    return names
+
+
+def mesh(directory):
+    """Reference positions [n][3] of the nodes and, of each element, the numbers [m][10] of its nodes."""
+    with _fields(directory) as file:
+        return file["mesh/points"][:], file["mesh/cells"][:]
+
+
+def frame_times(directory):
+    with _fields(directory) as file:
+        return np.array([file["frames"][name].attrs["time"] for name in _frame_names(file, directory)])
+
+
+def frame(directory, number=-1, fields=None):
+    """A moment of the field output, -1 the last one: {"time", field name, "crack/" + field name: array}, of all fields
+    or of these, as far as the run wrote them."""
+    values = {}
+
+    def keep(name, node):
+        if isinstance(node, h5py.Dataset) and (fields is None or name.split("/")[0] in fields):
+            values[name] = node[:]
+
+    with _fields(directory) as file:
+        group = file["frames"][_frame_names(file, directory)[number]]
+        values["time"] = group.attrs["time"]
+        group.visititems(keep)
+    return values
+
+
+def whole_frame(directory, number, fields):
+    """The same of a run that must have written all of these fields."""
+    values = frame(directory, number, fields)
+    written = {name.split("/")[0] for name in values}
+    missing = [name for name in fields if name not in written]
+    if missing:
+        raise BadInput(f"{directory / 'fields.h5'}: the run did not write {missing[0]} (output.fields)")
+    return values
+
+
+def crack_of(values):
+    """The crack surface of a frame: {"points": corners [n][3][3], field name: [n]}; None where it was not written."""
+    found = {name[6:]: array for name, array in values.items() if name.startswith("crack/")}
+    if "points" not in found:
+        return None
+    return {name: array.reshape(-1, 3, 3) if name == "points" else array.ravel() for name, array in found.items()
+            if name != "cells"}
+
+
+def box_of(points):
+    """The smallest and the largest coordinates [2][3]."""
+    return np.array([points.min(axis=0), points.max(axis=0)])
+
+
+# ---- materials ----
+
+
+@dataclasses.dataclass(frozen=True)
+class Material:
+    """A solid as it is before anything in it flows or cracks."""
+
+    name: str
+    model: str
+    density: float
+    shear: float
+    poisson: float
+
+    @property
+    def young(self):
+        return 2 * self.shear * (1 + self.poisson)
+
+    @property
+    def lame(self):
+        return 2 * self.shear * self.poisson / (1 - 2 * self.poisson)
+
+    @property
+    def uniaxial(self):
+        """Modulus of uniaxial strain, lambda + 2 mu."""
+        return self.lame + 2 * self.shear
+
+    @property
+    def dilatational_speed(self):
+        return math.sqrt(self.uniaxial / self.density)
+
+    @property
+    def shear_speed(self):
+        return math.sqrt(self.shear / self.density)
+
+    @property
+    def bar_speed(self):
+        """Of long waves in a thin bar, whose sides are free."""
+        return math.sqrt(self.young / self.density)
+
+
+def material_of(keys, name="material"):
+    """The material that the keys of `material` or of an entry of `materials` describe."""
+    try:
+        poisson = float(keys["poisson"])
+        shear = float(keys["shear"]) if "shear" in keys else float(keys["young"]) / (2 * (1 + poisson))
+        return Material(keys.get("name", name), keys["model"], float(keys["density"]), shear, poisson)
+    except (KeyError, TypeError, ValueError) as error:
+        raise BadInput(f"not the case of a run: material: {error} is missing or wrong") from error
+
+
+def materials(case):
+    return [material_of(keys) for keys in [case.get("material") or {}, *(case.get("materials") or [])]]
+
+
+def one_material(case, purpose, models=None):
+    """The material of the whole body, or BadInput: `purpose` knows no other bodies."""
+    found = materials(case)
+    if len(found) > 1:
+        raise BadInput(f"{purpose} is for bodies of one material; this case has {', '.join(m.name for m in found)}")
+    if models is not None and found[0].model not in models:
+        raise BadInput(f"{purpose} is for {', '.join(models)}; this case has {found[0].model}")
+    return found[0]
