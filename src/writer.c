@@ -26,7 +26,7 @@
 #include "mem.h"
 #include "xdmf.h"
 
-enum { FORMAT_VERSION = 2, CELLS_AT_ONCE = 1 << 16 };
+enum { FORMAT_VERSION = 2, CELLS_AT_ONCE = 1 << 13 };
 
 struct rg_writer {
     MPI_Comm comm;

@@ -42,7 +42,8 @@ def test_bounds_are_relaxed_between_whole_numbers_alone():
 
 
 @pytest.mark.parametrize("line", [
-    "    /* a = b + 1; */", "    // a = b + 1;", '    f("a = b + 1");', "#define A (b + 1)", "    rg_free(a + 1);", "    int a;"])
+    "    /* a = b + 1; */", "    // a = b + 1;", '    f("a = b + 1");', "#define A (b + 1)", "    rg_free(a + 1);", "    int a;",
+    "    double a[N + 1];", "    static const char b[2 * N];", "    char c[N / 2][3] = {0};"])
 def test_left_alone(line):
     faults = faults_of("a.c", f"{{\n{line}\n}}")
     assert not [f for kind in KINDS if kind not in ("dropped line", "exchanged index") for f in faults[kind]]

@@ -3,6 +3,7 @@
  * keeps the files. */
 #include "writer.h"
 
+#include <errno.h>
 #include <hdf5.h>
 #include <setjmp.h>
 #include <signal.h>
@@ -19,7 +20,7 @@
 #include "hash.h"
 #include "mem.h"
 
-enum { PLANNED = 39, FRAMES = 4 };
+enum { PLANNED = 51, FRAMES = 4 };
 
 /* What each frame has for a crack: nothing, an empty one, some triangles, triangles on one rank only. */
 static const int64_t crack_size[FRAMES] = {-1, 0, 7, 2};
@@ -68,6 +69,23 @@ int MPI_File_write_at(MPI_File file, MPI_Offset offset, const void *data, int co
         return MPI_Status_set_elements(status, type, count);
     }
     return PMPI_File_write_at(file, offset, data, count, type, status);
+}
+
+/* What is brought to the disk, in one line; and a disk that cannot take the file of this name. */
+static char synced[1000];
+static const char *broken_disk = "nothing";
+bool __wrap_rg_sync(const char *path);
+bool __wrap_rg_sync_folder(const char *path);
+
+bool __wrap_rg_sync(const char *path) {
+    size_t used = strlen(synced);
+    snprintf(synced + used, sizeof synced - used, "%s ", strrchr(path, '/') + 1);
+    errno = EIO;
+    return strcmp(strrchr(path, '/') + 1, broken_disk) != 0;
+}
+
+bool __wrap_rg_sync_folder(const char *path) {
+    return __wrap_rg_sync(path);
 }
 
 /* ---- content ---- */
@@ -329,6 +347,8 @@ static void check_content(int64_t total) {
     ok(access(in_dir("fields.xdmf.tmp"), F_OK) != 0, "no temporary file is left");
 }
 
+static void clean(void);
+
 /* ---- cases ---- */
 
 static void check_while_open(void) {
@@ -441,6 +461,130 @@ static void check_lost_frame(void) {
     failure_said("a frame that a restart misses", "fields/000000.h5: No such file");
 }
 
+static bool there(const char *name) {
+    return access(in_dir(name), F_OK) == 0;
+}
+
+static rg_writer *with_frames(int frames) {
+    rg_writer *w = open_writer(MPI_COMM_SELF, 5, (share){0, 5});
+    for (int f = 0; f < frames; f++) {
+        put_frame(w, f, (share){0, 5}, 1);
+    }
+    return w;
+}
+
+static int frames_linked(void) {
+    hid_t h5 = H5Fopen(in_dir("fields.h5"), H5F_ACC_RDONLY, H5P_DEFAULT),
+          group = H5Gopen2(h5, "frames", H5P_DEFAULT);
+    H5G_info_t info = {0};
+    H5Gget_info(group, &info);
+    H5Gclose(group);
+    H5Fclose(h5);
+    return (int)info.nlinks;
+}
+
+/* Goes on behind `keep` of four frames; whether just these are left. */
+static bool cut_good(int keep) {
+    rg_writer *w = with_frames(keep);
+    rg_writer_mark mark = rg_writer_stand(w);
+    for (int f = keep; f < 4; f++) {
+        put_frame(w, f, (share){0, 5}, 1);
+    }
+    rg_writer_close(w);
+    if (keep == 0) {
+        remove(in_dir("fields.xdmf")); /* nobody needs it then */
+    }
+    w = rg_writer_resume(dir, MPI_COMM_SELF, style, 5, 0, 5, &mark);
+    bool good = mark.frames == keep && (mark.volume > 0) == (keep > 0) && (mark.crack > 0) == (keep > 2) &&
+                there("fields/mesh.h5") && frames_linked() == keep &&
+                (keep == 0 || occurrences("<Time") == keep + (keep > 2));
+    for (int f = 0; f < 4; f++) {
+        char name[40];
+        snprintf(name, sizeof name, "fields/%06d.h5", f);
+        good = there(name) == (f < keep) && good;
+    }
+    put_frame(w, keep, (share){0, 5}, 1);
+    good = frames_linked() == keep + 1 && rg_writer_stand(w).frames == keep + 1 && good;
+    rg_writer_close(w);
+    clean();
+    return good;
+}
+
+static void check_cuts(void) {
+    ok(cut_good(0) && cut_good(1) && cut_good(3), "what lies behind a mark is gone");
+}
+
+/* What was brought to the disk before is not again, but for what has changed. */
+static void check_syncs(void) {
+    rg_writer *w = with_frames(0);
+    synced[0] = '\0';
+    rg_writer_sync(w);
+    bool good = strcmp(synced, "mesh.h5 fields fields.h5 ") == 0 || strcmp(synced, "fields fields.h5 ") == 0;
+    put_frame(w, 0, (share){0, 5}, 1);
+    put_frame(w, 1, (share){0, 5}, 1);
+    synced[0] = '\0';
+    rg_writer_sync(w);
+    good = strcmp(synced, "mesh.h5 000000.h5 000001.h5 fields fields.h5 fields.xdmf ") == 0 && good;
+    put_frame(w, 2, (share){0, 5}, 1);
+    synced[0] = '\0';
+    rg_writer_sync(w);
+    good = strcmp(synced, "000002.h5 fields fields.h5 fields.xdmf ") == 0 && good;
+    rg_writer_mark mark = rg_writer_stand(w);
+    rg_writer_close(w);
+    w = rg_writer_resume(dir, MPI_COMM_SELF, style, 5, 0, 5, &mark);
+    put_frame(w, 3, (share){0, 5}, 1);
+    synced[0] = '\0';
+    rg_writer_sync(w);
+    good = strcmp(synced, "000003.h5 fields fields.h5 fields.xdmf ") == 0 && good;
+    printf("# %s\n", synced);
+    rg_writer_close(w);
+    clean();
+    ok(good, "what is brought to the disk");
+    static const char *const name[] = {"mesh.h5", "000000.h5", "fields", "fields.h5", "fields.xdmf"};
+    for (int k = 0; k < 5; k++) {
+        broken_disk = name[k];
+        if (setjmp(escape) == 0) {
+            rg_writer_sync(with_frames(1));
+        }
+        failure_said("a disk that cannot take a file",
+                     "fields.h5: cannot bring the fields to the disk: Input/output error");
+        clean();
+    }
+    broken_disk = "nothing";
+}
+
+/* A file of an earlier run that is not as it was. */
+static void check_resume_without(const char *name, const char *words) {
+    static rg_writer_mark mark;
+    if (setjmp(escape) == 0) {
+        rg_writer *w = with_frames(3);
+        mark = rg_writer_stand(w);
+        rg_writer_close(w);
+        remove(in_dir(name));
+        rg_writer_resume(dir, MPI_COMM_SELF, style, 5, 0, 5, &mark);
+    }
+    failure_said("a file that a restart misses", words);
+    clean();
+}
+
+static void check_blocked_index(void) {
+    mkdir(in_dir("fields.h5"), 0777);
+    if (setjmp(escape) == 0) {
+        with_frames(0);
+    }
+    rmdir(in_dir("fields.h5"));
+    remove(in_dir("fields.h5.part"));
+    failure_said("an index that cannot be put in its place",
+                 "fields.h5: cannot write the file: Is a directory");
+    mkdir(in_dir("fields.h5.part"), 0777);
+    if (setjmp(escape) == 0) {
+        with_frames(0);
+    }
+    rmdir(in_dir("fields.h5.part"));
+    failure_said("an index that cannot be made", "fields.h5: cannot write the file: ");
+    clean();
+}
+
 static void clean(void) {
     remove(in_dir("fields.h5"));
     remove(in_dir("fields.xdmf"));
@@ -461,6 +605,14 @@ static void check_failures(void) {
     check_lost_write();
     check_blocked_xdmf();
     check_lost_frame();
+    clean();
+    check_resume_without("fields/mesh.h5", "fields/mesh.h5: No such file or directory");
+    check_resume_without("fields/000002.h5", "fields/000002.h5: No such file or directory");
+    check_resume_without("fields.xdmf",
+                         "fields.xdmf: cannot go on with the fields: it is shorter than at the checkpoint");
+    check_blocked_index();
+    check_cuts();
+    check_syncs();
     expect_fatal = false;
     clean();
 }

@@ -184,6 +184,10 @@ def relaxed_bound(code, integers, python):
             yield m.start(1), m.end(1), f"0 && ({m[1]})"
 
 
+# The size of an array where it is declared: one that is too large changes nothing, one too small is for sanitizers.
+ARRAY = re.compile(r"\s*(?:static |const |unsigned |struct )*[A-Za-z_]\w* \w+((?:\[[^\[\]]*\])+)(?= =|[;,])")
+
+
 def is_integer(operand, integers):
     name = re.split(r"\.|->", re.sub(r"\[[^\]]*\]|\([^)]*\)", "", operand))[-1]
     return operand.isdigit() or name in integers
@@ -220,8 +224,10 @@ def faults_of(path, text):
                 "dropped line": dropped_line(line_code, before, python),
                 "relaxed bound": relaxed_bound(line_code, integers, python),
             }
+            size = ARRAY.match(line_code)
             for kind, where in places.items():
-                found[kind] += [Fault(path, kind, line, occurrence, b, e, new) for b, e, new in where]
+                found[kind] += [Fault(path, kind, line, occurrence, b, e, new) for b, e, new in where
+                                if size is None or not size.start(1) <= b < size.end(1)]
         before = line_code
     return found
 
