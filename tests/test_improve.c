@@ -17,6 +17,7 @@
 #include "../src/mem.h"
 #include "../src/mesh_check.h"
 #include "../src/tet.h"
+#include "dice.h"
 
 static const int64_t cells[3] = {6, 5, 8};
 static const double origin[3] = {0.1, -0.2, 0.3}, size[3] = {0.6, 0.5, 0.8};
@@ -170,6 +171,12 @@ static void test_inner_faces_stay(void **state) {
             }
             m->inners += in_middle(m, slot);
         }
+        for (size_t i = 0; i < m->inners / 2; i++) { /* in no order */
+            rg_gid swap[3];
+            memcpy(swap, m->inner + 3 * i, sizeof swap);
+            memcpy(m->inner + 3 * i, m->inner + 3 * (m->inners - 1 - i), sizeof swap);
+            memcpy(m->inner + 3 * (m->inners - 1 - i), swap, sizeof swap);
+        }
         improve(m);
         if (named == 1) {
             assert_close(middle_area(m), 0.3, 1e-12);
@@ -268,6 +275,229 @@ static void test_edge_and_face_are_replaced(void **state) {
     }
 }
 
+/* ---- the ring around an edge ---- */
+
+/* Vertices 2 .. 2 + sides - 1 around the edge 0 1, at random heights and distances; closed, or a fan that
+ * ends at its first and last vertex. The corners of every other tetrahedron begin elsewhere. */
+static rg_mesh *make_ring(int sides, bool closed, uint64_t seed) {
+    double x[3 * 14] = {0.1, -0.2, 0, 0.05, 0.1, 1};
+    rg_gid corner[4 * 12];
+    dice d = {.seed = seed};
+    int tets = closed ? sides : sides - 1;
+    for (int k = 0; k < sides; k++) {
+        double angle = 6.283185307179586 * (k + 0.3 * dice_unit(&d)) / (closed ? sides : 2 * sides);
+        double far = 0.35 + 0.15 * dice_unit(&d);
+        x[6 + 3 * k] = far * cos(angle);
+        x[7 + 3 * k] = far * sin(angle);
+        x[8 + 3 * k] = 0.35 + 0.3 * dice_unit(&d);
+    }
+    for (int k = 0; k < tets; k++) {
+        rg_gid c[4] = {0, 1, 2 + k, 2 + (k + 1) % sides};
+        for (int i = 0; i < 4; i++) { /* ascending, as in a mesh */
+            int place = 0;
+            for (int j = 0; j < 4; j++) {
+                place += c[j] < c[i];
+            }
+            corner[4 * k + place] = c[i];
+        }
+    }
+    return small(2 + sides, x, tets, corner);
+}
+
+/* The largest smallest height of all ways to join vertices i .. k of the ring by triangles. */
+static double best_of_all(const rg_tets *t, int i, int k) {
+    double best = k - i < 2 ? INFINITY : -INFINITY;
+    for (int j = i + 1; j < k; j++) {
+        rg_gid up[4] = {2 + i, 2 + j, 2 + k, 1}, down[4] = {2 + i, 2 + k, 2 + j, 0};
+        double here = fmin(rg_tets_height(t, up), rg_tets_height(t, down));
+        best = fmax(best, fmin(here, fmin(best_of_all(t, i, j), best_of_all(t, j, k))));
+    }
+    return best;
+}
+
+static void test_rings(void **state) {
+    (void)state;
+    int gone = 0, stays = 0;
+    for (int sides = 3; sides <= 12; sides++) {
+        for (uint64_t seed = 1; seed <= (sides < 10 ? 12 : 3); seed++) {
+            rg_mesh *m = make_ring(sides, true, 100 * (uint64_t)sides + seed);
+            double before = smallest_height(m), volume = total_volume(m, 0);
+            rg_tets t = rg_tets_make(m);
+            double best = best_of_all(&t, 0, sides - 1);
+            bool pays = best > 1.001 * before && sides <= 11; /* longer rings are left alone */
+            assert_int_equal(rg_tets_remove_edge(&t, seed % 2 == 0, seed % 2 == 1), pays);
+            rg_tets_finish(&t);
+            assert_int_equal(m->elements, pays ? 2 * (sides - 2) : sides);
+            rg_mesh_connect(m);
+            rg_mesh_check(m, "ring");
+            assert_close(total_volume(m, 0), volume, 1e-13);
+            assert_close(smallest_height(m), pays ? best : before, 1e-13);
+            gone += pays;
+            stays += !pays;
+            rg_mesh_free(m);
+        }
+    }
+    assert_true(gone > 10 && stays > 10);
+}
+
+/* A fan around an edge of the surface goes where its ends lie in one plane and set, and has another surface
+ * face on either side then. */
+static void test_fans(void **state) {
+    (void)state;
+    /* 0 and 1 and the ends 2 and 4 in the plane y = 0; 3 beside it */
+    static const double x[15] = {0, 0, 0, 0, 0, 1, 0.3, 0, 0.45, 0.05, 0.6, 0.5, -0.35, 0, 0.55};
+    static const rg_gid corner[8] = {0, 1, 2, 3, 0, 1, 3, 4};
+    for (int what = 0; what < 6; what++) {
+        rg_mesh *m = small(5, x, 2, corner);
+        /* faces 0 1 2 of the first and 0 1 4 of the second */
+        m->set[3] = 7;
+        m->set[4 + 2] = what == 1 ? 8 : 7;
+        /* out of the plane: volume 0.3/6 of this, of which 1e-9 of the edge cubed is flat */
+        m->x[13] = what == 2 ? -2.2e-8 : what == 3 ? -1.8e-8 : 0;
+        m->set[0] = 3;                      /* 1 2 3: stays */
+        m->set[4 + 1] = what == 4 ? 2 : -1; /* 0 3 4: stays */
+        double volume = total_volume(m, 0);
+        m->region = what == 5 ? RG_NEW(int8_t, 2) : NULL;
+        if (what == 5) {
+            m->region[0] = 1; /* the face between them must stay */
+        }
+        rg_tets t = rg_tets_make(m);
+        bool goes = what == 0 || what == 3 || what == 4;
+        assert_int_equal(rg_tets_remove_edge(&t, 1, 0), goes);
+        rg_tets_finish(&t);
+        assert_int_equal(m->elements, 2);
+        rg_mesh_connect(m);
+        rg_mesh_check(m, "fan");
+        assert_close(total_volume(m, 0) + (what == 5 ? total_volume(m, 1) : 0), volume,
+                     what == 3 ? 1e-9 : 1e-15);
+        int count[10] = {0};
+        for (int s = 0; s < 8; s++) {
+            count[m->set[s] + 1] += m->neighbour[s] < 0;
+            assert_true(m->neighbour[s] < 0 || m->set[s] == -1);
+            if (goes && m->set[s] == 7) { /* the new ones: 2 4 with 0 or 1 */
+                const rg_gid *c = m->corner + s / 4 * 4;
+                assert_int_equal(c[0] + c[1] + c[2] + c[3] - c[s % 4], 6 + (c[0] == 0 ? 0 : 1));
+            }
+            if (m->set[s] == 3) {
+                const rg_gid *c = m->corner + s / 4 * 4;
+                assert_int_equal(c[0] + c[1] + c[2] + c[3] - c[s % 4], 1 + 2 + 3);
+            }
+            if (m->set[s] == 2) {
+                const rg_gid *c = m->corner + s / 4 * 4;
+                assert_int_equal(c[0] + c[1] + c[2] + c[3] - c[s % 4], 0 + 3 + 4);
+            }
+        }
+        assert_int_equal(count[8], what == 1 ? 1 : 2);
+        assert_int_equal(count[9], what == 1);
+        assert_int_equal(count[4], 1);
+        assert_int_equal(count[3], what == 4);
+        rg_mesh_free(m);
+    }
+}
+
+/* ---- faces ---- */
+
+/* Two elements on either side of a triangle, with the face at each place in the first one: three around the
+ * line between the apexes, where that is better, and none where the face must stay or the line runs outside.
+ */
+static void test_faces(void **state) {
+    (void)state;
+    static const double place[5][3] = {
+        {0.1, 0.05, -0.4}, {3, 0, 0}, {-1.5, 2.4, 0}, {-1.4, -2.7, 0}, {0, 0.1, 0.5}};
+    for (int n = 0; n < 5 * 24; n++) {
+        int number[5] = {0}, left[5] = {0, 1, 2, 3, 4};
+        for (int k = 0, code = n; k < 5; k++) { /* the vertices in any order */
+            int pick = code % (5 - k);
+            code /= 5 - k;
+            number[k] = left[pick];
+            for (int j = pick; j < 4 - k; j++) {
+                left[j] = left[j + 1];
+            }
+        }
+        for (int kind = 0; kind < 3;
+             kind++) { /* kind 1: the face is between volume sets; 2: the line runs outside */
+            double x[15];
+            rg_gid corner[8];
+            for (int k = 0; k < 5; k++) {
+                memcpy(x + 3 * number[k], place[k], sizeof place[k]);
+                x[3 * number[k]] += kind == 2 && (k == 0 || k == 4) ? 9 : 0;
+            }
+            for (int e = 0; e < 2; e++) {
+                const int c[4] = {number[e == 0 ? 0 : 4], number[1], number[2], number[3]};
+                for (int i = 0; i < 4; i++) {
+                    corner[4 * e + (c[0] < c[i]) + (c[1] < c[i]) + (c[2] < c[i]) + (c[3] < c[i])] = c[i];
+                }
+            }
+            rg_mesh *m = small(5, x, 2, corner);
+            m->region = RG_NEW(int8_t, 2);
+            m->region[0] = kind == 1;
+            for (int s = 0; s < 8;
+                 s++) { /* each surface face is of the set of the vertex of the triangle that it lacks */
+                const rg_gid *c = corner + s / 4 * 4;
+                for (int k = 1; k < 4; k++) {
+                    m->set[s] = (int8_t)(c[s % 4] == number[k] ? k : m->set[s]);
+                }
+            }
+            double before = smallest_height(m), volume = total_volume(m, 0) + total_volume(m, 1);
+            rg_tets t = rg_tets_make(m);
+            int f = rg_tets_find(t.tet, number[0]), g = rg_tets_find(t.tet, number[1]);
+            assert_false(rg_tets_remove_face(&t, 0, g)); /* on the surface */
+            assert_int_equal(rg_tets_remove_face(&t, 0, f), kind == 0);
+            rg_tets_finish(&t);
+            assert_int_equal(m->elements, kind == 0 ? 3 : 2);
+            rg_mesh_connect(m);
+            rg_mesh_check(m, "face");
+            assert_close(total_volume(m, 0) + total_volume(m, 1), volume, 1e-13);
+            assert_true(kind == 0 ? smallest_height(m) > 1.1 * before
+                                  : fabs(smallest_height(m) - before) < 1e-15);
+            for (rg_gid s = 0; s < 4 * m->elements; s++) {
+                const rg_gid *c = m->corner + s / 4 * 4;
+                int lacks = -1;
+                for (int k = 1; k < 4; k++) {
+                    bool there = false;
+                    for (int i = 0; i < 4; i++) {
+                        there = there || (i != s % 4 && c[i] == number[k]);
+                    }
+                    lacks = there ? lacks : k;
+                }
+                assert_int_equal(m->set[s], m->neighbour[s] < 0 ? lacks : -1);
+            }
+            rg_mesh_free(m);
+        }
+    }
+}
+
+/* A change must pay by a thousandth: heights of the old and the new pair around it. */
+static void test_least_gain(void **state) {
+    (void)state;
+    for (int pays = 0; pays < 2; pays++) {
+        /* three around the edge 0 1 of length 2 h in the middle of a triangle: heights follow from h */
+        double h = 1, x[15] = {0, 0, -h, 0, 0, h}, three, two;
+        static const rg_gid corner[12] = {0, 1, 2, 3, 0, 1, 3, 4, 0, 1, 2, 4};
+        double low = 0.05, high = 5;
+        for (int n = 0; n < 200;
+             n++) { /* the size of the triangle at which both are as good, times 1 -+ 4e-4 */
+            double far = (low + high) / 2;
+            for (int k = 0; k < 3; k++) {
+                x[6 + 3 * k] = far * cos(2.0943951023931953 * k);
+                x[7 + 3 * k] = far * sin(2.0943951023931953 * k);
+            }
+            rg_mesh *m = small(5, x, 3, corner);
+            rg_tets t = rg_tets_make(m);
+            three = t.tet[0].height;
+            two = rg_tets_height(&t, (const rg_gid[]){2, 3, 4, 1});
+            double wanted = pays ? 1.0011 : 1.0009;
+            *(two > wanted * three ? &low : &high) = far;
+            if (n == 199) {
+                assert_close(two / three, wanted, 1e-9);
+                assert_int_equal(rg_tets_remove_edge(&t, 0, 1), pays);
+            }
+            rg_tets_finish(&t);
+            rg_mesh_free(m);
+        }
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_flat_elements_grow),
@@ -277,6 +507,10 @@ int main(void) {
         cmocka_unit_test(test_same_every_time),
         cmocka_unit_test(test_vertex_goes_to_the_best_place),
         cmocka_unit_test(test_edge_and_face_are_replaced),
+        cmocka_unit_test(test_rings),
+        cmocka_unit_test(test_fans),
+        cmocka_unit_test(test_faces),
+        cmocka_unit_test(test_least_gain),
     };
     return cmocka_run_group_tests_name("improve", tests, NULL, NULL);
 }
