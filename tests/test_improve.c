@@ -498,6 +498,119 @@ static void test_least_gain(void **state) {
     }
 }
 
+/* ---- moving ---- */
+
+/* Where the vertex in the middle of an octahedron may go. */
+enum { ANYWHERE, SURFACE, EDGE, BETWEEN_SETS, BETWEEN_REGIONS, RIM, PLACES };
+
+/* Vertices 0 to 5 at (1 0 0) (0 1 0) (0 0 1) and opposite, 6 in the middle; some of them are moved a little
+ * where the faces that hold the middle one stay in their planes, and it itself along `free` directions. */
+static rg_mesh *make_star(int kind, uint64_t seed, const bool free[3]) {
+    double x[21] = {0};
+    dice d = {.seed = seed};
+    rg_gid corner[32];
+    int tets = 0;
+    for (int v = 0; v < 6; v++) {
+        for (int i = 0; i < 3; i++) {
+            bool plane = kind == ANYWHERE || i == v % 3 || (free[i] && kind != ANYWHERE);
+            x[3 * v + i] = (i == v % 3 ? (v < 3 ? 1 : -1) : 0) + (plane ? 0.3 * dice_sign(&d) : 0);
+        }
+    }
+    for (int i = 0; i < 3; i++) {
+        x[18 + i] = free[i] ? 0.3 * dice_sign(&d) : 0;
+    }
+    for (int o = 0; o < 8; o++) {
+        bool upper = (o & 4) == 0, right = (o & 2) == 0;
+        bool half = kind == SURFACE || kind == EDGE || kind == BETWEEN_SETS;
+        if ((!half || upper) && (kind != EDGE || right)) {
+            rg_gid c[3] = {o & 1 ? 3 : 0, o & 2 ? 4 : 1, o & 4 ? 5 : 2};
+            int place = 0;
+            for (rg_gid v = 0; v < 6; v++) {
+                if (v == c[0] || v == c[1] || v == c[2]) {
+                    corner[4 * tets + place++] = v;
+                }
+            }
+            corner[4 * tets++ + 3] = 6;
+        }
+    }
+    rg_mesh *m = small(7, x, tets, corner);
+    m->inner = RG_NEW(rg_gid, 3 * 2);
+    m->region = kind == BETWEEN_REGIONS ? RG_NEW(int8_t, (size_t)tets) : NULL;
+    for (int e = 0; e < tets; e++) {
+        const rg_gid *c = corner + 4 * e;
+        bool below = c[2] == 5, left = c[0] == 3 || c[1] == 3 || c[2] == 3;
+        if (kind == BETWEEN_REGIONS) {
+            m->region[e] = below;
+        }
+        for (int f = 0; f < 3; f++) { /* the faces of the middle vertex in the plane of x and y */
+            bool flat = c[f] == 2 || c[f] == 5;
+            m->set[4 * e + f] = (int8_t)(kind == BETWEEN_SETS && flat && left ? 1 : m->set[4 * e + f]);
+        }
+    }
+    for (rg_gid v = 1; kind == RIM && v <= 4; v += 3) { /* a sheet that ends at the axis of y */
+        memcpy(m->inner + 3 * m->inners++, (const rg_gid[]){0, v, 6}, 3 * sizeof *m->inner);
+    }
+    return m;
+}
+
+static double star_height(const rg_tets *t) {
+    double least = INFINITY;
+    for (rg_gid e = 0; e < t->count; e++) {
+        least = fmin(least, rg_tets_height(t, t->tet[e].corner));
+    }
+    return least;
+}
+
+/* The best height by trying in all free directions, with steps that get smaller. */
+static double search_best(const rg_tets *t, const bool free[3]) {
+    double *x = t->mesh->x + 18, from[3], best = star_height(t);
+    dice d = {.seed = 99};
+    memcpy(from, x, sizeof from);
+    for (double step = 0.2; step > 1e-4; step *= 0.8) {
+        for (int n = 0; n < 120; n++) {
+            double back[3], height;
+            memcpy(back, x, sizeof back);
+            for (int i = 0; i < 3; i++) {
+                x[i] += free[i] ? step * dice_sign(&d) : 0;
+            }
+            height = star_height(t);
+            height > best ? (void)(best = height) : (void)memcpy(x, back, sizeof back);
+        }
+    }
+    memcpy(x, from, sizeof from);
+    return best;
+}
+
+static void test_moves(void **state) {
+    (void)state;
+    static const bool free[PLACES][3] = {{true, true, true},   {true, true, false}, {true, false, false},
+                                         {false, true, false}, {true, true, false}, {false, true, false}};
+    for (int kind = 0; kind < PLACES; kind++) {
+        double worst = 1;
+        for (uint64_t seed = 1; seed <= 16; seed++) {
+            rg_mesh *m = make_star(kind, 50 * (uint64_t)kind + seed, free[kind]);
+            rg_tets t = rg_tets_make(m);
+            double before = star_height(&t), best = search_best(&t, free[kind]), x[21];
+            memcpy(x, m->x, sizeof x);
+            assert_close(rg_tets_star_height(&t, 6), before, 0);
+            bool moved = rg_tets_move(&t, 6);
+            double after = star_height(&t);
+            assert_int_equal(moved, after > before);
+            assert_close(rg_tets_star_height(&t, 6), after, 0); /* heights are kept up */
+            for (int i = 0; i < 21; i++) {
+                assert_true(m->x[i] == x[i] ||
+                            (i >= 18 && (free[kind][i - 18] ? moved : fabs(m->x[i]) < 1e-15)));
+            }
+            worst = fmin(worst, after / best);
+            rg_tets_finish(&t);
+            rg_mesh_free(m);
+        }
+        /* Heights within 2 % of the smallest count as near it, so that much may be left to gain. */
+        print_message("# %.4g of the best\n", worst);
+        assert_true(worst > 0.97);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_flat_elements_grow),
@@ -511,6 +624,7 @@ int main(void) {
         cmocka_unit_test(test_fans),
         cmocka_unit_test(test_faces),
         cmocka_unit_test(test_least_gain),
+        cmocka_unit_test(test_moves),
     };
     return cmocka_run_group_tests_name("improve", tests, NULL, NULL);
 }
