@@ -332,7 +332,8 @@ static void check_large(void) {
 
 /* Where a throw puts an element: pieces of a few elements fly apart, and into each other. */
 static double thrown(uint64_t seed, rg_gid piece, int c, double spread) {
-    return spread * drawn(seed, DRAW_OTHER, piece, c);
+    double far = drawn(seed, DRAW_OTHER, piece, 11), sign = piece % 2 == 0 ? 1 : -1;
+    return spread * drawn(seed, DRAW_OTHER, piece, c) + (far > 0.8 && c == (int)(seed % 3) ? 1e4 * sign : 0);
 }
 
 static bool inside(double x[4][3], const double point[3]) {
@@ -361,10 +362,16 @@ static bool reaches(double a[4][3], double b[4][3]) {
     return found;
 }
 
-static bool torn(const rg_mesh *m, rg_gid e, double x[4][3]) {
+/* Not searched: what is ten times as long as at rest, is nowhere, or lies beyond 2^20 cells. */
+static bool lost(const rg_mesh *m, rg_gid e, double x[4][3], double cell) {
     double rest[4][3], size[2] = {0, 0};
     mesh_corners(m, e, rest);
     for (int c = 0; c < 3; c++) {
+        for (int k = 0; k < 4; k++) {
+            if (!(fabs(x[k][c]) < cell * 0x1p20)) {
+                return true;
+            }
+        }
         for (int k = 0; k < 16; k++) {
             size[0] = fmax(size[0], x[k / 4][c] - x[k % 4][c]);
             size[1] = fmax(size[1], rest[k / 4][c] - rest[k % 4][c]);
@@ -373,13 +380,14 @@ static bool torn(const rg_mesh *m, rg_gid e, double x[4][3]) {
     return size[0] > 10 * size[1];
 }
 
-static void search_all(const random_state *r, const rg_gid *id, double (*x)[4][3], rg_gid pair[2]) {
+static void search_all(const random_state *r, const rg_gid *id, double cell, double (*x)[4][3],
+                       rg_gid pair[2]) {
     pair[0] = pair[1] = INT64_MAX;
     for (rg_gid a = 0; a < r->mesh->elements; a++) {
         for (rg_gid b = 0; b < a; b++) {
             rg_gid low = id[a] < id[b] ? id[a] : id[b], high = id[a] < id[b] ? id[b] : id[a];
             bool lower = low < pair[0] || (low == pair[0] && high < pair[1]);
-            if (low != high && lower && !torn(r->mesh, a, x[a]) && !torn(r->mesh, b, x[b]) &&
+            if (low != high && lower && !lost(r->mesh, a, x[a], cell) && !lost(r->mesh, b, x[b], cell) &&
                 (reaches(x[a], x[b]) || reaches(x[b], x[a]))) {
                 pair[0] = low;
                 pair[1] = high;
@@ -388,9 +396,10 @@ static void search_all(const random_state *r, const rg_gid *id, double (*x)[4][3
     }
 }
 
-/* One in twelve is blown up, up to about twice what counts as torn. */
+/* One in ten is blown up, up to twice what counts as torn; one in forty is nowhere. */
 static double blown(uint64_t seed, rg_gid e) {
-    return drawn(seed, DRAW_OTHER, e, 7) > 0.8 ? 10 * (1 + drawn(seed, DRAW_OTHER, e, 8)) : 1;
+    double x = drawn(seed, DRAW_OTHER, e, 7);
+    return x < -0.95 ? NAN : x > 0.8 ? 10 * (1 + drawn(seed, DRAW_OTHER, e, 8)) : 1;
 }
 
 static void throw(random_state * r, uint64_t seed, double spread, const rg_gid *id, double (*x)[4][3]) {
@@ -428,7 +437,7 @@ static void check_overlaps(void) {
         throw(&r, seed, spread, id, x);
         rg_fragment_parts *p = rg_fragments_find(r.solver);
         rg_gid pair[2], wanted[2];
-        search_all(&r, id, x, wanted);
+        search_all(&r, id, cell, x, wanted);
         bool any = rg_overlap_find(r.solver, p, cell, pair);
         wrong += pair[0] != wanted[0] || pair[1] != wanted[1] || any != (wanted[0] < INT64_MAX);
         found += any;

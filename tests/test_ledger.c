@@ -320,6 +320,46 @@ static void check_rest(void) {
     random_state_free(&r);
 }
 
+/* Without friction, viscosity, histories and bodies; on an intrinsic interface broken is what is separated.
+ */
+static void check_plain(void) {
+    const char *change[] = {
+        "interface.friction=0", "viscosity.linear=0",       "materials=[]",          "bodies=[]",
+        "boundary=[]",          "interface.form=intrinsic", "interface.law=bilinear"};
+    for (int intrinsic = 0; intrinsic < 2; intrinsic++) {
+        random_state r = random_state_make(intrinsic ? 7 : 5, change, MPI_COMM_WORLD);
+        random_state_draw(&r, SEED);
+        rg_ledger ledger = {0};
+        const rg_energy *e = rg_ledger_take(&ledger, r.solver);
+        sums sum = {.first = INFINITY};
+        int64_t faces = 0;
+        for (rg_gid key = 0; key < 4 * r.mesh->elements; key++) {
+            bool any = false;
+            for (int q = 0; q < RG_POINTS && r.mesh->neighbour[key] > key / 4; q++) {
+                double l[3], share = face_area(r.mesh, key) * rg_reference_face_point(q, l);
+                bool bit = drawn_broken(SEED, key) >> q & 1, failed = drawn_damage(SEED, key, q) >= 1;
+                if (bit && (failed || !intrinsic)) {
+                    sum.broken += share;
+                    sum.failed += failed ? share : 0;
+                    sum.first = fmin(sum.first, drawn_time(SEED, key, q));
+                    any = true;
+                }
+            }
+            faces += any;
+        }
+        rg_crack_face *face;
+        size_t count = rg_crack_surface(r.solver, &face);
+        report(e->friction == 0 && e->viscous == 0 && e->plastic == 0 && e->damage == 0 && e->bodies == 0 &&
+                   e->external == 0 && e->bulk > 0 && e->kinetic > 0,
+               "plain", intrinsic ? "intrinsic: no other energies" : "no other energies");
+        report(near(e->broken_area, sum.broken, sum.broken) && near(e->failed_area, sum.failed, sum.failed) &&
+                   rg_first_fracture(r.solver) == sum.first && total((double)count) == (double)faces,
+               "plain", intrinsic ? "intrinsic: what is broken" : "what is broken");
+        rg_free(face);
+        random_state_free(&r);
+    }
+}
+
 /* The HRZ mass has its own momentum: of each node by itself. */
 static void check_lumped(void) {
     const char *change[] = {"mass=lumped"};
@@ -539,6 +579,7 @@ int main(int argc, char **argv) {
     check_errors(&r);
     random_state_free(&r);
     check_rest();
+    check_plain();
     check_lumped();
     check_known_hash();
     if (rank == 0) {
