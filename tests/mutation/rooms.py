@@ -48,7 +48,7 @@ ROOMS = {
              """case case_text case_echo case_ranges case_rules case_values case_mistakes numbers strength fuzz-case test_output.py test_laws.py test_bodies.py test_cli.py
              test_bimaterials.py test_continuous.py test_restart.py"""),
     "base": (["src/*"],
-             """numbers exchange files interrupt slab seal writer fragment verify test_output.py test_mesh_faults.py test_faults.py test_cli.py
+             """numbers exchange files interrupt run slab seal writer fragment verify test_output.py test_mesh_faults.py test_faults.py test_cli.py
              test_fragments.py test_meshes.py test_partition.py test_restart.py"""),
     "plot": (["bench/plot"], ""),
 }
