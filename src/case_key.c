@@ -466,7 +466,6 @@ static void free_texts(const rg_key *key, char *base) {
         rg_free(list[i]);
     }
     rg_free(list);
-    rg_pointer_set(base + key->offset, NULL);
 }
 
 static void free_list(const rg_key *key, char *base) {
@@ -477,7 +476,6 @@ static void free_list(const rg_key *key, char *base) {
         rg_keys_free(key->entry, (char *)list + (size_t)i * key->entry->size);
     }
     rg_free(list);
-    rg_pointer_set(base + key->offset, NULL);
 }
 
 void rg_keys_free(const rg_key_table *table, void *base) {
@@ -486,7 +484,6 @@ void rg_keys_free(const rg_key_table *table, void *base) {
         void *value = (char *)base + key->offset;
         if (key->type == RG_KEY_TEXT || key->type == RG_KEY_REALS) {
             rg_free(rg_pointer_get(value));
-            rg_pointer_set(value, NULL);
         } else if (key->type == RG_KEY_EXPR) { /* may be shared by two keys of a group */
             rg_expr_free(rg_pointer_get(value));
             rg_pointer_set(value, NULL);

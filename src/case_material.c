@@ -127,8 +127,8 @@ static void list_names(const rg_case *c, char *text, size_t size) {
 
 static void check_between(rg_check *ck, const rg_node *node, const rg_face_set *set, const char *path) {
     char allowed[256], *key = rg_text_format("%s.between", path), value[64];
-    const char *names[RG_MAX_MATERIALS + 1] = {NULL};
-    for (int m = 0; m <= ck->c->others && m < RG_MAX_MATERIALS; m++) {
+    const char **names = RG_NEW(const char *, (size_t)ck->c->others + 2); /* ends with NULL */
+    for (int m = 0; m <= ck->c->others; m++) {
         names[m] = rg_case_material_name(ck->c, m);
     }
     list_names(ck->c, allowed, sizeof allowed);
@@ -143,6 +143,7 @@ static void check_between(rg_check *ck, const rg_node *node, const rg_face_set *
             rg_problem_add(ck->problems, node->child[k].at, &subject, "no such material");
         }
     }
+    rg_free(names);
     rg_free(key);
 }
 

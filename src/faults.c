@@ -56,23 +56,21 @@ void rg_faults_end(const rg_faults *f) {
     rg_fatal(RG_USAGE, "%s", all);
 }
 
-/* Two lists become one, as an operation of MPI. */
+/* Two lists become one, as an operation of MPI on one element. */
 static void merge(void *in, void *inout, int *length, MPI_Datatype *type) {
+    const rg_faults *a = in;
+    rg_faults *out = inout, b = *out;
+    int i = 0, j = 0;
+    (void)length;
     (void)type;
-    for (int n = 0; n < *length; n++) {
-        const rg_faults *a = (const rg_faults *)in + n;
-        rg_faults *out = (rg_faults *)inout + n, b = *out;
-        int i = 0, j = 0;
-        out->count = a->count + b.count;
-        for (out->kept = 0; out->kept < RG_FAULTS_TOLD && (i < a->kept || j < b.kept); out->kept++) {
-            int order = i == a->kept ? 1 : j == b.kept ? -1 : compare(a->fault[i].key, b.fault[j].key);
-            out->fault[out->kept] =
-                order < 0 || (order == 0 && strcmp(a->fault[i].words, b.fault[j].words) < 0) ? a->fault[i]
-                                                                                             : b.fault[j];
-            out->count -= order == 0;
-            i += order <= 0;
-            j += order >= 0;
-        }
+    out->count = a->count + b.count;
+    for (out->kept = 0; out->kept < RG_FAULTS_TOLD && (i < a->kept || j < b.kept); out->kept++) {
+        int order = i == a->kept ? 1 : j == b.kept ? -1 : compare(a->fault[i].key, b.fault[j].key);
+        bool first = order < 0 || (order == 0 && strcmp(a->fault[i].words, b.fault[j].words) < 0);
+        out->fault[out->kept] = first ? a->fault[i] : b.fault[j];
+        out->count -= order == 0;
+        i += order <= 0;
+        j += order >= 0;
     }
 }
 

@@ -120,6 +120,10 @@ static const mistake probes[] = {
 };
 
 static const mistake law_and_form[] = {
+    {"  energy: 34\n", "  energy: 34\n  form: continuous\n  faces: x +\nmass: consistent\n",
+     ":14:10: interface.faces: x +: Unexpected end of expression at position 4; allowed: number or "
+     "expression in x, "
+     "y, z, nx, ny, nz\n"},
     {"  law: linear\n",
      "  law: rubber\n"
      "  form: intrinsc\n"

@@ -122,6 +122,9 @@ static void test_nearest_key(void **state) {
         {&rg_material_table, "densty", "density"},
         {&rg_body_table, "velocity", "velocity"},
         {&rg_body_table, "velocity.w", NULL},
+        {&rg_body_table, "a", "at"},
+        {&rg_case_table, "initial.velocity.zz", "initial.velocity.z"},
+        {&rg_probe_table, "q", NULL},
     };
     for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
         char text[64] = "";

@@ -131,6 +131,22 @@ static void test_spots(void) {
         good = good && p.value == (noted[i].lower ? i + 1 : before);
     }
     report(good && p.which == 4 && p.x[0] == 7 && p.x[1] == 8 && p.x[2] == 9, "place", "is the lowest noted");
+    for (int n = 0; n < 500; n++) { /* drawn at random */
+        int digit[2][4];
+        rg_spot q = {.which = RG_NOWHERE};
+        for (int i = 0; i < 2; i++) {
+            for (int k = 0; k < 4; k++) {
+                digit[i][k] = (int)(rg_hash((uint64_t)n, (uint64_t)(4 * i + k)) % 3);
+            }
+            rg_spot_note(&q, digit[i][0], (const double[3]){digit[i][1], digit[i][2], digit[i][3]}, i);
+        }
+        int number_of[2];
+        for (int i = 0; i < 2; i++) {
+            number_of[i] = 27 * digit[i][0] + 9 * digit[i][1] + 3 * digit[i][2] + digit[i][3];
+        }
+        good = good && q.value == (number_of[1] < number_of[0]);
+    }
+    report(good, "place", "is the lower one of two");
     for (int lowest = 0; lowest < ranks; lowest++) { /* on one rank; others have it further on, or none */
         rg_spot q = {.which = RG_NOWHERE};
         if (rank == lowest || rank % 2 == 0) {
@@ -140,8 +156,24 @@ static void test_spots(void) {
         report(good && q.which == 3 && q.x[0] == 1 && q.x[1] == 0.5 && q.x[2] == -3 && q.value == 10 + lowest,
                "place", "is the lowest of all ranks");
     }
-    rg_speak(MPI_COMM_SELF); /* alone: goes on */
-    report(true, "place", "is told by the first rank");
+    /* The first rank goes on to tell; the others wait until it comes to the same barrier, which here it does.
+     */
+    int told = 0, heard = 0;
+    if (rank == 0) {
+        told = 1;
+        rg_speak(MPI_COMM_WORLD);
+        for (int r = 1; r < ranks; r++) {
+            MPI_Send(&told, 1, MPI_INT, r, 1, MPI_COMM_WORLD);
+        }
+        MPI_Barrier(MPI_COMM_WORLD);
+    } else {
+        MPI_Request request;
+        MPI_Irecv(&heard, 1, MPI_INT, 0, 1, MPI_COMM_WORLD, &request);
+        rg_speak(MPI_COMM_WORLD);
+        MPI_Test(&request, &told, MPI_STATUS_IGNORE);
+        MPI_Wait(&request, MPI_STATUS_IGNORE);
+    }
+    report(told && (rank == 0 || heard), "place", "is told by the first rank, for which others wait");
 }
 
 /* ---- faults ---- */
