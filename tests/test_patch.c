@@ -135,6 +135,104 @@ static rg_gid find(const rg_part *p, rg_gid original) {
     return found == NULL ? -1 : found - p->original;
 }
 
+/* ---- The choice, by plain loops over the whole mesh ---- */
+
+typedef struct {
+    const rg_mesh *mesh;
+    const double *worse; /* [elements]: their ranks */
+    bool *in;            /* [elements] */
+    int count;
+} choice;
+
+static void join(choice *c, rg_gid e) {
+    if (!c->in[e] && c->count < RG_PATCH_MOST) {
+        c->in[e] = true;
+        c->count++;
+    }
+}
+
+/* All beside what has joined, the lowest numbers first. */
+static void add_ring(choice *c) {
+    bool *before = RG_NEW(bool, (size_t)c->mesh->elements);
+    memcpy(before, c->in, (size_t)c->mesh->elements);
+    for (rg_gid e = 0; e < c->mesh->elements; e++) {
+        for (int f = 0; f < 4; f++) {
+            rg_gid other = c->mesh->neighbour[4 * e + f];
+            if (other >= 0 && before[other]) {
+                join(c, e);
+            }
+        }
+    }
+    rg_free(before);
+}
+
+/* 1,000 elements around the worst one; the 64 worst and four rings around all; the 256 worst and four more.
+ */
+static void choose(choice *c) {
+    rg_gid *order = RG_NEW(rg_gid, 256);
+    bool *taken = RG_NEW(bool, (size_t)c->mesh->elements);
+    for (int k = 0; k < 256; k++) {
+        rg_gid worst = -1;
+        for (rg_gid e = 0; e < c->mesh->elements; e++) {
+            worst = !taken[e] && (worst < 0 || c->worse[e] > c->worse[worst]) ? e : worst;
+        }
+        order[k] = worst;
+        taken[worst] = true;
+    }
+    join(c, order[0]);
+    while (c->count < 1000) {
+        add_ring(c);
+    }
+    for (int seeds = 64; seeds <= 256; seeds *= 4) {
+        for (int k = 0; k < seeds; k++) {
+            join(c, order[k]);
+        }
+        for (int r = 0; r < 4; r++) {
+            add_ring(c);
+        }
+    }
+    rg_free(order);
+    rg_free(taken);
+}
+
+/* Against the choice above; all that is known of the elements comes along, in a mesh of the patch's own. */
+static bool well_chosen(const rg_part *patch, const rg_part *part, const rg_mesh *mesh,
+                        const rg_material *material) {
+    size_t n = (size_t)mesh->elements;
+    double *worse = RG_NEW(double, n);
+    choice c = {mesh, worse, RG_NEW(bool, n), 0};
+    rg_element *all = RG_NEW(rg_element, n);
+    for (rg_lid i = 0; i < part->elements; i++) {
+        worse[part->element[i].id] = rg_patch_rank(&part->element[i], material);
+        all[part->element[i].id] = part->element[i];
+    }
+    MPI_Allreduce(MPI_IN_PLACE, worse, (int)n, MPI_DOUBLE, MPI_MAX, MPI_COMM_WORLD);
+    MPI_Allreduce(MPI_IN_PLACE, all, (int)(n * sizeof *all), MPI_BYTE, MPI_BOR, MPI_COMM_WORLD);
+    n > RG_PATCH_MOST ? choose(&c) : (void)memset(c.in, 1, n);
+    bool good =
+        patch == NULL || (memcmp(patch->box, part->box, sizeof patch->box) == 0 &&
+                          patch->tile == rg_tile_elements(patch->total) && patch->total == patch->elements);
+    rg_gid at = 0, sides = 0;
+    for (rg_gid e = 0; patch != NULL && e < mesh->elements; e++) {
+        if (c.in[e]) {
+            const rg_element *p = &patch->element[at < patch->elements ? at : 0], *w = &all[e];
+            good = good && at < patch->elements && patch->original[at] == e && p->volume == w->volume &&
+                   p->material == w->material && memcmp(p->x, w->x, sizeof p->x) == 0 &&
+                   memcmp(p->other_volume, w->other_volume, sizeof p->other_volume) == 0 &&
+                   memcmp(p->beside, w->beside, sizeof p->beside) == 0;
+            for (int f = 0; f < 4; f++) {
+                sides += mesh->neighbour[4 * e + f] >= 0 && c.in[mesh->neighbour[4 * e + f]];
+            }
+            at++;
+        }
+    }
+    good = good && (patch == NULL || (at == patch->elements && patch->interfaces == sides / 2));
+    rg_free(worse);
+    rg_free(c.in);
+    rg_free(all);
+    return good;
+}
+
 /* Numbered in the order of the mesh, in whole tiles; neighbours know each other; faces to elements outside,
  * and no others, are cut. */
 static bool well_connected(const rg_part *patch, const rg_mesh *mesh) {
@@ -171,6 +269,7 @@ static void check_patch(void) {
                                         : patch->elements > 1000 && patch->elements <= RG_PATCH_MOST),
                each[k]->name, "size of the patch");
         report(patch == NULL || well_connected(patch, mesh), each[k]->name, "links of the patch");
+        report(well_chosen(patch, part, mesh, &material), each[k]->name, "elements of the patch");
         rg_part_free(part);
         rg_part_free(patch);
         rg_mesh_free(mesh);
