@@ -11,7 +11,7 @@ ROOMS = {
                 deshpande_evans_kernel cost_model material test_invariance.py test_contact.py test_friction.py test_viscosity.py
                 test_laws.py test_ceramic.py test_solids.py test_ledger.py test_spall.py"""),
     "mesh/import": (["src/import.*", "src/inp_read.*", "src/gmsh_*"],
-                    "mesh mesh_file inp import fuzz-inp test_mesh_faults.py test_meshes.py"),
+                    "mesh mesh_file inp import mesh_command fuzz-inp test_gmsh.py test_mesh_faults.py test_meshes.py"),
     "mesh/improve": (["src/improve*"], "improve test_meshes.py"),
     "mesh": (["src/mesh.*", "src/mesh_[fhiocr]*", "src/box.*", "src/gid_map.*", "src/tile_graph.*"],
              """mesh mesh_check mesh_command mesh_damage mesh_info mesh_file tiles part part_read domain

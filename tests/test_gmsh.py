@@ -1,0 +1,136 @@
+"""Meshes that Gmsh reads, from files of a few elements: groups, their names and numbers, types of elements, mistakes."""
+
+import re
+
+import h5py
+import numpy as np
+import pytest
+from conftest import PROGRAM, launch
+
+pytestmark = pytest.mark.skipif(not PROGRAM.with_name("rhegma-mesh").exists(), reason="rhegma-mesh is not built")
+
+POINTS = {1: (1, 2, 3), 2: (5, 2, 3.5), 3: (1.5, 7, 3), 4: (1, 2.5, 9), 5: (6, 8, 10)}
+TRI, QUAD, TET, HEXA, TRI6, TET10 = 2, 3, 4, 5, 9, 11
+SOLIDS = [(71, TET, 1, 21, (1, 2, 3, 4)), (72, TET, 2, 22, (2, 3, 4, 5))]  # number, type, group, entity, nodes
+
+
+def mesh(path, elements, names=(), points=POINTS):
+    """A file in Gmsh's format 2.2; names: (dimension, group, name)."""
+    lines = ["$MeshFormat", "2.2 0 8", "$EndMeshFormat"]
+    if names:
+        lines += ["$PhysicalNames", str(len(names)), *(f'{d} {g} "{n}"' for d, g, n in names), "$EndPhysicalNames"]
+    lines += ["$Nodes", str(len(points)), *(f"{n} {x} {y} {z}" for n, (x, y, z) in points.items()), "$EndNodes"]
+    lines += ["$Elements", str(len(elements)),
+              *(f"{number} {kind} 2 {group} {entity} " + " ".join(map(str, nodes))
+                for number, kind, group, entity, nodes in elements), "$EndElements", ""]
+    path.write_text("\n".join(lines))
+    return path
+
+
+def convert(tmp_path, *arguments, **keys):
+    """By the input's numbers of elements: their volume sets, and the sets of their faces; the warnings."""
+    source, out = mesh(tmp_path / "a.msh", *arguments, **keys), tmp_path / "a.h5"
+    process = launch("mesh", source, "-o", out)
+    assert process.returncode == 0, process.stderr
+    with h5py.File(out) as file:
+        names = {kind: [n.decode() for n in file[kind][:]] if kind in file else [] for kind in ("surface_sets", "volume_sets")}
+        region = {int(e): names["volume_sets"][r] if r >= 0 else None for e, r in zip(file["original"], file["region"])}
+        faces = {(int(file["original"][e]), int(f)): names["surface_sets"][file["set"][e, f]]
+                 for e, f in np.argwhere(file["set"][:] >= 0)}
+    return names, region, faces, [line.removeprefix(f"rhegma: warning: {source}") for line in process.stderr.splitlines()]
+
+
+def refused(tmp_path, *arguments, **keys):
+    source, out = mesh(tmp_path / "a.msh", *arguments, **keys), tmp_path / "refused.h5"
+    process = launch("mesh", source, "-o", out)
+    assert process.returncode == 2 and not out.exists()
+    return process.stderr.removeprefix(f"rhegma: {source}: ")
+
+
+def test_groups_by_name_and_number(tmp_path):
+    """A group without a name has its number; with one of that name it is one set; what is in no group is in no set."""
+    faces = [(1, TRI, 3, 31, (1, 2, 3)), (2, TRI, 4, 32, (1, 2, 4)), (3, TRI, 5, 33, (1, 3, 4)), (4, TRI, 0, 34, (2, 3, 5)),
+             (5, TRI6, 4, 35, (2, 5, 4, 6, 7, 8))]
+    middles = {6: (5.5, 5, 6.75), 7: (3.5, 5.25, 9.5), 8: (3, 2.25, 6.25)}
+    names, region, marked, said = convert(tmp_path, faces + SOLIDS, [(3, 1, "steel"), (2, 3, "5"), (2, 4, "foot")],
+                                          points=POINTS | middles)
+    assert names == {"surface_sets": ["5", "foot"], "volume_sets": ["steel", "2"]}
+    assert region == {71: "steel", 72: "2"}
+    assert marked == {(71, 3): "5", (71, 2): "foot", (71, 1): "5", (72, 1): "foot"}
+    assert said == [": 3 nodes belong to no tetrahedron and are left out; the first is node 6 at (5.5, 5, 6.75) m"]
+
+
+def test_entities_without_groups(tmp_path):
+    faces = [(1, TRI, 0, 31, (1, 2, 3)), (2, TRI, 0, 32, (2, 3, 4))]
+    solids = [(number, kind, 0, entity, nodes) for number, kind, _, entity, nodes in SOLIDS]
+    names, region, marked, said = convert(tmp_path, faces + solids)
+    assert names == {"surface_sets": ["31", "32"], "volume_sets": ["21", "22"]}
+    assert region == {71: "21", 72: "22"} and marked == {(71, 3): "31"}
+    assert said == [": 1 faces of surface sets lie between elements, not on the surface: in no set"]
+
+
+@pytest.mark.parametrize("count", [64, 65])
+def test_most_entities_that_can_be_sets(tmp_path, count):
+    faces = [(n, TRI, 0, 100 + n, (1, 2, 100 + n)) for n in range(1, count + 1)]
+    solids = [(number, kind, 0, entity, nodes) for number, kind, _, entity, nodes in SOLIDS]
+    names, _, _, said = convert(tmp_path, faces + solids, points=POINTS | {100 + n: (n, n * n, 0) for n in range(1, count + 1)})
+    assert len(names["surface_sets"]) == (64 if count == 64 else 0)
+    told = ": 65 surfaces without physical groups are more than the 64 that can be sets: in no set"
+    assert (told in said) == (count == 65)
+
+
+def test_what_is_in_no_physical_volume(tmp_path):
+    solids = [SOLIDS[0], (72, TET, 0, 22, (2, 3, 4, 5)), (73, TET, 0, 23, (1, 2, 3, 5))]
+    names, region, _, said = convert(tmp_path, solids)
+    assert region == {71: "1"} and names["volume_sets"] == ["1"]
+    assert ": 2 elements are in no physical volume and left out" in said
+
+
+def test_second_order(tmp_path):
+    ends = [(1, 2), (2, 3), (3, 1), (4, 1), (4, 3), (4, 2)]  # in Gmsh's order
+    points = POINTS | {10 + k: tuple((p + q) / 2 for p, q in zip(POINTS[a], POINTS[b])) for k, (a, b) in enumerate(ends)}
+    del points[5]
+    solid = [(71, TET10, 1, 21, (1, 2, 3, 4, *range(10, 16)))]
+    _, region, _, said = convert(tmp_path, solid, points=points)
+    assert region == {71: "1"} and said == []
+    for k in (4, 5):  # Abaqus has these two the other way round
+        moved = points | {10 + k: (points[10 + k][0] + 0.5, *points[10 + k][1:])}
+        _, _, _, said = convert(tmp_path, solid, points=moved)
+        far = 0.5 / np.linalg.norm(np.subtract(POINTS[ends[k][0]], POINTS[ends[k][1]]))
+        assert said == [": second-order elements are taken by their corners: 1 of 6 mid-nodes are off straight by more than "
+                        f"1e-06 of their edge, by {far:.2g} at most"]
+
+
+CUBE = {n + 1: (n & 1, n >> 1 & 1, n >> 2) for n in range(8)}
+HEX = (9, HEXA, 1, 21, (1, 2, 4, 3, 5, 6, 8, 7))
+
+
+def test_other_elements(tmp_path):
+    said = refused(tmp_path, [HEX], points=CUBE)
+    assert said == ("1 elements of type 'Hexahedron 8', the first of them element 9; only tetrahedra of first and second order "
+                    "are possible\n")
+    said = refused(tmp_path, [(7, QUAD, 3, 31, (1, 2, 5, 3)), *SOLIDS])
+    assert said == ("1 elements of type 'Quadrilateral 4', the first of them element 7; only tetrahedra of first and second "
+                    "order are possible\n")
+    _, region, _, said = convert(tmp_path, [(8, TRI, 3, 32, (1, 2, 3)), (7, QUAD, 0, 31, (1, 2, 5, 3)), *SOLIDS])
+    assert len(region) == 2 and said == []
+
+
+def test_names_that_are_too_long_or_too_many(tmp_path):
+    face = (1, TRI, 3, 31, (1, 2, 3))
+    names, _, marked, _ = convert(tmp_path, [face, *SOLIDS], [(2, 3, 63 * "n")])
+    assert names["surface_sets"] == [63 * "n"]
+    said = refused(tmp_path, [face, *SOLIDS], [(2, 3, 64 * "n")])
+    assert said == f"physical group '{64 * 'n'}': its name is longer than 63 bytes\n"
+    faces = [(n, TRI, 100 + n, 100 + n, (1, 2, 5)) for n in range(1, 66)]
+    assert refused(tmp_path, faces + SOLIDS) == "more than 64 physical groups of dimension 2\n"
+
+
+def test_reasons(tmp_path):
+    process = launch("mesh", tmp_path / "none.msh", "-o", tmp_path / "a.h5")
+    assert process.returncode == 2 and process.stderr == f"rhegma: {tmp_path / 'none.msh'}: cannot be read: No such file or directory\n"
+    (tmp_path / "b.geo").write_text("Box(1) = {0, 0, 0, 1, 1\n")
+    process = launch("mesh", tmp_path / "b.geo", "-o", tmp_path / "a.h5")
+    assert process.returncode == 2 and re.match(rf"rhegma: {tmp_path}/b.geo: Gmsh: '.*b.geo', line \d+: syntax error", process.stderr)
+    process = launch("mesh", tmp_path / "b.geo", "-o", tmp_path / "a.h5", "--scale", "0")
+    assert "--scale must be a number > 0" in process.stderr
