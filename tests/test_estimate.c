@@ -398,9 +398,5 @@ int main(int argc, char **argv) {
     report(rank != 0 || check_units(), "words", "of waves that no solid has");
     report(rank != 0 || check_onsets(), "words", "of an onset too stiff for the step");
     report(rank != 0 || check_claims(), "words", "of materials without elements");
-    if (rank == 0) {
-        printf("1..%d\n", number);
-    }
-    MPI_Finalize();
-    return failures > 0;
+    return finish();
 }

@@ -299,9 +299,5 @@ int main(int argc, char **argv) {
     test_faults_of_all(29, RG_FAULTS_TOLD);
     test_no_faults();
     test_words_of_one_fault();
-    if (rank == 0) {
-        printf("1..%d\n", number);
-    }
-    MPI_Finalize();
-    return failures > 0;
+    return finish();
 }

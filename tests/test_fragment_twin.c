@@ -462,9 +462,5 @@ int main(int argc, char **argv) {
     check_fragments("shared nodes", 4, shared, 20);
     check_large();
     check_overlaps();
-    if (rank == 0) {
-        printf("1..%d\n", number);
-    }
-    MPI_Finalize();
-    return failures > 0;
+    return finish();
 }

@@ -103,9 +103,5 @@ int main(int argc, char **argv) {
     check_claims(m, 4);
     check_claims(m, 25);
     rg_mesh_free(m);
-    if (rank == 0) {
-        printf("1..%d\n", number); /* TAP allows the plan at the end */
-    }
-    MPI_Finalize();
-    return failures > 0;
+    return finish();
 }

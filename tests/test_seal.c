@@ -10,22 +10,20 @@
 
 #include "hash.h"
 #include "mem.h"
+#include "tap.h"
 
-enum { PLANNED = 9, BYTES = RG_SEAL + 2 * (1 << 20) + 12345, RANDOM = 1000 };
+enum { PLANNED = 10, BYTES = RG_SEAL + 2 * (1 << 20) + 12345, RANDOM = 1000 };
 
-static int rank, ranks, done, failed;
+static int ranks;
 static char path[200], reason[300];
+static bool agreed = true;
 
-static void ok(bool good, const char *name) {
-    if (rank == 0) {
-        printf("%sok %d - %s\n", good ? "" : "not ", ++done, name);
-        failed += !good;
-    }
-}
-
+/* What rank 0 finds, so that all ranks go on alike; notes whether all found that. */
 static bool holds(void) {
     MPI_Barrier(MPI_COMM_WORLD);
-    bool good = rg_seal_holds(path, MPI_COMM_WORLD, reason, sizeof reason);
+    bool mine = rg_seal_holds(path, MPI_COMM_WORLD, reason, sizeof reason), good = mine;
+    MPI_Bcast(&good, 1, MPI_C_BOOL, 0, MPI_COMM_WORLD);
+    agreed = agreed && mine == good;
     MPI_Barrier(MPI_COMM_WORLD);
     return good;
 }
@@ -82,15 +80,16 @@ static void check_bits(void) {
     for (int bit = 0; bit < 8 * RG_SEAL; bit += every) {
         head = noticed(bit / 8, bit % 8) && head;
     }
-    ok(head, "bits of the seal: all of them, on one rank");
+    report(head, "seal", "its bits: all of them, on one rank");
     for (uint64_t i = 0; i < RANDOM; i += (uint64_t)every) {
         uint64_t h = rg_hash(1, i);
         off_t position = RG_SEAL + (off_t)(rg_hash_uniform(h) * (BYTES - RG_SEAL));
         body = noticed(position, (int)(h % 8)) && body;
     }
-    body = noticed(RG_SEAL, 0) && noticed(BYTES - 1, 7) && body;
-    ok(body, "bits of what it seals: 1,000 on one rank, and the first and the last");
-    ok(holds(), "the file as it was");
+    body = noticed(RG_SEAL, 0) && body;
+    body = noticed(BYTES - 1, 7) && body;
+    report(body, "seal", "bits of what it seals: 1,000 on one rank, and the first and the last");
+    report(holds(), "seal", "the file as it was");
 }
 
 static void check_length(void) {
@@ -107,7 +106,7 @@ static void check_length(void) {
         snprintf(why, sizeof why, "it has %lld bytes and should have %d", (long long)lengths[i], BYTES);
         good = refused(lengths[i] < 100 ? "its head is not that of a checkpoint" : why) && good;
     }
-    ok(good, "any other length");
+    report(good, "seal", "any other length");
 }
 
 /* What is written stays readable for later versions: of a file of 3 parts, by any number of ranks. */
@@ -127,7 +126,7 @@ static void check_text(void) {
     if (!good) {
         printf("# %s", found);
     }
-    ok(good, "its text");
+    report(good, "seal", "its text");
 }
 
 static void check_reasons(void) {
@@ -140,7 +139,7 @@ static void check_reasons(void) {
     flip(BYTES - 5, 2);
     good = refused("its checksum is wrong: it is damaged") && good;
     flip(BYTES - 5, 2);
-    ok(good, "what is wrong");
+    report(good, "seal", "what is wrong");
 }
 
 int main(int argc, char **argv) {
@@ -154,8 +153,8 @@ int main(int argc, char **argv) {
         write_file();
     }
     MPI_Bcast(path, sizeof path, MPI_CHAR, 0, MPI_COMM_WORLD);
-    ok(!holds(), "a file without a seal");
-    ok(rg_seal_put(path, 77, MPI_COMM_WORLD) && holds(), "a file with one");
+    report(!holds(), "seal", "a file without a seal");
+    report(rg_seal_put(path, 77, MPI_COMM_WORLD) && holds(), "seal", "a file with one");
     check_text();
     check_reasons();
     check_bits();
@@ -164,10 +163,9 @@ int main(int argc, char **argv) {
         unlink(path);
     }
     MPI_Barrier(MPI_COMM_WORLD);
-    ok(refused("cannot be read: No such file or directory") && !rg_seal_put(path, 77, MPI_COMM_WORLD),
-       "no file");
-    int bad = rank == 0 && (failed > 0 || done != PLANNED);
-    MPI_Bcast(&bad, 1, MPI_INT, 0, MPI_COMM_WORLD);
+    report(refused("cannot be read: No such file or directory") && !rg_seal_put(path, 77, MPI_COMM_WORLD),
+           "seal", "no file");
+    report(agreed, "seal", "all ranks find the same");
     MPI_Finalize();
-    return bad;
+    return failures > 0 || number != PLANNED;
 }

@@ -116,9 +116,5 @@ int main(int argc, char **argv) {
         rg_slab_free(s);
         rg_free(d.id);
     }
-    if (rank == 0) {
-        printf("1..%d\n", number);
-    }
-    MPI_Finalize();
-    return failures > 0;
+    return finish();
 }

@@ -641,9 +641,5 @@ int main(int argc, char **argv) {
     check_regions();
     check_infinite_face();
     check_bytes();
-    if (rank == 0) {
-        printf("1..%d\n", number);
-    }
-    MPI_Finalize();
-    return failures > 0;
+    return finish();
 }

@@ -411,8 +411,5 @@ int main(int argc, char **argv) {
         rg_case_free(c);
     }
     check_start();
-    if (rank == 0)
-        printf("1..%d\n", number);
-    MPI_Finalize();
-    return failures > 0;
+    return finish();
 }
