@@ -130,3 +130,12 @@ def test_uniaxial_strength_is_that_of_a_point(run, figure, load, sign, end, stre
     figure(f"ceramic cube, {load} at 1e4/s: strain there", 100 * abs(rate * history["time"][top]), theory=strain, bound=0.015,
            unit="%", relative=True, why=DIGITS)
     assert abs(history["middle_szz"][-1]) < 0.6e9 * strength
+
+
+@pytest.mark.parametrize("safety, bound", [(0.5, 0.03), (0.25, 0.012)])
+def test_ledger_of_a_cube_that_fails_all_at_once(run, figure, safety, bound):
+    """What is lost within a few steps is seen to first order in the step."""
+    cube = run(BENCH / "ceramic-cube.yaml", sets={"time.safety": safety})
+    assert cube.summary["damage_J"] > 0.25 * cube.summary["energy_largest_J"]
+    figure(f"ceramic cube that is crushed, at {safety} of the critical step: energy error", cube.summary["energy_error_rel"],
+           bound=bound)
