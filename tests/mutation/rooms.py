@@ -23,32 +23,34 @@ ROOMS = {
                   test_cli.py test_continuous.py test_parallel.py"""),
     "domain": (["src/domain.*", "src/interfaces.*", "src/element.*", "src/halo.*", "src/joint.*", "src/assembly*", "src/slab.*",
                 "src/sparse.*"],
-               """domain assembly slab patch fragment verify test_invariance.py test_contact.py test_bodies.py test_continuous.py
-               test_fragments.py test_solids.py test_bimaterials.py test_ledger.py test_spall.py test_parallel.py"""),
+               """domain assembly slab patch fragment verify fragment_twin ledger snapshot test_invariance.py
+               test_contact.py test_bodies.py test_continuous.py test_fragments.py test_solids.py test_bimaterials.py
+               test_ledger.py test_spall.py test_parallel.py"""),
     "solver": (["src/solver.*", "src/tile.*", "src/constraint.*", "src/body*", "src/law.*", "src/strength.*", "src/pace.*",
                 "src/phases.*", "src/spectrum.*", "src/balance.*", "src/state.*"],
-               """pace strength patch material verify case test_invariance.py test_contact.py test_friction.py test_viscosity.py
-               test_bodies.py test_output.py test_continuous.py test_ceramic.py test_laws.py test_ledger.py test_spall.py
-               test_solids.py test_waves.py test_bimaterials.py test_fragments.py test_impact.py test_partition.py
-               test_parallel.py test_restart.py"""),
+               """pace strength patch material verify case checkpoint_file ledger test_invariance.py test_contact.py
+               test_friction.py test_viscosity.py test_bodies.py test_output.py test_continuous.py test_ceramic.py
+               test_laws.py test_ledger.py test_spall.py test_solids.py test_waves.py test_bimaterials.py
+               test_fragments.py test_impact.py test_partition.py test_parallel.py test_restart.py"""),
     "diagnostics": (["src/ledger.*", "src/fragment*", "src/overlap.*", "src/crack_surface.*", "src/state_hash.*", "src/probe.*",
                      "src/autopsy.*"],
-                    """fragment fragment_table fragment_twin ledger probe verify test_output.py test_invariance.py test_friction.py test_viscosity.py test_bodies.py
-                    test_ceramic.py test_fragments.py test_ledger.py test_spall.py test_faults.py test_bimaterials.py test_cli.py
-                    test_impact.py test_parallel.py test_restart.py"""),
+                    """fragment fragment_table fragment_twin ledger probe verify test_output.py test_invariance.py
+                    test_friction.py test_viscosity.py test_bodies.py test_ceramic.py test_fragments.py test_ledger.py
+                    test_spall.py test_faults.py test_bimaterials.py test_cli.py test_impact.py test_parallel.py
+                    test_restart.py"""),
     "output": (["src/snapshot.*", "src/writer.*", "src/xdmf.*", "src/progress.*", "src/summary.*", "src/estimate.*"],
-               """writer slab estimate progress snapshot summary xdmf test_output.py test_invariance.py test_spall.py test_cli.py
-               test_bimaterials.py
-               test_fragments.py test_faults.py test_parallel.py test_restart.py"""),
+               """writer slab estimate progress snapshot summary xdmf test_output.py test_invariance.py test_spall.py
+               test_cli.py test_bimaterials.py test_fragments.py test_faults.py test_parallel.py test_restart.py"""),
     "restart": (["src/checkpoint*", "src/state_table.*", "src/seal.*", "src/restart.*", "src/schedule.*"],
-                """seal slab schedule restart checkpoint checkpoint_file fuzz-checkpoint test_output.py test_faults.py test_cli.py
-               test_restart.py test_partition.py"""),
+                """seal slab schedule restart checkpoint checkpoint_file fuzz-checkpoint test_output.py test_faults.py
+                test_cli.py test_restart.py test_partition.py"""),
     "verify": (["src/verify*"], "verify test_verify.py"),
     "case": (["src/case*", "src/expr.*"],
              """case case_text case_echo case_ranges case_rules case_values case_mistakes numbers strength fuzz-case test_output.py test_laws.py test_bodies.py test_cli.py
              test_bimaterials.py test_continuous.py test_restart.py"""),
     "base": (["src/*"],
-             """numbers exchange files interrupt run slab seal writer fragment verify test_output.py test_mesh_faults.py test_faults.py test_cli.py
+             """numbers exchange files interrupt run slab seal writer fragment verify checkpoint_file fragment_table
+             fragment_twin ledger probe summary test_output.py test_mesh_faults.py test_faults.py test_cli.py
              test_fragments.py test_meshes.py test_partition.py test_restart.py"""),
     "plot": (["bench/plot"], ""),
 }
