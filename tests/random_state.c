@@ -179,7 +179,8 @@ static void draw_registered(rg_solver *s, uint64_t seed) {
             for (int n = 0; n < a->count; n++) {
                 double x = drawn(seed, body ? DRAW_BODY : DRAW_CONSTRAINT, of, n);
                 /* a body begins with its place: not far from where it was, so that the ball touches */
-                row[n] = body && n < 3 ? s->bodies->body[i].input->at[n] + 5e-5 * (1.5 + x) : 1e-3 * x;
+                bool begins = body && n < 3;
+                row[n] = begins ? s->bodies->body[i].input->at[n] + 5e-5 * (1.5 + x) : body ? x : 1e-3 * x;
             }
             rg_state_put(a, i, row);
         }
