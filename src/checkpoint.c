@@ -151,7 +151,7 @@ static void put_elements(rg_h5_file *f, hid_t group, rg_checkpoints *k, const rg
 
 static void put_rows(rg_h5_file *f, hid_t group, const rg_state_array *a) {
     size_t bytes = rg_state_bytes(a);
-    char *rows = RG_NEW(char, a->records *bytes + 1);
+    char *rows = RG_NEW(char, a->records *bytes);
     for (size_t i = 0; i < a->records; i++) {
         rg_state_get(a, i, rows + i * bytes);
     }
@@ -359,7 +359,7 @@ static bool get_elements(hid_t group, rg_checkpoints *k, const rg_state_array *a
 /* Every rank reads all. */
 static bool get_rows(hid_t group, const rg_state_array *a) {
     size_t bytes = rg_state_bytes(a);
-    char *rows = RG_NEW(char, a->records *bytes + 1);
+    char *rows = RG_NEW(char, a->records *bytes);
     rg_h5_slab s = {.name = a->name,
                     .type = rg_state_h5_type(a),
                     .columns = a->count,
@@ -459,7 +459,7 @@ void rg_checkpoint_load(rg_checkpoints *k) {
     int count = s->rank == 0 ? rg_folder_list(k->folder, &steps) : 0;
     MPI_Bcast(&count, 1, MPI_INT, 0, s->comm);
     if (s->rank != 0) {
-        steps = RG_NEW(int64_t, (size_t)count + 1);
+        steps = RG_NEW(int64_t, (size_t)count);
     }
     MPI_Bcast(steps, count, MPI_INT64_T, 0, s->comm);
     if (count == 0) {

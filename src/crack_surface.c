@@ -80,7 +80,7 @@ size_t rg_crack_surface(const rg_solver *s, rg_crack_face **faces) {
     for (size_t i = 0; i < d->iblocks * RG_LANES; i++) {
         count += d->counted[i] && rg_face_is_broken(s, i);
     }
-    *faces = RG_NEW(rg_crack_face, count + 1);
+    *faces = RG_NEW(rg_crack_face, count);
     size_t n = 0;
     for (size_t t = 0; t < d->tiles; t++) {
         for (size_t i = d->tile[t].ibegin * RG_LANES; i < d->tile[t].iend * RG_LANES; i++) {

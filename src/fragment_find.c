@@ -113,7 +113,7 @@ static rg_fragment_label element_label(const finder *f, size_t slot) {
 }
 
 static void label_components(finder *f) {
-    f->label = RG_NEW(rg_fragment_label, f->count + 1);
+    f->label = RG_NEW(rg_fragment_label, f->count);
     f->shared = RG_NEW(uint8_t, f->count + 1);
     for (size_t k = 0; k < f->count; k++) {
         f->label[k].id = INT64_MAX;
@@ -158,8 +158,8 @@ static void list_joints(finder *f, bridges *b) {
 }
 
 static bridges make_bridges(const finder *f, const int *to, size_t count) {
-    rg_fragment_label *message = RG_NEW(rg_fragment_label, 2 * count + 1);
-    return (bridges){rg_exchange_make(to, count, f->s->comm), RG_NEW(rg_lid, count + 1), message,
+    rg_fragment_label *message = RG_NEW(rg_fragment_label, 2 * count);
+    return (bridges){rg_exchange_make(to, count, f->s->comm), RG_NEW(rg_lid, count), message,
                      message + count};
 }
 
@@ -187,7 +187,7 @@ static bool spread(finder *f, bridges *b) {
 
 static void label_across(finder *f) {
     const rg_joints *joints = f->s->joints;
-    int *to = RG_NEW(int, f->d->shared + 1);
+    int *to = RG_NEW(int, f->d->shared);
     for (size_t k = 0; k < f->d->shared; k++) {
         to[k] = f->d->shared_face[k].rank;
     }
@@ -225,14 +225,14 @@ static int by_id(const void *a, const void *b) {
 
 /* Components become fragments: several are one where they hang together on other ranks. */
 static void merge_components(const finder *f, rg_fragment_parts *p) {
-    numbered *list = RG_NEW(numbered, f->count + 1);
-    rg_lid *fragment = RG_NEW(rg_lid, f->count + 1);
+    numbered *list = RG_NEW(numbered, f->count);
+    rg_lid *fragment = RG_NEW(rg_lid, f->count);
     for (size_t k = 0; k < f->count; k++) {
         list[k] = (numbered){f->label[k].id, (rg_lid)k};
     }
     qsort(list, f->count, sizeof *list, by_id);
-    p->label = RG_NEW(rg_fragment_label, f->count + 1);
-    p->shared = RG_NEW(uint8_t, f->count + 1);
+    p->label = RG_NEW(rg_fragment_label, f->count);
+    p->shared = RG_NEW(uint8_t, f->count);
     for (size_t k = 0; k < f->count; k++) {
         p->count += k == 0 || list[k].id != list[k - 1].id;
         fragment[list[k].component] = (rg_lid)p->count - 1;
@@ -249,7 +249,7 @@ static void merge_components(const finder *f, rg_fragment_parts *p) {
 static void list_members(const rg_domain *d, rg_fragment_parts *p) {
     size_t slots = d->blocks * RG_LANES;
     p->start = RG_NEW(size_t, p->count + 2);
-    p->member = RG_NEW(rg_lid, d->elements + 1);
+    p->member = RG_NEW(rg_lid, d->elements);
     for (size_t i = 0; i < slots; i++) { /* counts, two places on, become ends, one place on */
         p->start[p->of[i] + 2] += p->of[i] >= 0;
     }
@@ -268,7 +268,7 @@ rg_fragment_parts *rg_fragments_find(const rg_solver *s) {
     size_t slots = d->blocks * RG_LANES;
     rg_fragment_parts *p = RG_NEW(rg_fragment_parts, 1);
     p->of = RG_NEW(rg_lid, slots);
-    finder f = {s, d, RG_NEW(rg_lid, slots), RG_NEW(rg_lid, d->own_rows + 1), 0, p->of, NULL, NULL};
+    finder f = {s, d, RG_NEW(rg_lid, slots), RG_NEW(rg_lid, d->own_rows), 0, p->of, NULL, NULL};
     for (size_t i = 0; i < slots; i++) {
         f.parent[i] = (rg_lid)i;
     }

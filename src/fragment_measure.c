@@ -192,12 +192,12 @@ static void measure_here(harvest *h) {
             h->m[a][b] = rg_mass_entry(h->s->lumped, a, b);
         }
     }
-    h->place = RG_NEW(size_t, p->count + 1);
+    h->place = RG_NEW(size_t, p->count);
     for (size_t k = 0; k < p->count; k++) {
         h->place[k] = h->count[p->shared[k]]++;
     }
-    h->whole = RG_NEW(rg_fragment, h->count[0] + 1);
-    h->part = RG_NEW(part, h->count[1] + 1);
+    h->whole = RG_NEW(rg_fragment, h->count[0]);
+    h->part = RG_NEW(part, h->count[1]);
     for (size_t k = 0; k < p->count; k++) {
         reap(h, k, true);
     }
@@ -210,13 +210,13 @@ static void measure_here(harvest *h) {
 
 /* Sends records that begin with an id to the ranks that list them. The caller owns the result. */
 static void *send_home(const rg_solver *s, const void *records, size_t size, size_t count, size_t *arriving) {
-    int *to = RG_NEW(int, count + 1);
+    int *to = RG_NEW(int, count);
     for (size_t i = 0; i < count; i++) {
         rg_gid id = *(const rg_gid *)(const void *)((const char *)records + i * size);
         to[i] = rg_slab_owner(s->part->total, s->ranks, id);
     }
     rg_exchange *x = rg_exchange_make(to, count, s->comm);
-    void *arrived = rg_alloc(x->arriving + 1, size);
+    void *arrived = rg_alloc(x->arriving, size);
     rg_exchange_send(x, size, records, arrived);
     *arriving = x->arriving;
     rg_exchange_free(x);
@@ -246,7 +246,7 @@ size_t rg_fragments_measure(const rg_solver *s, const rg_fragment_parts *p, rg_f
     rg_free(h.whole);
     rg_free(h.part);
     qsort(list, parts, sizeof *list, by_id);
-    *rows = RG_NEW(rg_fragment, wholes + parts + 1);
+    *rows = RG_NEW(rg_fragment, wholes + parts);
     for (n = 0; n < wholes; n++) {
         (*rows)[n] = whole[n];
     }

@@ -81,7 +81,7 @@ static void collect(rg_fragment_table *t, const rg_solver *s, rg_fragment *rows,
             MPI_Status status;
             MPI_Probe(r, TAG, s->comm, &status);
             MPI_Get_count(&status, row, &number);
-            from = RG_NEW(rg_fragment, (size_t)number + 1);
+            from = RG_NEW(rg_fragment, (size_t)number);
             MPI_Recv(from, number, row, r, TAG, s->comm, MPI_STATUS_IGNORE);
         }
         count(t, from, (size_t)number);

@@ -149,7 +149,7 @@ static void list_elements(lister *l) {
 /* ---- Which cells hold several fragments ---- */
 
 static rg_exchange *to_cells(const rg_solver *s, const void *records, size_t size, size_t count) {
-    int *to = RG_NEW(int, count + 1);
+    int *to = RG_NEW(int, count);
     for (size_t i = 0; i < count; i++) {
         const presence *at = (const void *)((const char *)records + i * size);
         to[i] = (int)(rg_mix((uint64_t)at->cell) % (uint64_t)s->ranks);
@@ -162,7 +162,7 @@ static rg_exchange *to_cells(const rg_solver *s, const void *records, size_t siz
 /* The first fragment that a cell was seen with; a second one makes it mixed. */
 static void judge_cells(const presence *seen, size_t count, uint8_t *mixed) {
     rg_gid_map place = rg_gid_map_make(count);
-    uint8_t *several = RG_NEW(uint8_t, count + 1);
+    uint8_t *several = RG_NEW(uint8_t, count);
     for (size_t i = 0; i < count; i++) {
         rg_lid first = rg_gid_map_put(&place, seen[i].cell, (rg_lid)i);
         several[first] |= seen[first].fragment != seen[i].fragment;
@@ -177,11 +177,11 @@ static void judge_cells(const presence *seen, size_t count, uint8_t *mixed) {
 /* The cells here that several fragments reach into. */
 static rg_gid_map mixed_cells(lister *l) {
     list_elements(l);
-    l->presence = RG_NEW(presence, l->count + 1);
+    l->presence = RG_NEW(presence, l->count);
     list_elements(l);
     rg_exchange *x = to_cells(l->s, l->presence, sizeof *l->presence, l->count);
-    presence *seen = RG_NEW(presence, x->arriving + 1);
-    uint8_t *mixed = RG_NEW(uint8_t, x->arriving + 1), *answer = RG_NEW(uint8_t, l->count + 1);
+    presence *seen = RG_NEW(presence, x->arriving);
+    uint8_t *mixed = RG_NEW(uint8_t, x->arriving), *answer = RG_NEW(uint8_t, l->count);
     rg_exchange_send(x, sizeof *seen, l->presence, seen);
     judge_cells(seen, x->arriving, mixed);
     rg_exchange_answer(x, sizeof *mixed, mixed, answer);
@@ -257,11 +257,11 @@ static void compare(visitor *a, visitor *b, rg_gid pair[2]) {
 /* The lowest pair among the visitors of this rank's cells. */
 static void compare_visitors(lister *l, rg_gid pair[2]) {
     list_elements(l);
-    l->visitor = RG_NEW(visitor, l->count + 1);
+    l->visitor = RG_NEW(visitor, l->count);
     list_elements(l);
     rg_exchange *x = to_cells(l->s, l->visitor, sizeof *l->visitor, l->count);
     size_t count = x->arriving;
-    visitor *met = RG_NEW(visitor, count + 1);
+    visitor *met = RG_NEW(visitor, count);
     rg_exchange_send(x, sizeof *met, l->visitor, met);
     qsort(met, count, sizeof *met, by_cell);
     for (size_t i = 0; i < count; i++) {

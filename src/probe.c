@@ -123,8 +123,8 @@ rg_probes *rg_probes_find(const rg_solver *s) {
                      .probes = probes,
                      .row = probes * VALUES + s->bodies->count * BODY,
                      .bodies = s->bodies};
-    p->slot = RG_NEW(rg_lid, (size_t)p->probes + 1);
-    p->at = rg_alloc((size_t)p->probes + 1, sizeof *p->at);
+    p->slot = RG_NEW(rg_lid, (size_t)p->probes);
+    p->at = rg_alloc((size_t)p->probes, sizeof *p->at);
     for (int i = 0; i < p->probes; i++) {
         p->slot[i] = locate(s, i, p->at[i]);
     }

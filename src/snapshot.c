@@ -122,8 +122,8 @@ static void find_region(rg_snapshots *w, const rg_solver *s) {
     nodal_records positions = {s->domain, w->slab->slot, NULL};
     window_source x = open_source(w, s->input, NODAL, get_position, &positions);
     rg_cell_source cells = cells_of(&x);
-    double *record = RG_NEW(double, cells.cells *NODAL + 1);
-    size_t *row = RG_NEW(size_t, w->slab->count + 1);
+    double *record = RG_NEW(double, cells.cells *NODAL);
+    size_t *row = RG_NEW(size_t, w->slab->count);
     rg_spot bad = {.which = RG_NOWHERE};
     for (size_t k = 0; k < cells.windows; k++) {
         size_t n = cells.get(&x, k, record);
@@ -389,7 +389,7 @@ static void write_cracks(rg_snapshots *w, const rg_solver *s) {
     rg_crack_face *face;
     size_t count = rg_crack_surface(s, &face);
     count = keep_faces(s->input->output.region, count, face);
-    double *column = RG_NEW(double, 9 * count + 1);
+    double *column = RG_NEW(double, 9 * count);
     for (size_t i = 0; i < 9 * count; i++) {
         column[i] = face[i / 9].x[i % 9 / 3][i % 3];
     }

@@ -78,7 +78,7 @@ static entry *entries(const rg_state_table *t, const rg_solver *s, bool all, siz
     const rg_state_array *a = t->array[0];
     bool faces = a->of == RG_OF_FACE;
     size_t most = faces ? most_faces(s, !all) : a->records;
-    entry *list = RG_NEW(entry, most + 1);
+    entry *list = RG_NEW(entry, most);
     *count = faces ? face_entries(s, !all, list) : most;
     for (size_t i = 0; !faces && i < most; i++) {
         list[i] = (entry){a->key[i], i};
@@ -99,7 +99,7 @@ static size_t row_bytes(const rg_state_table *t) {
 static rg_sparse gather(const rg_state_table *t, const rg_solver *s) {
     rg_sparse own = {.bytes = row_bytes(t)};
     entry *list = entries(t, s, false, &own.rows);
-    own.row = RG_NEW(char, own.rows *own.bytes + 1);
+    own.row = RG_NEW(char, own.rows *own.bytes);
     for (size_t i = 0; i < own.rows; i++) {
         char *at = own.row + i * own.bytes;
         memcpy(at, &list[i].key, sizeof list[i].key);
@@ -169,7 +169,7 @@ void rg_state_table_write(rg_h5_file *f, const rg_state_table *t, const rg_solve
     hid_t group = rg_h5_group(f, t->name);
     int64_t first, total;
     number(f->comm, (int64_t)sorted.rows, &first, &total);
-    char *column = RG_NEW(char, sorted.rows *sorted.bytes + slab->count + 1);
+    char *column = RG_NEW(char, sorted.rows *sorted.bytes + slab->count);
     for (size_t i = 0; i < sorted.rows; i++) {
         column[rg_sparse_key(&sorted, i) / 4 - slab->first]++;
     }
@@ -229,7 +229,7 @@ static bool keys_fit(const rg_sparse *rows, const rg_slab *slab, const uint8_t *
 /* The slab's rows of the table. Collective; false on all ranks if they cannot be read. */
 static bool read_sorted(rg_h5_file *f, hid_t group, const rg_state_table *t, const rg_slab *slab,
                         rg_sparse *sorted) {
-    uint8_t *of_element = RG_NEW(uint8_t, slab->count + 1);
+    uint8_t *of_element = RG_NEW(uint8_t, slab->count);
     rg_h5_slab rows = rows_slab(slab);
     bool ok = rg_h5_all(f->comm, rg_h5_read(group, &rows, of_element));
     for (size_t i = 0; ok && i < slab->count; i++) {
@@ -237,8 +237,8 @@ static bool read_sorted(rg_h5_file *f, hid_t group, const rg_state_table *t, con
     }
     int64_t first, total;
     number(f->comm, (int64_t)sorted->rows, &first, &total);
-    sorted->row = RG_NEW(char, sorted->rows * sorted->bytes + 1);
-    char *column = RG_NEW(char, sorted->rows * sorted->bytes + 1);
+    sorted->row = RG_NEW(char, sorted->rows * sorted->bytes);
+    char *column = RG_NEW(char, sorted->rows * sorted->bytes);
     size_t from = 0, size = 0;
     for (int k = -1; ok && k < t->arrays; k++) {
         rg_h5_slab c = column_slab(t, k, key_slab(sorted, first, total), &from, &size);

@@ -132,8 +132,8 @@ static void write_fields(rg_writer *w, size_t fields, const rg_volume_field *fie
         dataset[f] = rg_h5_begin(&w->h5, w->h5.file, &slab[f], field[f].unit);
         widest = width(&field[f]) > widest ? width(&field[f]) : widest;
     }
-    double *record = RG_NEW(double, source->cells * source->values + 1);
-    double *part = RG_NEW(double, source->cells *widest + 1);
+    double *record = RG_NEW(double, source->cells * source->values);
+    double *part = RG_NEW(double, source->cells *widest);
     for (size_t k = 0; k < source->windows; k++) {
         size_t n = source->get(source->of, k, record);
         for (size_t f = 0; f < fields; f++) {
