@@ -25,6 +25,7 @@ enum { SEED = 17, PROBES = 3, BODIES = 2, COLUMNS = 1 + 12 * PROBES + 9 * BODIES
 
 static jmp_buf escape;
 static bool expect_fatal;
+static int fatal_status;
 static char said[1000];
 
 void rg_fatal(int status, const char *format, ...) {
@@ -32,7 +33,8 @@ void rg_fatal(int status, const char *format, ...) {
     va_start(args, format);
     vsnprintf(said, sizeof said, format, args);
     va_end(args);
-    if (!expect_fatal || status != RG_USAGE) {
+    fatal_status = status;
+    if (!expect_fatal) {
         printf("Bail out! %s\n", said);
         MPI_Abort(MPI_COMM_WORLD, 1);
     }
@@ -271,7 +273,7 @@ static bool refused(const rg_solver *s, const char *words) {
         rg_probes_find(s);
     }
     expect_fatal = false;
-    return strcmp(said, words) == 0;
+    return strcmp(said, words) == 0 && fatal_status == RG_USAGE;
 }
 
 static void check_outside(void) {
@@ -292,6 +294,29 @@ static void check_outside(void) {
         random_state_free(&r);
     }
     report(good, "probes", "one outside");
+}
+
+static void check_full_disk(void) {
+    bool good = true;
+    if (rank == 0) {
+        random_state r = make("output.probes=[{name: a, at: [0.71e-3, 0.23e-3, 2.35e-3]}]", MPI_COMM_SELF);
+        remove(in("history.csv"));
+        good = symlink("/dev/full", in("history.csv")) == 0;
+        rg_probes *p = rg_probes_find(r.solver);
+        rg_probes_open(p, r.solver);
+        rg_probes_next(p, 1);
+        said[0] = '\0';
+        expect_fatal = true;
+        if (setjmp(escape) == 0) {
+            rg_probes_flush(p);
+        }
+        expect_fatal = false;
+        good = good && fatal_status == RG_FAILURE &&
+               strcmp(said, "history.csv: cannot be written: No space left on device") == 0;
+        remove(in("history.csv"));
+        random_state_free(&r);
+    }
+    report(good, "probes", "a full disk");
 }
 
 /* ---- autopsies ---- */
@@ -545,6 +570,7 @@ int main(int argc, char **argv) {
     check_probes();
     check_nothing_to_record();
     check_outside();
+    check_full_disk();
     check_autopsy();
     if (rank == 0) {
         remove(in("history.csv"));
