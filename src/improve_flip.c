@@ -58,7 +58,7 @@ static bool make_ring(const rg_tets *t, rg_gid a, rg_gid b, ring *r) {
     rg_gid tet[MOST_RING], link[MOST_RING][2], first = -1;
     *r = (ring){.a = a, .b = b, .height = INFINITY};
     r->tets = rg_tets_around(t, a, b, MOST_RING, tet);
-    if (r->tets > MOST_RING || r->tets == 0) {
+    if (r->tets > MOST_RING) {
         return false;
     }
     for (int i = 0; i < r->tets; i++) {

@@ -5,8 +5,9 @@
 
 #include "improve_tets.h"
 
-/* Removes the edge between vertices a and b, whose ring of neighbours is joined by triangles in the best way
- * (G. T. Klincsek, Ann. Discrete Math. 9 (1980) 121). Returns whether the smallest height grew. */
+/* Removes the edge between vertices a and b, which is there, whose ring of neighbours is joined by triangles
+ * in the best way (G. T. Klincsek, Ann. Discrete Math. 9 (1980) 121). Returns whether the smallest height
+ * grew. */
 bool rg_tets_remove_edge(rg_tets *t, rg_gid a, rg_gid b);
 
 /* Replaces a tetrahedron and the one across its face f by three around the line between their apexes. Returns

@@ -550,7 +550,7 @@ static void expect_refusal(void (*job)(void), const char *const *words) {
 }
 
 static void wild_jitter(void) {
-    const struct box b = {{4, 4, 4}, {0, 0, 0}, {1, 1, 1}, 0.9};
+    const struct box b = {{4, 3, 5}, {0, 0, 0}, {4, 3, 5}, 0.9};
     rg_mesh_free(make(&b));
 }
 
@@ -575,11 +575,30 @@ static void shared_thrice(void) {
     rg_mesh_connect(&m);
 }
 
+/* The element that the message names is in the cell that it names, and has less than a thousandth of the
+ * volume. */
+static void check_refused_element(void) {
+    char said[512];
+    long long e, cell[3];
+    double jitter, share;
+    assert_int_equal(run_child(wild_jitter, said, sizeof said), RG_USAGE);
+    assert_int_equal(
+        sscanf(
+            said,
+            "rhegma: mesh.jitter: %lf turns element %lld in cell (%lld, %lld, %lld) inside out or nearly so: "
+            "its volume is %lf of the regular one; choose a smaller jitter or another seed",
+            &jitter, &e, &cell[0], &cell[1], &cell[2], &share),
+        6);
+    assert_true(jitter == 0.9 && share < 1e-3);
+    assert_int_equal(e / 6, cell[0] + 4 * (cell[1] + 3 * cell[2]));
+}
+
 static void test_refusals(void **state) {
     (void)state;
     rg_mesh *m = make(&boxes[0]);
     one_cell = m;
     expect_refusal(wild_jitter, (const char *const[]){"mesh.jitter: 0.9", "element ", "cell (", NULL});
+    check_refused_element();
     expect_refusal(many_cells, (const char *const[]){"mesh.cells", "1000000 x 1000000 x 1000000", NULL});
     expect_refusal(many_parts, (const char *const[]){"4 ranks", "6 elements", "3 tiles", NULL});
     expect_refusal(shared_thrice, (const char *const[]){"elements 0, 1 and 2", "vertices 0, 1 and 2", NULL});

@@ -6,9 +6,12 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "../src/case_expr.h"
 #include "../src/mem.h"
 #include "../src/mesh.h"
+#include "../src/mesh_case.h"
 #include "../src/mesh_file.h"
+#include "../src/tile_weight.h"
 #include "tap.h"
 
 static int ranks;
@@ -23,7 +26,7 @@ static const struct box {
     {"bar", {3, 3, 30}, {-0.2e-3, -0.2e-3, -2e-3}, {0.4e-3, 0.4e-3, 4e-3}, 0.12},
     {"block", {24, 22, 27}, {1, 2, 3}, {1.6, 1.2, 2.0}, 0.1}, /* more tiles than are read at once */
 };
-enum { BOXES = sizeof boxes / sizeof boxes[0], CHECKS = 8 };
+enum { BOXES = sizeof boxes / sizeof boxes[0], CHECKS = 12 };
 
 static bool same_counts(const rg_part *a, const rg_part *b) {
     bool good = a->total == b->total && a->interfaces == b->interfaces && a->tile == b->tile &&
@@ -153,6 +156,51 @@ static void check_weights(const struct box *b, const rg_mesh *mesh, int tile) {
     rg_part_free(read);
 }
 
+/* The parts of a case: by its weights, by costs that are known better, from its file or from its box. */
+static void check_case(const struct box *b, const rg_mesh *mesh, int tile) {
+    char *message = NULL;
+    rg_case c = {.path = (char[]){"a.yaml"}};
+    c.mesh.file = path;
+    c.mesh.weight = rg_expr_new("1 + z*z + abs(x)", &message);
+    memcpy(c.mesh.cells, b->cells, sizeof c.mesh.cells);
+    memcpy(c.mesh.origin, b->origin, sizeof c.mesh.origin);
+    memcpy(c.mesh.size, b->size, sizeof c.mesh.size);
+    c.mesh.jitter = b->jitter;
+    c.mesh.seed = 5;
+    size_t bytes = (size_t)((mesh->elements + tile - 1) / tile) * sizeof(double);
+    double *file = rg_tile_weights_of_file(&c, MPI_COMM_WORLD),
+           *memory = rg_tile_weights_of_mesh(&c, mesh, tile);
+    report(rank == 0 ? memcmp(file, memory, bytes) == 0 : file == NULL, b->name,
+           "weights of the file's tiles");
+    rg_part *expected = rg_part_read(path, file, MPI_COMM_WORLD),
+            *found = rg_part_of_case(&c, NULL, MPI_COMM_WORLD);
+    report(same_part(found, expected), b->name, "a case's parts by weight");
+    rg_part_free(expected);
+    rg_part_free(found);
+    expected = rg_part_read(path, make_weights(mesh, tile), MPI_COMM_WORLD);
+    found = rg_part_of_case(&c, make_weights(mesh, tile), MPI_COMM_WORLD);
+    report(same_part(found, expected), b->name, "its parts by costs that are known");
+    rg_part_free(expected);
+    rg_part_free(found);
+    c.mesh.file = NULL;
+    rg_mesh *plain = rg_mesh_box(b->cells, b->origin, b->size, b->jitter, 5);
+    rg_free(rank > 0 ? memory : NULL);
+    expected = rg_part_distribute_weighted(rank == 0 ? plain : NULL, tile, rank == 0 ? memory : NULL,
+                                           MPI_COMM_WORLD);
+    found = rg_part_of_case(&c, NULL, MPI_COMM_WORLD);
+    bool same = same_part(found, expected);
+    rg_part_free(expected);
+    rg_part_free(found);
+    expected =
+        rg_part_distribute_weighted(rank == 0 ? plain : NULL, tile, make_weights(mesh, tile), MPI_COMM_WORLD);
+    found = rg_part_of_case(&c, make_weights(mesh, tile), MPI_COMM_WORLD);
+    report(same && same_part(found, expected), b->name, "a box's parts by weight and by known costs");
+    rg_part_free(expected);
+    rg_part_free(found);
+    rg_mesh_free(plain);
+    rg_expr_free(c.mesh.weight);
+}
+
 static void check_box(const struct box *b) {
     rg_mesh *mesh = make_mesh(b);
     int tile = rg_tile_elements(mesh->elements);
@@ -177,6 +225,7 @@ static void check_box(const struct box *b) {
     rg_part_free(read);
     rg_part_free(alone);
     check_weights(b, mesh, tile);
+    check_case(b, mesh, tile);
     rg_mesh_free(mesh);
 }
 
