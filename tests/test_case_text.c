@@ -92,6 +92,7 @@ static void test_nearest_key(void **state) {
         const rg_key_table *table;
         const char *name, *nearest;
     } known[] = {
+        {&rg_case_table, "mesh.fil", "mesh.file"}, /* the first one */
         {&rg_case_table, "mesh.cels", "mesh.cells"},
         {&rg_case_table, "mesh.CELLS", "mesh.cells"},
         {&rg_case_table, "cells", "mesh.cells"},

@@ -34,6 +34,12 @@ static const mistake numbers_and_texts[] = {
      ":2:32: mesh.cells[1]: -1: out of range; allowed: integer >= 1 and <= 100000\n"
      ":2:36: mesh.cells[2]: .inf: not finite; allowed: integer >= 1 and <= 100000\n"},
     {"[2, 2, 4]", "~", ":2:10: mesh.cells: no value; allowed: [x, y, z], each integer >= 1 and <= 100000\n"},
+    {"output:\n", "output:\n  fields: [stres, damage]\n",
+     ":18:12: output.fields[0]: stres: not one of the allowed words; allowed: list from displacement, "
+     "velocity, "
+     "stress, mean_stress, principal_stress, crack, damage, regime, plastic_strain, triaxiality, rank, "
+     "fragment, "
+     "material; did you mean 'stress'?\n"},
     {"output:\n",
      "output:\n"
      "  dir: true\n",

@@ -26,6 +26,8 @@ def changed(kind, line, path="a.c", before=""):
     ("off by one", "    a = b[i + 1];", ["    a = b[i];"]),
     ("exchanged index", "    a = b[i][j];", ["    a = b[j][i];", "    a = b[0][j];", "    a = b[i][0];"]),
     ("exchanged index", "    f(a, b);", ["    f(b, a);"]),
+    ("exchanged index", "    a = strcmp(b, c) < 0;", ["    a = strcmp(c, b) < 0;"]),
+    ("exchanged index", "    a = strcmp(b, c) == 0 && memcmp(d, e, n) != 0;", []),
     ("dropped term", "    a = b + c;", ["    a = b;", "    a = c;"]),
     ("dropped term", "    if (a && !b) {", ["    if (a && b) {", "    if (a) {"]),
     ("dropped line", "    a = b;", ["    ;"]),

@@ -105,6 +105,9 @@ def off_by_one(code):
         yield m.start(1), m.end(1), f"1, {m[1]}"
 
 
+SYMMETRIC = ("strcmp", "strcasecmp", "strncmp", "strncasecmp", "memcmp")  # where they ask whether two are equal
+
+
 def exchanged_index(code):
     for m in re.finditer(r"\[([^\[\]]+)\]\[([^\[\]]+)\]", code):
         if m[1] != m[2]:
@@ -115,7 +118,8 @@ def exchanged_index(code):
     for m in [] if declared else re.finditer(r"(?<=[\w\])]\[)[a-dijk](?=\])", code):
         yield m.start(), m.end(), "0"
     for m in re.finditer(rf"\b(\w+)\(({OPERAND}), ({OPERAND})(?=[,)])", code):
-        if m[2] != m[3] and m[1] not in ("fmin", "fmax", "min", "max"):
+        equality = m[1] in SYMMETRIC and re.match(r"[^;&|]*\) [=!]= 0", code[m.end():])
+        if m[2] != m[3] and m[1] not in ("fmin", "fmax", "min", "max") and not equality:
             yield m.start(2), m.end(3), f"{m[3]}, {m[2]}"
 
 
