@@ -12,6 +12,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 #include <cmocka.h>
@@ -416,6 +417,46 @@ static void test_stop_and_go_on(void **state) {
     assert_non_null(strstr(said, ", before the wall-time limit; goes on with: rhegma run --restart out\n"));
 }
 
+/* SIGUSR1 asks for one checkpoint, and the run goes on. */
+static void test_checkpoint_by_signal(void **state) {
+    (void)state;
+    memset(&job, 0, sizeof job);
+    job.set[0] = "time.steps=5";
+    job.options.quiet = true;
+    job.signal_to_send = SIGUSR1;
+    expect_status(RG_OK);
+    assert_true(summary("checkpoints") == 1 && summary("steps") == 5);
+    assert_int_equal(count_in("out/checkpoints", ".h5"), 1);
+    /* while another run holds the results, nobody goes on with them */
+    int file = open("out/energy.csv", O_RDWR);
+    assert_int_equal(flock(file, LOCK_EX), 0);
+    restart(RG_USAGE);
+    assert_non_null(strstr(said, "out/energy.csv: another run is writing to it"));
+    close(file);
+    restart(RG_OK);
+}
+
+/* The table of fragments has rows of the moments that output.fragments asks for. */
+static void test_fragments(void **state) {
+    (void)state;
+    static const char *const when[] = {"output.fragments=each", "output.fragments=last",
+                                       "output.fragments=none"};
+    static const int lines[] = {4, 2, 0}; /* of the states at steps 0, 3 and 6, and the heading */
+    for (int i = 0; i < 3; i++) {
+        RUN(RG_OK, "time.steps=6", "output.interval=3", when[i]);
+        int found = 0;
+        FILE *f = fopen("out/fragments.csv", "r");
+        for (int c = f == NULL ? EOF : fgetc(f); c != EOF; c = fgetc(f)) {
+            found += c == '\n';
+        }
+        if (f != NULL) {
+            fclose(f);
+        }
+        assert_int_equal(found, lines[i]);
+        clear(NULL);
+    }
+}
+
 /* A new interval on a restart: outputs are due at its multiples. (The row of the last state goes.) */
 static void test_restart_with_another_interval(void **state) {
     (void)state;
@@ -481,6 +522,8 @@ int main(int argc, char **argv) {
         cmocka_unit_test_teardown(test_not_finite, clear),
         cmocka_unit_test_teardown(test_restart, clear),
         cmocka_unit_test_teardown(test_stop_and_go_on, clear),
+        cmocka_unit_test_teardown(test_checkpoint_by_signal, clear),
+        cmocka_unit_test_teardown(test_fragments, clear),
         cmocka_unit_test_teardown(test_restart_with_another_interval, clear),
         cmocka_unit_test_teardown(test_words, clear),
     };
