@@ -16,8 +16,7 @@
  * that the law takes over, scaled to the strength, Q the penalty less the lift's own answer to the jump, by
  * RG_LIFT/beta_s of it. The point starts where the law has stored and dissipated just that. A jump along the
  * traction (g > 0) has opened it already, to d_0 with W(d_0) = sigma_c g, delta_0 = eps + d_0; one against it
- * (40 to 50 % of the points) leaves it on the way back, at d_0 = 0, delta_0 = sqrt(eps^2 + 2 eps g), or 0, at
- * less than the strength.
+ * leaves it on the way back, at d_0 = 0, delta_0 = sqrt(eps^2 + 2 eps g), or 0, at less than the strength.
  *
  * Serves laws that unload to the origin, whose secant falls only while the largest opening grows, and whose
  * envelope of slow opening is sigma_c (1 - d/delta_c) (RG_ENVELOPE): they are asked at d in place of both

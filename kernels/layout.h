@@ -27,8 +27,7 @@
  *
  * The face tractions are rows instead: their reader, an interface, finds the nine values of its face in two
  * cache lines, where the lanes of a block would spread them over nine; it transposes rows into vectors in
- * registers. (Measured: a seventh off the interface kernel. The interface forces as rows made the time update
- * slower beyond the cache.)
+ * registers.
  *
  * Element convention: the four vertices of a tetrahedron are sorted by ascending global vertex number. Its
  * nodes are in the order of VTK_QUADRATIC_TETRA (corners 0-3, mid-edges 01 12 02 03 13 23); local face f is

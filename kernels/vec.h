@@ -64,9 +64,8 @@ RG_INLINE void rg_store_wide(double *p, rg_vec x) {
     memcpy(p, &d, sizeof d);
 }
 
-/* One address per lane. A gather is one plain load per lane: measured 10 to 25 % faster for the whole
- * step than the gather instruction on AMD Zen 5, and free of the microcode penalty that gathers carry on many
- * Intel processors. */
+/* One address per lane. A gather is one plain load per lane, free of the microcode penalty that the gather
+ * instruction carries on many Intel processors. */
 typedef struct {
     const rg_real *lane[RG_VLEN];
 } rg_lanes;

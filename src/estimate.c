@@ -33,8 +33,8 @@ static double cohesive_zone(const rg_case *c, const rg_solver *s) {
 
 /* A point that has just switched by the conserving activation unloads 1/onset times as stiffly as a closed
  * one bears contact, sliding beta^2 times that. In all directions alike, at all faces at once, that stiffness
- * adds up to 1.2 times what the normal one does (measured on cubes of 6 tets: 1.19; jittered 1.06), so that
- * up to this safety no state that a face can take is unstable. */
+ * is taken to add up to 1.2 times what the normal one does, so that up to this safety no state that a face
+ * can take is unstable. */
 static double steady_safety(const rg_cohesive *law) {
     return (1 + 1e-9) * sqrt(law->onset / (1.2 * fmax(1, law->beta * law->beta)));
 }

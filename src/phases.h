@@ -1,5 +1,5 @@
 /* Where the time of a step goes, on the master thread of each rank: a reading of the clock between the parts
- * of a step, some ten in all and always on (0.3 us a step). And what each rank sends. */
+ * of a step, some ten in all and always on. And what each rank sends. */
 #ifndef RG_PHASES_H
 #define RG_PHASES_H
 

@@ -14,10 +14,9 @@ enum { MAX_ITERATIONS = 80, CHECK_EVERY = 8, POWER_ITERATIONS = 60 };
 
 #define TOLERANCE 1e-3 /* relative change of omega^2 between two checks */
 #define EXHAUSTED (sizeof(rg_real) == sizeof(double) ? 1e-10 : 1e-5) /* beta, rounding apart from 0 */
-/* Relative, added to omega^2. Measured on cubes of 6 tets, regular, jittered, stretched, graded: the patch
- * stays below the whole mesh by up to 0.5 % (nearly regular meshes with lumped mass; mostly far less where
- * elements differ), the iteration below its limit by up to 0.3 %, and faces closed here and there exceed all
- * closed by up to 1 %. */
+/* Relative, added to omega^2: the patch stays below the whole mesh, most on nearly regular meshes with lumped
+ * mass, the iteration below its limit (tests/test_patch.c bounds both), and faces closed here and there
+ * exceed all closed by a little. */
 #define MARGIN    2e-2
 #define AMPLITUDE 1e-7 /* displacement over element height: linear to 1e-6, clear of rounding to 1e-9 */
 
