@@ -129,6 +129,9 @@ bench_row *bench_add_row(bench *b, const char *kernel, const char *set, bench_si
  * on all as ranks, in turn, options.rounds times; prints the ratios, writes options.json. Collective. */
 void bench_efficiency(bench *b);
 
+/* What the cost model says of each kernel and of the step, as a table in Markdown. */
+void bench_print_costs(void);
+
 /* Names of the kernels, NULL behind the last. */
 const char *bench_kernel_name(int k);
 const char *bench_step_name(int k);

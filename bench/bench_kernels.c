@@ -350,3 +350,40 @@ void bench_kernels(bench *b, bench_size size, int threads) {
         bench_problem_free(p);
     }
 }
+
+/* ---- Costs ---- */
+
+static void print_cost(const char *name, const rg_cost *c) {
+    printf("| %s | %.0f | %.0f | %.0f |\n", name, c->flops / RG_LANES, c->minimal / RG_LANES,
+           c->actual / RG_LANES);
+}
+
+/* Of the mesh that perf/model.md speaks of: large, without padding, and all faces whole or all broken. */
+static rg_cost_variant large_mesh(rg_cost_variant flags, bool broken) {
+    flags.damaged = broken ? 1 : 0;
+    flags.points = broken ? RG_POINTS : 0;
+    flags.interfaces = 2;
+    flags.fill = 1;
+    return flags;
+}
+
+void bench_print_costs(void) {
+    printf(
+        "| per element or interface | flops | bytes, minimal | bytes, actual |\n| --- | --- | --- | --- |\n");
+    for (int k = 0; k < CASES; k++) {
+        const kernel_case *c = &cases[k];
+        bool some = c->broken > 0 && c->broken < 100; /* depends on the mesh */
+        if (rg_material_exists(c->flags.model) && !some) {
+            rg_cost_variant v = large_mesh(c->flags, c->broken > 0);
+            rg_cost cost = rg_cost_block(c->kernel, &v);
+            print_cost(c->name, &cost);
+        }
+    }
+    for (int lift = 1; lift >= 0; lift--) {
+        rg_cost_variant v = large_mesh((rg_cost_variant){.lift = lift}, false);
+        v.interfaces = 2.46; /* seams belong to both their tiles */
+        v.seams = 0.93;
+        rg_cost cost = rg_cost_step(&v);
+        print_cost(lift ? "step variational" : "step incomplete", &cost);
+    }
+}

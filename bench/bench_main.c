@@ -22,6 +22,7 @@ static const char usage[] =
     "  --repeats R     samples per row, 3 to 100 (default 21; 5 if quick)\n"
     "  --efficiency N  instead: what the ranks' cores gain over one core, in N rounds (3 to 100); see "
     "bench/efficiency\n"
+    "  --cost          instead: operations and bytes of the cost model (perf/model.md)\n"
     "  --help\n"
     "us/tet counts two interfaces as one tet; the other columns follow kernels/cost_model.c "
     "(perf/model.md).\n"
@@ -178,6 +179,10 @@ int main(int argc, char **argv) {
     if (argc == 2 && strcmp(argv[1], "--help") == 0) {
         if (b->rank == 0) {
             fputs(usage, stdout);
+        }
+    } else if (argc == 2 && strcmp(argv[1], "--cost") == 0) {
+        if (b->rank == 0) {
+            bench_print_costs();
         }
     } else {
         status = parse(b, argc, argv);

@@ -4,10 +4,13 @@ and perf/simulate run are started in test_scaling.py."""
 
 import json
 import os
+import re
 import shutil
 import subprocess
 
+import numpy as np
 import pytest
+import rhegma
 from conftest import BENCH, ENVIRONMENT, PROGRAM, ROOT, SINGLE, TIMEOUT, launch
 
 BUILD = PROGRAM.parent
@@ -57,6 +60,8 @@ def test_impact_and_its_pictures(tmp_path):
     assert json.loads((out / "summary.json").read_text())["ranks"] == 2
     assert_pictures(out, told, "history.png", "energy.png", "crack.png", "impact-0.40us.png", "views.png")
     assert "plane waves take 1.170 us" in told and "fully broken" in told
+    change, speed = re.search(r"changes by (\S+) of itself at most; the ball flies on at (\S+) m/s", told).groups()
+    assert float(change) < 1e-13 and 280 < float(speed) < 300
     when = (out / "summary.json").stat().st_mtime_ns
     script("bench/impact", *words)
     assert (out / "summary.json").stat().st_mtime_ns == when
@@ -104,6 +109,28 @@ def test_fragmentation(tmp_path):
     told, _ = script("bench/fragmentation", "--out", tmp_path, "--rates", "1e5", "--seeds", 1, "--set", "mesh.cells=[1, 1, 20]")
     assert "Grady 0.605 mm, Glenn-Chudnovsky 0.496 mm" in told
     assert_pictures(tmp_path, told, "fragmentation.png")
+
+
+def rows_of(told):
+    """The cells of a table in Markdown, without its head."""
+    return [[cell.strip() for cell in text.strip("|").split("|")] for text in told.splitlines()[2:]]
+
+
+def test_endurance(tmp_path):
+    told, _ = script("bench/endurance", "--out", tmp_path, "--steps", 40, "--jobs", 2, "--set", "mesh.cells=[1, 1, 10]")
+    rows = rows_of(told)
+    assert len(rows) == 12 and rows[6][:2] == ["40 m/s", "continuous"]
+    energy = rhegma.energy(tmp_path / "40-0-continuous")
+    assert rows[6][2].endswith(f"{100 * np.abs(energy['error_rel']).max():.2g} %")
+    assert rows[6][4].endswith(f"{1e6 * energy['broken_area'][-1]:.3f}") and energy["broken_area"][-1] > 0
+
+
+@pytest.mark.skipif(not (BUILD / "rhegma-mesh").exists(), reason="built without Gmsh")
+def test_meshes(tmp_path):
+    told, _ = script("bench/meshes", "part", "--out", tmp_path)
+    (row,) = rows_of(told)
+    assert 10_000 < int(row[2].replace(",", "")) < 25_000 and float(row[6]) > 1.5 and not list(tmp_path.iterdir())
+    assert float(row[5]) / float(row[4]) == pytest.approx(float(row[6]), abs=0.01)
 
 
 def test_mistakes_are_the_programs_own(tmp_path):
