@@ -30,6 +30,7 @@ plt.rcParams.update({
     "grid.color": "#e6e8eb",
     "axes.axisbelow": True,
     "legend.frameon": False,
+    "legend.fontsize": 8,
     "lines.linewidth": 1.6,
     "savefig.dpi": 160,
     "savefig.facecolor": "white",
@@ -59,6 +60,11 @@ def place(x):
 
 def add_title(figure, text):
     figure.suptitle(text, x=0.02, ha="left", fontsize=11)
+
+
+def note(axes, text, at, offset=(3, 2), **keywords):
+    """Small words at a place, moved from it by so many points."""
+    return axes.annotate(text, at, offset, **{"textcoords": "offset points", "fontsize": 8, "color": GREY, **keywords})
 
 
 def save(figure, path):

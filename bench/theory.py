@@ -100,7 +100,7 @@ class Spall:
         """Unit wave from an end that moves at a given speed (reflects as it comes), with another boundary beyond."""
         stress, arrival, size = np.zeros_like(t), to_end, 1.0
         for there in itertools.cycle((True, False)):
-            if arrival > self.speed * t[-1] or to_end + to_other <= 0:
+            if arrival > self.speed * t[-1]:
                 return stress
             stress += size * (self.speed * t >= arrival)
             arrival += 2 * (to_other if there else to_end)

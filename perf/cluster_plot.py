@@ -21,7 +21,7 @@ def modelled(p):
 
 def draw_study(axis, rows, value, color, label):
     """value(point, seconds of a step)."""
-    axis.plot([p["cores"] for p in rows], [value(p, modelled(p)) for p in rows], color=color, lw=1, label=f"{label}, model")
+    axis.plot([p["cores"] for p in rows], [value(p, modelled(p)) for p in rows], color=color, label=f"{label}, model")
     simulated = [p for p in rows if "simulated_s" in p]
     axis.plot([p["cores"] for p in simulated], [value(p, p["simulated_s"]) for p in simulated], "o", color=color, mfc="none",
               label=f"{label}, simulated")
@@ -29,7 +29,7 @@ def draw_study(axis, rows, value, color, label):
 
 def plot_thesis(axis, record):
     cores = [THESIS["cores"], THESIS["most"]]
-    axis.plot(cores, [THESIS["seconds"] * THESIS["cores"] / n for n in cores], "k:", lw=1, label="thesis, linear from there")
+    axis.plot(cores, [THESIS["seconds"] * THESIS["cores"] / n for n in cores], "k:", label="thesis, linear from there")
     axis.plot(cores[:1], [THESIS["seconds"]], "ks", label="thesis, Fig. 5-18, read off")
     for network, (color, label) in STYLE.items():
         draw_study(axis, points_of(record, "thesis mesh", network), lambda _, seconds: seconds, color, label)
@@ -49,7 +49,7 @@ def plot_strong(axis, record):
     for study, shade in (("strong, 1 million", 0), ("strong, 10 million", 2), ("strong, 10 million, 16 threads", 4)):
         for k, (network, (_, label)) in enumerate(STYLE.items()):
             draw_study(axis, points_of(record, study, network), share_of_sweeps, f"C{shade + k}", f"{study[8:]}, {label}")
-    axis.axhline(0.8, color="k", lw=0.5, ls=":")
+    axis.axhline(0.8, color="k", ls=":")
     axis.set(xscale="log", xlabel="cores", ylabel="sweeps / time of the step", ylim=(0, 1.05), title="strong scaling")
 
 
@@ -57,7 +57,7 @@ def plot_weak(axis, record):
     for study, shade in (("weak", 0), ("weak, 16 threads", 4)):
         for k, (network, (_, label)) in enumerate(STYLE.items()):
             draw_study(axis, points_of(record, study, network), share_of_sweeps, f"C{shade + k}", f"{study[6:] or '1 thread'}, {label}")
-    axis.axhline(0.95, color="k", lw=0.5, ls=":")
+    axis.axhline(0.95, color="k", ls=":")
     axis.set(xscale="log", xlabel="cores", ylabel="sweeps / time of the step", ylim=(0, 1.05),
              title="weak scaling, 50,000 tets a core")
 
@@ -69,5 +69,5 @@ def draw(record):
         figures[name], axes = plt.subplots(1, len(panels), figsize=(5.6 * len(panels), 4.4), squeeze=False, layout="constrained")
         for axis, panel in zip(axes[0], panels):
             panel(axis, record)
-            axis.legend(fontsize=6.5)
+            axis.legend()
     return figures

@@ -414,9 +414,9 @@ def test_displacements_of_nothing_hold_the_sides():
 
 def test_half_period_of_the_free_bar():
     """Rayleigh-Love: (L/c) sqrt(1 + nu^2 (a^2 + b^2)/12 (pi/L)^2), c^2 = E/rho."""
-    case = spall_case(boundary=[])
+    case = spall_case(boundary=[], mesh={"size": [1.5, 3, 8]})
     assert theory.free_bar_half_period(case) == pytest.approx(
-        8 / math.sqrt(4e9 / 3000) * math.sqrt(1 + (0.25 * math.pi / 8) ** 2 * (2**2 + 3**2) / 12), rel=1e-14)
+        8 / math.sqrt(4e9 / 3000) * math.sqrt(1 + (0.25 * math.pi / 8) ** 2 * (1.5**2 + 3**2) / 12), rel=1e-14)
     for sections, complaint in (({"materials": [STEEL]}, "one material"), ({"mesh": {"file": "x"}}, "built-in box"),
                                 ({"boundary": pulled(0, 0)}, "nothing holds"), ({"bodies": [{}]}, "nothing holds"),
                                 ({"material": {**STEEL, "model": "j2"}}, "has j2")):
@@ -499,3 +499,12 @@ def test_titles_stand_at_the_left():
     assert figure._suptitle.get_text() == "words" and figure._suptitle.get_position()[0] < 0.05
     assert figure._suptitle.get_ha() == "left"
     drawing.plt.close(figure)
+
+
+def test_notes_are_small_words_beside_their_place():
+    axes = drawing.plt.figure().add_subplot()
+    words = drawing.note(axes, "here", (0.5, 0.25))
+    assert (words.get_text(), words.xy, words.xyann, words.anncoords) == ("here", (0.5, 0.25), (3, 2), "offset points")
+    assert words.get_fontsize() == 8 and words.get_color() == drawing.GREY
+    assert drawing.note(axes, "red", (0, 0), (7, 8), color="r").xyann == (7, 8) and axes.texts[1].get_color() == "r"
+    drawing.plt.close("all")

@@ -80,8 +80,8 @@ def test_history_says_what_it_is(history):
                                  f"{bar.high / 1e6:.4g} MPa, meeting at {4e3 / bar.speed:.4g} ms, where the bar breaks")
     assert sorted(legend(history.axes[0])) == ["1-D theory", "computed", "first fracture"]
     assert history.axes[1].get_legend() is None
-    styles = [style(history.axes[0], label) for label in legend(history.axes[0])]
-    assert len({(colour, dashes) for colour, dashes, _ in styles}) == 3
+    for label, colour, dashes in (("computed", plot.BLUE, "-"), ("1-D theory", plot.INK, "--"), ("first fracture", plot.RED, "-.")):
+        assert style(history.axes[0], label)[:2] == (to_rgba(colour), dashes)
 
 
 def test_history_can_be_read(history):
@@ -135,6 +135,7 @@ def test_energy_draws_every_part():
         column = {"external work": "external_work", total: "total"}.get(name, name)
         assert value == pytest.approx(1e3 * ENERGY[column], rel=1e-12)
     assert len({style(upper, label) for label in labels(upper)}) == len(labels(upper))
+    assert all(style(upper, name)[0] == to_rgba(colour) for name, colour in plot.PARTS.items())
     assert line(upper, "first fracture")[0] == pytest.approx([4.2, 4.2])
     assert upper.get_ylabel() == "energy (mJ)" and upper.get_xlabel() == ""
     time, error = lower.get_lines()[0].get_xydata().T
@@ -259,7 +260,7 @@ def test_bar_without_close_up_has_a_wide_profile():
     scattered = np.concatenate([ACROSS, ACROSS + [0, 0, -3.5]])
     figure = plot.plot_crack(BOX, 4.4e-3, scattered, np.ones(6), synthetic.SUMMARY)
     whole, colours, profile = figure.axes
-    assert profile.get_position().width > 0.85
+    assert profile.get_position().width > 0.85 and sum(profile.get_position().intervalx) == pytest.approx(1, abs=0.05)
     assert_panels_apart_but_views(figure)
     assert_readable(figure)
 
@@ -277,6 +278,18 @@ def assert_panels_apart_but_views(figure):
 
 def corners_of(axes):
     return list(itertools.product(axes.get_xlim(), axes.get_ylim(), axes.get_zlim()))
+
+
+def test_crack_has_its_parts_in_their_places(broken):
+    """The whole across the top, the close-up below at the left, the profile beside it."""
+    whole, detail, _, profile = broken.axes
+    for axes, place in ((whole, (0.07, 0.5, 0.93, 0.84)), (detail, (0.07, 0.06, 0.39, 0.48))):
+        seen = on_paper(axes, corners_of(axes))
+        middle = (seen.min(axis=0) + seen.max(axis=0)) / 2
+        assert middle == pytest.approx([(place[0] + place[2]) / 2, (place[1] + place[3]) / 2], abs=2e-3)
+        assert (np.ptp(seen, axis=0) / [place[2] - place[0], place[3] - place[1]]).max() == pytest.approx(1, abs=5e-3)
+    box = profile.get_position()
+    assert (box.x0, box.y0, box.x1, box.y1) == pytest.approx((0.5, 0.1, 0.96, 0.36))
 
 
 def test_crack_can_be_read(broken):
@@ -362,13 +375,15 @@ def test_front_edges_lie_on_the_crack_and_hidden_ones_behind(broken):
     assert to_rgba(hidden.get_colors()[0]) != to_rgba(front.get_colors()[0])
 
 
-def test_sides_are_named_with_their_lengths(broken):
-    whole = broken.axes[0]
+def test_sides_are_named_with_their_lengths():
+    box = BOX + [[10, 20, 30]]  # whose middle is no zero
+    whole = plot.plot_crack(box, 4.4e-3, ACROSS + [10, 20, 30], DAMAGE, synthetic.SUMMARY).axes[0]
     assert [text.get_text() for text in whole.texts] == ["z  8 m", "x  2 m", "y  3 m"]
     z, x, y = (np.array(text._position3d if hasattr(text, "_position3d") else (*text.get_position(), text._z))
                for text in whole.texts)
-    gap = 0.12 * 2
-    assert z == pytest.approx([0, -1, -1.5 - gap]) and x == pytest.approx([4, 0, -1.5 - gap]) and y == pytest.approx([-4 - gap, -1, 0])
+    gap, middle = 0.12 * 2, np.array([30, 10, 20])
+    assert z - middle == pytest.approx([0, -1, -1.5 - gap]) and x - middle == pytest.approx([4, 0, -1.5 - gap])
+    assert y - middle == pytest.approx([-4 - gap, -1, 0])
     assert [(text.get_ha(), text.get_va()) for text in whole.texts] == [("center", "top"), ("left", "top"), ("right", "center")]
 
 
@@ -387,7 +402,7 @@ def test_profile_of_the_broken_area(broken):
     (section,) = profile.get_lines()
     assert section.get_ydata() == [6, 6] and profile.get_ylim() == pytest.approx((0, 1.2 * 6))
     (words,) = profile.texts
-    assert words.get_text() == "cross-section" and words.xy[1] == 6
+    assert words.get_text() == "cross-section" and words.xy == (-4, 6)
 
 
 def test_profile_takes_what_lies_beyond_the_mesh_and_hides_a_section_far_away():
@@ -407,7 +422,7 @@ def test_crack_says_what_it_is(broken):
     assert texts(broken)[:2] == ["spall: fracture surface", "t = 4.4 ms   ·   first fracture 4.2 ms   ·   broken area 2.5 m²   ·   "
                                  "dissipated 0.75 mJ   ·   12,345 elements"]
     title_, caption = broken.texts[:2]
-    assert title_.get_fontsize() > caption.get_fontsize() and title_.get_position()[1] > caption.get_position()[1]
+    assert (title_.get_fontsize(), caption.get_fontsize()) == (14, 10) and title_.get_position()[1] > caption.get_position()[1]
     colours = broken.axes[2]
     assert colours.get_xlabel() == "damage" and colours.get_xticks().tolist() == [0, 0.5, 1]
     assert colours.get_xlim() == (0, 1) and not colours.spines["outline"].get_visible()
@@ -428,6 +443,11 @@ def test_time_of_a_crack_and_of_fragments_in_their_unit():
     assert plot.plot_fragments(table, synthetic.SUMMARY).axes[0].get_xlabel() == "time (µs)"
 
 
+def test_intact_body_has_its_unit():
+    (axes,) = plot.plot_crack(1e-3 * BOX, 4.4e-7, np.zeros((0, 3, 3)), None, synthetic.SUMMARY).axes
+    assert [text.get_text() for text in axes.texts] == ["z  8 mm", "x  2 mm", "y  3 mm"] and axes.get_xlim() == pytest.approx((-4, 4))
+
+
 def test_triangle_without_area_has_a_colour():
     flat = np.zeros((1, 3, 3))
     assert np.isfinite(plot.shaded(flat, np.array([1.0]), plot.matplotlib.colormaps["YlOrRd"])).all()
@@ -438,6 +458,7 @@ def test_body_that_did_not_break(triangles, message):
     figure = plot.plot_crack(BOX, 4.4e-3, triangles, None, synthetic.SUMMARY)
     assert texts(figure)[:3] == ["spall: fracture surface", "t = 4.4 ms   ·   12,345 elements", message]
     (axes,) = figure.axes
+    assert figure.texts[2].get_ha() == "center" and figure.texts[2].get_position()[0] == 0.5
     assert [text.get_text() for text in axes.texts] == ["z  8 m", "x  2 m", "y  3 m"]
     assert [len(segments(one)) for one in axes.collections] == [3, 3, 9]
     seen = on_paper(axes, corners_of(axes))
