@@ -186,7 +186,7 @@ void rg_probes_flush(rg_probes *p) {
     if (count == 0) {
         return;
     }
-    /* One rank has each value, the others have zero: the sum only brings them together. */
+    /* One rank has each value, the others have zero from the start: the sum only brings them together. */
     MPI_Reduce(p->value, p->total, count, MPI_DOUBLE, MPI_SUM, 0, p->comm);
     for (int k = 0; p->rank == 0 && k < p->samples; k++) {
         fprintf(p->file, "%.17g", p->time[k]);
@@ -198,7 +198,6 @@ void rg_probes_flush(rg_probes *p) {
     if (p->rank == 0 && fflush(p->file) != 0) {
         rg_fatal(RG_FAILURE, "history.csv: cannot be written: %s", strerror(errno));
     }
-    memset(p->value, 0, (size_t)count * sizeof(double));
     p->samples = 0;
 }
 
