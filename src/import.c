@@ -220,7 +220,7 @@ static int by_vertices(const void *a, const void *b) {
     }
     int above = p->set < 0 ? p->set : 0, below = q->set < 0 ? q->set : 0;
     if (above != below) {
-        return above > below ? -1 : 1;
+        return below - above;
     }
     return (p->name > q->name) - (p->name < q->name);
 }
