@@ -97,28 +97,14 @@ static void collect(rg_fragment_table *t, const rg_solver *s, rg_fragment *rows,
 
 /* Totals of all fragments: known to all ranks. */
 static void total(rg_fragment_table *t, const rg_solver *s, const rg_fragment *rows, size_t own) {
-    rg_exact_sum sum[2] = {0};
+    rg_exact_sum sum = {0};
     for (size_t i = 0; i < own; i++) {
-        rg_exact_add(&sum[0], rows[i].mass);
-        rg_exact_add(&sum[1], rows[i].volume);
+        rg_exact_add(&sum, rows[i].mass);
     }
-    rg_exact_allreduce(sum, 2, s->comm);
+    rg_exact_allreduce(&sum, 1, s->comm);
     t->count = (int64_t)own;
     MPI_Allreduce(MPI_IN_PLACE, &t->count, 1, MPI_INT64_T, MPI_SUM, s->comm);
-    t->mass = rg_exact_value(&sum[0]);
-    t->cell = 2 * cbrt(6 * sqrt(2) * rg_exact_value(&sum[1]) / (double)s->part->total);
-}
-
-static void look_for_overlap(rg_fragment_table *t, const rg_solver *s, const rg_fragment_parts *p) {
-    if (t->count < 2 || isfinite(t->overlap_time) || !rg_overlap_find(s, p, t->cell, t->overlap)) {
-        return;
-    }
-    t->overlap_time = s->time;
-    if (s->rank == 0) {
-        rg_warn("fragments %" PRId64 " and %" PRId64 " overlap at %.6g s (step %" PRId64
-                "): pieces that have lost each other do not see each other; said once",
-                t->overlap[0], t->overlap[1], s->time, s->step);
-    }
+    t->mass = rg_exact_value(&sum);
 }
 
 bool rg_fragment_table_due(const rg_fragment_table *t, const rg_solver *s, bool last) {
@@ -133,15 +119,51 @@ void rg_fragment_table_take(rg_fragment_table *t, const rg_solver *s, const rg_f
     memset(t->bin_mass, 0, sizeof t->bin_mass);
     total(t, s, rows, own);
     collect(t, s, rows, own);
-    look_for_overlap(t, s, p);
     rg_free(rows);
 }
 
-void rg_fragment_table_summary(const rg_fragment_table *t, FILE *out) {
-    const char *join = "";
-    if (t->count == 0) {
+/* ---- Overlaps ---- */
+
+/* Twice the edge of a regular tetrahedron of the mean volume. */
+static double cell_size(const rg_solver *s) {
+    rg_exact_sum volume = {0};
+    for (size_t slot = 0; slot < s->domain->blocks * RG_LANES; slot++) {
+        if (s->domain->id[slot] >= 0) {
+            rg_exact_add(&volume, s->domain->geom[rg_geom_index(slot, RG_GEOM_VOLUME)]);
+        }
+    }
+    rg_exact_allreduce(&volume, 1, s->comm);
+    return 2 * cbrt(6 * sqrt(2) * rg_exact_value(&volume) / (double)s->part->total);
+}
+
+/* Whether there are several fragments: all ranks say so. One alone has the first element of the mesh. */
+static bool are_several(const rg_solver *s, const rg_fragment_parts *p) {
+    int several = 0;
+    for (size_t k = 0; k < p->count; k++) {
+        several = several || p->label[k].id > 0;
+    }
+    MPI_Allreduce(MPI_IN_PLACE, &several, 1, MPI_INT, MPI_MAX, s->comm);
+    return several != 0;
+}
+
+bool rg_fragment_table_looks(const rg_fragment_table *t) {
+    return !isfinite(t->overlap_time);
+}
+
+void rg_fragment_table_look(rg_fragment_table *t, const rg_solver *s, const rg_fragment_parts *p) {
+    if (!are_several(s, p) || !rg_overlap_find(s, p, cell_size(s), t->overlap)) {
         return;
     }
+    t->overlap_time = s->time;
+    if (s->rank == 0) {
+        rg_warn("fragments %" PRId64 " and %" PRId64 " overlap at %.6g s (step %" PRId64
+                "): pieces that have lost each other do not see each other; said once",
+                t->overlap[0], t->overlap[1], s->time, s->step);
+    }
+}
+
+static void write_counts(const rg_fragment_table *t, FILE *out) {
+    const char *join = "";
     fprintf(out, "  \"fragments\": %" PRId64 ",\n  \"fragment_mass_heaviest_kg\": %.17g,\n", t->count,
             t->heaviest);
     fputs("  \"fragment_mass_bins\": [", out); /* upper bound, fragments, their mass */
@@ -153,6 +175,12 @@ void rg_fragment_table_summary(const rg_fragment_table *t, FILE *out) {
         }
     }
     fputs("],\n", out);
+}
+
+void rg_fragment_table_summary(const rg_fragment_table *t, FILE *out) {
+    if (t->count > 0) {
+        write_counts(t, out);
+    }
     if (isfinite(t->overlap_time)) {
         fprintf(out, "  \"overlap_time_s\": %.17g,\n  \"overlap_fragments\": [%" PRId64 ", %" PRId64 "],\n",
                 t->overlap_time, t->overlap[0], t->overlap[1]);

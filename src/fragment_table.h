@@ -9,7 +9,6 @@ enum { RG_MASS_BINS = 64 };
 
 typedef struct {
     rg_csv *csv;                   /* NULL: output.fragments is none */
-    double cell;                   /* of the search for overlaps (m) */
     int64_t count;                 /* fragments, when last counted; 0: never */
     double mass;                   /* of all (kg) */
     double heaviest;               /* mass of the heaviest one (kg) */
@@ -39,8 +38,15 @@ rg_fragment_mark rg_fragment_table_settle(rg_fragment_table *t);
 bool rg_fragment_table_due(const rg_fragment_table *t, const rg_solver *s, bool last);
 
 /* Adds the fragments of the current state, between its kick and its drift. The counts above are those of the
- * last call, on rank 0. Warns, once, of fragments that overlap. Collective. */
+ * last call, on rank 0. Collective. */
 void rg_fragment_table_take(rg_fragment_table *t, const rg_solver *s, const rg_fragment_parts *p);
+
+/* Whether overlaps are still to be looked for, at every output, with or without a table: not once one has
+ * been told. */
+bool rg_fragment_table_looks(const rg_fragment_table *t);
+
+/* Looks for them in the current state, and warns. Collective. */
+void rg_fragment_table_look(rg_fragment_table *t, const rg_solver *s, const rg_fragment_parts *p);
 
 /* Writes members of a JSON object, each with a comma behind it. Rank 0. */
 void rg_fragment_table_summary(const rg_fragment_table *t, FILE *out);

@@ -43,6 +43,7 @@ typedef struct {
     rg_balance balance;
     double dt_reference;
     bool restart; /* goes on from a checkpoint */
+    bool cut;     /* the last step was another than it would have been without time.end */
     bool stopped; /* asked to, with a checkpoint */
     bool uneven;  /* stopped with a checkpoint to deal the tiles anew */
     double setup; /* wall time of the last set-up (s) */
@@ -57,14 +58,25 @@ static double stable_step(const run *r, double stiffening) {
     return rg_pace_step(r->solver, dt);
 }
 
-static double step_size(const run *r, double stiffening) {
+/* The step that would be next if the run had no end. */
+static double free_step(const run *r, double stiffening) {
     double dt = stable_step(r, stiffening);
     if (r->keep.frame < r->input->output.times) { /* equal steps that end at the next frame */
         double there = r->input->output.time[r->keep.frame] - r->solver->time;
         dt = there > 0 ? there / ceil(there / dt * (1 - 1e-9)) : dt;
     }
-    double left = r->input->time.end - r->solver->time;
+    return dt;
+}
+
+static double step_size(const run *r, double stiffening) {
+    double dt = free_step(r, stiffening), left = r->input->time.end - r->solver->time;
     return left > 0 && left < dt * (1 + 1e-9) ? left : dt;
+}
+
+/* The first multiple of output.interval after `time`. */
+static double output_after(const run *r, double time) {
+    double interval = r->input->output.interval_time;
+    return (floor(time / interval + 1e-6) + 1) * interval;
 }
 
 static bool output_due(run *r) {
@@ -75,7 +87,7 @@ static bool output_due(run *r) {
     if (r->solver->time < r->keep.next_output - 1e-6 * interval) {
         return false;
     }
-    r->keep.next_output = (floor(r->solver->time / interval + 1e-6) + 1) * interval;
+    r->keep.next_output = output_after(r, r->solver->time);
     return true;
 }
 
@@ -95,17 +107,21 @@ static bool done(const run *r) {
            (c->time.steps > 0 && r->solver->step >= c->time.steps);
 }
 
-/* The fields, where asked for, and the table of fragments. */
+/* The fields, where asked for, the table of fragments, and whether they overlap. */
 static void write_fields(run *r, bool fields) {
     rg_solver *s = r->solver;
     bool table = rg_fragment_table_due(r->fragments, s, done(r) || r->failure[0] != '\0');
     bool show = fields && rg_snapshots_show_fragments(r->snapshots);
-    rg_fragment_parts *parts = table || show ? rg_fragments_find(s) : NULL;
+    bool look = rg_fragment_table_looks(r->fragments);
+    rg_fragment_parts *parts = table || show || look ? rg_fragments_find(s) : NULL;
     if (fields) {
         rg_snapshots_write(r->snapshots, s, parts);
     }
     if (table) {
         rg_fragment_table_take(r->fragments, s, parts);
+    }
+    if (look) {
+        rg_fragment_table_look(r->fragments, s, parts);
     }
     rg_fragment_parts_free(parts);
 }
@@ -156,10 +172,22 @@ static bool uneven(run *r) {
            rg_balance_pays(&r->balance, s, checkpoint + r->setup, rg_progress_left(&r->progress, s));
 }
 
-/* Writes a checkpoint if it is time for one, or for another partition; returns whether to stop after it. */
+/* Whether the next step is the last one, and cut to end in time. */
+static bool cut_next(const run *r) {
+    double stiffening = r->solver->stiffening_anywhere;
+    return !done(r) && fabs(step_size(r, stiffening) - free_step(r, stiffening)) > 0;
+}
+
+/* Writes a checkpoint if it is time for one, or for another partition; returns whether to stop after it. A
+ * longer run would not come through a state to which a cut step has led: the checkpoint of the end is that of
+ * the state before, from which it goes on to the same bits. */
 static bool save(run *r) {
     const rg_solver *s = r->solver;
-    bool due = rg_schedule_due(&r->schedule, s, done(r));
+    if (r->cut) {
+        return false;
+    }
+    bool end = done(r) || (s->wish < RG_WISH_STOP && cut_next(r));
+    bool due = rg_schedule_due(&r->schedule, s, end);
     r->uneven = s->wish < RG_WISH_STOP && uneven(r);
     if (!due && !r->uneven) {
         return false;
@@ -180,6 +208,7 @@ static bool advance(run *r, double *other) {
     bool last = done(r), due = output_due(r) || last;
     bool frame = frame_due(r) || (due && r->input->output.times == 0), fresh = due || frame;
     double dt = step_size(r, s->stiffening_anywhere), time = s->time;
+    bool cut = cut_next(r);
     int64_t step = s->step;
     bool careful = !(s->stiffening_anywhere < CAREFUL);
     if (fresh || careful) {
@@ -204,6 +233,7 @@ static bool advance(run *r, double *other) {
     if (fresh || careful) {
         rg_solver_drift(s);
     }
+    r->cut = cut;
     if (s->step == 1) {
         r->summary.dt_first = s->dt;
     }
@@ -321,7 +351,7 @@ static void make_state(run *r, double *cost, MPI_Comm comm) {
     r->probes = rg_probes_find(r->solver);
     rg_restart_register(&r->state, &r->keep, r->solver, &r->ledger, &r->summary);
     rg_checkpoints_open(&r->checkpoints, c->output.dir, r->solver, &r->state, &r->slab);
-    r->keep.next_output = c->output.interval_time;
+    r->keep.next_output = output_after(r, 0);
     if (!r->restart) {
         rg_spectrum(r->solver);
         return;
@@ -332,9 +362,8 @@ static void make_state(run *r, double *cost, MPI_Comm comm) {
     MPI_Barrier(comm);
     rg_checkpoint_load(&r->checkpoints);
     rg_restart_spectrum(&r->keep, r->solver);
-    if (r->keep.interval != c->output.interval_time) { /* outputs are due at its multiples */
-        double interval = c->output.interval_time;
-        r->keep.next_output = (floor(r->solver->time / interval + 1e-6) + 1) * interval;
+    if (r->keep.interval != c->output.interval_time) { /* the last state had all outputs that were due */
+        r->keep.next_output = output_after(r, r->solver->time - r->solver->dt);
     }
 }
 

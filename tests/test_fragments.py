@@ -1,8 +1,10 @@
 """Fragments of runs: they add up to the body, are the same bits on any layout, and overlaps are told. Their values
 against closed forms are in test_fragment.c."""
 
+import json
 import os
 import re
+import shutil
 import subprocess
 
 import numpy as np
@@ -104,8 +106,8 @@ def two_cubes():
     return "*NODE\n{}\n*ELEMENT, TYPE=C3D4\n{}\n".format("\n".join(nodes), "\n".join(elements))
 
 
-def meet(scratch, ranks, towards):
-    folder = scratch / f"cubes-{ranks}-{towards}"
+def meet(scratch, ranks, towards, *arguments):
+    folder = scratch / "-".join(["cubes", str(ranks), str(towards), *arguments[1::2]])
     folder.mkdir()
     (folder / "cubes.inp").write_text(two_cubes())
     made = launch("mesh", folder / "cubes.inp", "-o", folder / "cubes.h5")
@@ -118,18 +120,38 @@ initial: {{velocity: {{z: "z > 1.1e-3 ? {-towards * SPEED} : 0"}}}}
 time: {{end: 4e-6}}
 output: {{interval: 1e-7, fields: []}}
 """)
-    return folder, launch("run", folder / "cubes.yaml", "-q", "-o", folder / "out", ranks=ranks)
+    return folder, launch("run", folder / "cubes.yaml", "-q", "-o", folder / "out", *arguments, ranks=ranks)
 
 
-@pytest.mark.parametrize("ranks", [1, 2])
-def test_overlap_is_told_once(scratch, ranks):
-    folder, process = meet(scratch, ranks, 1)
+@pytest.mark.parametrize("ranks, table", [(1, "each"), (2, "each"), (1, "last"), (2, "none")])
+def test_overlap_is_told_once(scratch, ranks, table):
+    """At the first output that finds it, with or without a table of fragments."""
+    folder, process = meet(scratch, ranks, 1, "--set", f"output.fragments={table}")
     assert process.returncode == 0
     assert process.stderr.count("warning: fragments 0 and 6 overlap at ") == 1
     summary = (folder / "out" / "summary.json").read_text()
     assert '"overlap_fragments": [0, 6]' in summary
     first = float(summary.split('"overlap_time_s": ')[1].split(",")[0])
     assert GAP / SPEED < first < (GAP + 0.1e-3) / SPEED + 1e-7
+
+
+def test_overlap_is_not_told_again_after_a_restart(scratch):
+    """A run goes on once before and once after the overlap."""
+    folder, process = meet(scratch, 1, 1, "--set", "checkpoint={steps: 60, keep: 1000}")
+    summary = json.loads((folder / "out" / "summary.json").read_text())
+    for share in (0.5, 1.2):
+        directory = folder / f"from-{share}"
+        shutil.copytree(folder / "out", directory)
+        for path in (directory / "checkpoints").glob("step-*.h5"):
+            if int(path.stem[5:]) > share * summary["steps"] * summary["overlap_time_s"] / summary["time_end"]:
+                path.unlink()
+        again = launch("run", "--restart", directory, "-q", ranks=2)
+        assert again.returncode == 0, again.stderr
+        assert again.stderr.count("overlap") == (share < 1)
+        found = json.loads((directory / "summary.json").read_text())
+        assert 0 < found["restarted_from_step"] < summary["steps"] - 20
+        for key in ("overlap_time_s", "overlap_fragments", "state_hash"):
+            assert found[key] == summary[key]
 
 
 def test_no_word_of_pieces_that_part(scratch):

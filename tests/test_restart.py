@@ -67,21 +67,33 @@ def crack_rows(frame):
     return rows[np.lexsort(rows.T)]
 
 
-def assert_same_results(one, other):
-    assert one.summary["state_hash"] == other.summary["state_hash"]
-    for key in ("steps", "energy_error_rel", "energy_largest_J", "first_fracture_time_s", "dt_first", "dt_last",
-                "dt_critical", "limiting_element", "limiting_state", "dissipated_J"):
-        assert one.summary[key] == other.summary[key], key
-    for name in ("energy.csv", "history.csv", "fragments.csv", "fields.xdmf"):
-        assert (one.dir / name).read_bytes() == (other.dir / name).read_bytes(), name
-    frames, others = one.frames(), other.frames()
-    assert len(frames) == len(others) > 20
-    for a, b in zip(frames, others):
+# Of the layout, the speed of the machine, the name of the case file; all else in the summary, whatever is added, is physics.
+OF_THE_RUN = {"case", "ranks", "threads", "partitions", "imbalance", "cost_imbalance", "cut_faces", "neighbours", "neighbours_max",
+              "inner_share", "messages_per_step", "bytes_per_step", "bytes_per_message", "bytes_per_tet", "restarted_from_step",
+              "setup_s", "wall_s", "output_s", "checkpoints", "checkpoint_s", "checkpoint_median_s", "halo_wait_s",
+              "us_per_tet_step", "exchange_alone_s", "phases_s"}
+
+
+def results(run):
+    return {key: value for key, value in run.summary.items() if key not in OF_THE_RUN}
+
+
+def tables(run):
+    return {path.name: path.read_bytes() for path in [*run.dir.glob("*.csv"), *run.dir.glob("*.xdmf")]}
+
+
+def assert_same_results(one, other, frames=20):
+    """Every output, to the bit; more than so many frames."""
+    assert results(one) == results(other)
+    assert tables(one) == tables(other) and "energy.csv" in tables(one)
+    assert (one.dir / "fields.h5").exists() == (other.dir / "fields.h5").exists() == (frames >= 0)
+    for a, b in zip(one.frames(), other.frames(), strict=True) if frames >= 0 else []:
         assert a["time"] == b["time"] and a.keys() == b.keys()
         for name in a:
             if not name.startswith("crack") and name != "time":
                 assert np.array_equal(a[name], b[name]), name
-        assert np.array_equal(crack_rows(a), crack_rows(b))
+        assert "crack/points" not in a or np.array_equal(crack_rows(a), crack_rows(b))
+    assert frames < 0 or len(one.frames()) > frames
 
 
 @pytest.mark.parametrize("to", LAYOUTS)
@@ -107,18 +119,15 @@ def test_restart_of_less_output_on_other_ranks(run, tmp_path):
     assert_same_results(again, run(FRAGMENTS, sets=sets))
 
 
-VARIANTS = {
+VARIANTS = {  # test_checkpoint.c has more, on one rank
     "incomplete": {"interface.form": "incomplete", "mass": "lumped"},
     "thesis": {"interface.activation": "total", "interface.contact": "flux"},
     "conserving": {"interface.activation": "conserving", "interface.law": "linear" if SINGLE else "rate"},
     "intrinsic": {"interface.form": "intrinsic", "interface.law": "xu-needleman"},
     "friction": {"interface.friction": 0.5},
-    "fatigue": {"interface.law": "fatigue"},
-    "steps": {"interface.form": "intrinsic", "interface.law": "bilinear",
-              "interface.bilinear": {"ascent": 0.05, "steps": 5}},
+    "viscosity": {"viscosity": {"linear": 0.06, "quadratic": 1.2}},
     "continuous": {"interface.form": "continuous", "interface.faces": "nz*nz > 0.5"},
     "plain": {"output.fields": [], "output.probes": [], "boundary": []},
-    **({} if SINGLE else {"rate": {"interface.law": "rate"}}),
 }
 
 
@@ -127,10 +136,9 @@ def test_restart_of_every_variant(run, tmp_path, variant):
     sets = {**CASE, **VARIANTS[variant]}
     one = run(FRAGMENTS, sets=sets)
     copied = copy(run(FRAGMENTS, ranks=2, sets={**sets, "time.steps": STOP}), tmp_path / "out")
-    again = go_on(copied, "--set", "time.steps=100000", ranks=2)
+    again = go_on(copied, "--set", "time.steps=100000", ranks=3)
     assert one.summary["broken_area_m2"] > 0
-    assert again.summary["state_hash"] == one.summary["state_hash"]
-    assert (again.dir / "energy.csv").read_bytes() == (one.dir / "energy.csv").read_bytes()
+    assert_same_results(again, one, frames=20 if sets["output.fields"] else -1)
 
 
 STATEFUL = {  # what has state of its own: bodies, free and prescribed; a material with a history; given times of output
@@ -153,27 +161,47 @@ def test_restart_of_bodies_and_materials(run, tmp_path, case):
             path.unlink()
     again = go_on(directory, "--set", "time.steps=100000", ranks=2)
     assert 0 < again.summary["restarted_from_step"] <= steps // 2
-    assert again.summary["state_hash"] == one.summary["state_hash"]
-    for path in one.dir.glob("*.csv"):
-        assert (directory / path.name).read_bytes() == path.read_bytes()
-    if STATEFUL[case].get("output.fields"):
-        assert [f["time"] for f in again.frames()] == [f["time"] for f in one.frames()]
+    assert_same_results(again, one, frames=1 if STATEFUL[case].get("output.fields") else -1)
 
 
 def test_a_finished_run_can_be_made_longer(run, whole, tmp_path):
-    """From a checkpoint before the last step, which was cut to end on time."""
-    short = copy(run(FRAGMENTS, sets={**CASE, "time.end": 0.17e-6}), tmp_path / "out")
-    last = checkpoints(short)[-1]
-    assert int(last.stem[5:]) % 75 != 0  # that of the end
-    last.unlink()
-    assert_same_results(go_on(short, "--set", f"time.end={CASE['time.end']}", ranks=2), whole)
+    """From a checkpoint before the last step, which was cut to end on time: a longer run does not come through its state."""
+    short = run(FRAGMENTS, sets={**CASE, "time.end": 0.17e-6})
+    steps = short.summary["steps"]
+    assert short.summary["dt_last"] < 0.9 * short.summary["dt_first"]
+    assert [int(path.stem[5:]) for path in checkpoints(short.dir)] == [150, steps - 1]
+    again = go_on(copy(short, tmp_path / "out"), "--set", f"time.end={CASE['time.end']}", ranks=2)
+    assert again.summary["restarted_from_step"] == steps - 1
+    assert_same_results(again, whole)
+    same = go_on(copy(short, tmp_path / "same"))
+    assert_same_results(same, short, frames=10)
 
 
-def test_nothing_is_left_to_compute(whole, tmp_path):
-    again = go_on(copy(whole, tmp_path / "out"), "--set", "time.end=0.1e-6", ranks=2)
-    assert re.search(r"warning: nothing is left to compute: the checkpoint is of step \d+, time 2.5e-07 s", again.stderr)
-    assert again.summary["state_hash"] == whole.summary["state_hash"]
-    assert (again.dir / "energy.csv").read_bytes() == (whole.dir / "energy.csv").read_bytes()
+def test_nothing_is_left_to_compute(stopped, tmp_path):
+    ended = stopped()
+    again = go_on(copy(ended, tmp_path / "out"), "--set", "time.steps=100", ranks=2)
+    assert re.search(r"warning: nothing is left to compute: the checkpoint is of step 150, time 1.39\d*e-07 s", again.stderr)
+    assert again.summary["steps"] == 150
+
+
+@pytest.mark.parametrize("before", [1e-8, 7])
+def test_outputs_of_another_interval(run, tmp_path, before):
+    """Come at the moments at which they would have come all along, also that of the checkpoint itself."""
+    short = {**CASE, "time.end": 2.5e-8, "output.fields": ["displacement"], "checkpoint.steps": 1, "checkpoint.keep": 1000}
+    wanted = run(FRAGMENTS, sets={**short, "output.interval": 3e-9})
+    steps, times = wanted.energy["step"], [frame["time"] for frame in wanted.frames()]
+    assert len(steps) == len(times) == 9
+    for step in (steps[5] - 1, steps[5], steps[5] + 1):
+        directory = copy(run(FRAGMENTS, sets={**short, "output.interval": before}), tmp_path / f"{step:.0f}")
+        for path in checkpoints(directory):
+            if int(path.stem[5:]) > step:
+                path.unlink()
+        again = go_on(directory, "--set", "output.interval=3e-9")
+        assert again.summary["restarted_from_step"] == step
+        late = again.energy["step"] >= step
+        assert list(again.energy["step"][late]) == list(steps[steps >= step])
+        assert [frame["time"] for frame in again.frames()][-late.sum():] == times[-late.sum():]
+        assert (directory / "history.csv").read_bytes() == (wanted.dir / "history.csv").read_bytes()
 
 
 def test_checkpoints_do_not_depend_on_the_layout(stopped):
@@ -206,7 +234,7 @@ def test_checkpoints_by_simulated_time(run):
     assert len(found) == 13  # every 2e-8 s, and the end
     for k, t in enumerate(found[:-1], start=1):
         assert 0 <= t - 2e-8 * k + 1e-13 < 2e-9
-    assert found[-1] == pytest.approx(0.25e-6)
+    assert 0 < 0.25e-6 - found[-1] < 2e-9  # before the last step, which is cut
 
 
 def test_checkpoints_by_wall_time(run):
