@@ -15,8 +15,6 @@ void rg_restart_register(rg_state *state, rg_restart *keep, rg_solver *s, rg_led
     rg_state_add(state, "frames", RG_OF_RUN, RG_STATE_INT64, 1, &keep->fields.frames);
     rg_state_add(state, "xdmf_volume", RG_OF_RUN, RG_STATE_INT64, 1, &keep->fields.volume);
     rg_state_add(state, "xdmf_crack", RG_OF_RUN, RG_STATE_INT64, 1, &keep->fields.crack);
-    rg_state_add(state, "next_output", RG_OF_RUN, RG_STATE_DOUBLE, 1, &keep->next_output);
-    rg_state_add(state, "interval", RG_OF_RUN, RG_STATE_DOUBLE, 1, &keep->interval);
     rg_state_add(state, "next_frame", RG_OF_RUN, RG_STATE_INT64, 1, &keep->frame);
     rg_state_add(state, "good_time", RG_OF_RUN, RG_STATE_DOUBLE, 1, &keep->good_time);
     rg_state_add(state, "core_seconds", RG_OF_RUN, RG_STATE_DOUBLE, 1, &keep->core_seconds);
@@ -31,7 +29,6 @@ void rg_restart_settle(rg_restart *keep, const rg_solver *s, rg_csv *energy, rg_
     if (snapshots->fields != 0) {
         keep->fields = rg_snapshots_settle(snapshots);
     }
-    keep->interval = s->input->output.interval_time;
     keep->core_seconds = s->pass_seconds * s->ranks * s->threads;
     if (s->limiting_state != keep->limiting_state) { /* not a word that came from a checkpoint itself */
         snprintf(keep->limiting_state, sizeof keep->limiting_state, "%s", s->limiting_state);

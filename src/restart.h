@@ -17,7 +17,6 @@ typedef struct {
     int64_t energy_bytes, history_bytes; /* lengths of the tables */
     rg_fragment_mark fragments;
     rg_writer_mark fields;
-    double next_output, interval;           /* s */
     int64_t frame;                          /* next of output.times */
     double good_time;                       /* of the last output that was in order (s) */
     double core_seconds;                    /* of one evaluation of all forces, times ranks and threads */

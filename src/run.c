@@ -42,11 +42,12 @@ typedef struct {
     rg_schedule schedule;
     rg_balance balance;
     double dt_reference;
-    bool restart; /* goes on from a checkpoint */
-    bool cut;     /* the last step was another than it would have been without time.end */
-    bool stopped; /* asked to, with a checkpoint */
-    bool uneven;  /* stopped with a checkpoint to deal the tiles anew */
-    double setup; /* wall time of the last set-up (s) */
+    double next_output; /* when one is due (s) */
+    bool restart;       /* goes on from a checkpoint */
+    bool cut;           /* the last step was another than it would have been without time.end */
+    bool stopped;       /* asked to, with a checkpoint */
+    bool uneven;        /* stopped with a checkpoint to deal the tiles anew */
+    double setup;       /* wall time of the last set-up (s) */
     char failure[RG_FAILURE_WORDS];
 } run;
 
@@ -84,10 +85,10 @@ static bool output_due(run *r) {
         return r->solver->step % r->input->output.interval_steps == 0;
     }
     double interval = r->input->output.interval_time;
-    if (r->solver->time < r->keep.next_output - 1e-6 * interval) {
+    if (r->solver->time < r->next_output - 1e-6 * interval) {
         return false;
     }
-    r->keep.next_output = output_after(r, r->solver->time);
+    r->next_output = output_after(r, r->solver->time);
     return true;
 }
 
@@ -351,7 +352,6 @@ static void make_state(run *r, double *cost, MPI_Comm comm) {
     r->probes = rg_probes_find(r->solver);
     rg_restart_register(&r->state, &r->keep, r->solver, &r->ledger, &r->summary);
     rg_checkpoints_open(&r->checkpoints, c->output.dir, r->solver, &r->state, &r->slab);
-    r->keep.next_output = output_after(r, 0);
     if (!r->restart) {
         rg_spectrum(r->solver);
         return;
@@ -362,9 +362,6 @@ static void make_state(run *r, double *cost, MPI_Comm comm) {
     MPI_Barrier(comm);
     rg_checkpoint_load(&r->checkpoints);
     rg_restart_spectrum(&r->keep, r->solver);
-    if (r->keep.interval != c->output.interval_time) { /* the last state had all outputs that were due */
-        r->keep.next_output = output_after(r, r->solver->time - r->solver->dt);
-    }
 }
 
 /* All that a time loop needs: at rest or from a checkpoint, on a partition by `cost` (rg_part_of_case). */
@@ -376,6 +373,8 @@ static void prepare(run *r, double *cost, MPI_Comm comm) {
     }
     r->summary.estimate = rg_estimate_run(r->solver);
     r->dt_reference = r->summary.estimate.dt;
+    double before = r->solver->time - r->solver->dt; /* that state had all its outputs */
+    r->next_output = output_after(r, before);
     r->summary.partitions++;
 }
 
