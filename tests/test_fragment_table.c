@@ -87,6 +87,26 @@ static rg_fragment row_of(int k) {
     return f;
 }
 
+/* Seven elements on rank 0, as large as the rows say; padding counts for nothing. */
+static void fill_domain(rg_domain *d) {
+    static rg_gid id[RG_LANES];
+    static rg_real geom[RG_GEOM_BLOCK];
+    for (size_t k = 0; k < RG_LANES; k++) {
+        id[k] = rank == 0 && k < ROWS ? (rg_gid)k : -1;
+        geom[rg_geom_index(k, RG_GEOM_VOLUME)] = k < ROWS ? (rg_real)(0.25 * (double)(k + 1)) : 1;
+    }
+    *d = (rg_domain){.blocks = 1, .id = id, .geom = geom};
+}
+
+/* Fragments as they are looked for: number 0, and another one on the last rank. */
+static void look(rg_fragment_table *t, const rg_solver *s, bool several) {
+    rg_fragment_label label[2] = {{.id = 0}, {.id = 4}};
+    rg_fragment_parts p = {.count = several && s->rank == s->ranks - 1 ? 2 : 1, .label = label};
+    if (rg_fragment_table_looks(t)) {
+        rg_fragment_table_look(t, s, &p);
+    }
+}
+
 /* Some of `count` rows on each rank, none on the last of several. */
 static void deal(int count, int ranks) {
     int workers = ranks > 1 ? ranks - 1 : 1;
@@ -156,7 +176,8 @@ static bool summary_is(const rg_fragment_table *t, const char *wanted) {
 
 static rg_case input;
 static rg_part part = {.total = 300};
-static rg_solver solver = {.input = &input, .part = &part};
+static rg_domain domain;
+static rg_solver solver = {.input = &input, .part = &part, .domain = &domain};
 
 static void check_table(void) {
     char wanted[20000];
@@ -175,6 +196,7 @@ static void check_table(void) {
     int64_t length = (int64_t)strlen(wanted);
     report(rank != 0 || table_is(wanted), "table", "all columns of all rows");
     report(mark.bytes == (rank == 0 ? length : 0) && isinf(mark.overlap_time), "table", "where it stands");
+    look(t, &solver, true);
     double volume = 0.25 * (1 + 2 + 3 + 4 + 5 + 6 + 7), cell = 2 * cbrt(6 * sqrt(2) * volume / 300);
     report(searches == 1 && fabs(cell_asked - cell) < 1e-15 && warnings == 0 && t->count == ROWS, "table",
            "looks for overlaps in cells of two elements");
@@ -198,6 +220,7 @@ static void check_table(void) {
     deal(2, solver.ranks);
     searches = 0;
     rg_fragment_table_take(t, &solver, NULL);
+    look(t, &solver, true);
     append_row(wanted, 14, 1.5e-7, 0);
     append_row(wanted, 14, 1.5e-7, 1);
     mark = rg_fragment_table_settle(t);
@@ -217,13 +240,11 @@ static void check_overlap(void) {
     overlap = true;
     solver.step = 20;
     solver.time = 2.25e-7;
-    deal(1, solver.ranks);
-    rg_fragment_table_take(t, &solver, NULL);
+    look(t, &solver, false);
     report(searches == 0 && warnings == 0, "overlap", "one piece alone has none");
-    deal(2, solver.ranks);
-    rg_fragment_table_take(t, &solver, NULL);
+    look(t, &solver, true);
     solver.time = 3e-7;
-    rg_fragment_table_take(t, &solver, NULL);
+    look(t, &solver, true);
     report(searches == 1 && warnings == (rank == 0), "overlap", "said once");
     report(rank != 0 || strstr(warned, "fragments 5 and 9 overlap at 2.25e-07 s (step 20): ") == warned,
            "overlap", "which, and when");
@@ -254,6 +275,13 @@ static void check_when(void) {
     rg_fragment_mark mark = rg_fragment_table_settle(t);
     rg_fragment_table_close(t);
     t = rg_fragment_table_reopen(&solver, &mark);
+    overlap = true;
+    solver.time = 4e-7;
+    look(t, &solver, true);
+    report(t->overlap_time == 4e-7 &&
+               (rank != 0 || summary_is(t, "  \"overlap_time_s\": 3.9999999999999998e-07,\n"
+                                           "  \"overlap_fragments\": [5, 9],\n")),
+           "overlap", "is told without a table");
     report(!due && !rg_fragment_table_due(t, &solver, true) && mark.bytes == 0 &&
                access(in("fragments.csv"), F_OK) != 0,
            "table", "none where none is asked for");
@@ -272,6 +300,7 @@ int main(int argc, char **argv) {
     solver.comm = MPI_COMM_WORLD;
     solver.rank = rank;
     MPI_Comm_size(MPI_COMM_WORLD, &solver.ranks);
+    fill_domain(&domain);
     check_table();
     check_overlap();
     check_when();
