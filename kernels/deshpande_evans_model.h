@@ -25,6 +25,7 @@
  *     rate (1/s)     1e3          1e4          1e5          nm/s
  *     compression    3.20 (0.92)  3.95 (1.14)  4.78 (1.36)  6.02  7.44  9.22
  *     tension        0.98 (0.33)  1.21 (0.41)  1.48 (0.50)  1.84  2.26  2.77
+ * (A point by itself, at a constant logarithmic rate of 1e4/s: 3.94 and 1.21 GPa, tests/test_ceramic.py.)
  * A decade of rate is a factor 10^(1/(m + 1)) = 1.23; at higher ones cracks run at the shear wave speed. The
  * default l0dot gives the 3 GPa that alumina bears in compression, 100 nm/s twice that. Afterwards the stress
  * falls to that of damage_max, much lower in tension than in compression (friction), with hardly any flow.
