@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from conftest import CASES
+from conftest import CASES, rounding
 from figures import ROUNDING
 
 EDGE = 0.1e-3  # m, of a cube
@@ -22,7 +22,7 @@ def test_bar_is_torn_before_it_closes(collision, figure):
     (torn,) = openings(collision, TORN - 0.5e-8, TORN + 0.5e-8)
     assert torn.max() > 0.02 * EDGE
     at = np.argmin(np.abs(collision.energy["time"] - TORN))
-    figure("halves that are torn apart: area of the crack", 1e6 * collision.energy["failed_area"][at], theory=0.16, bound=4e-15,
+    figure("halves that are torn apart: area of the crack", 1e6 * collision.energy["failed_area"][at], theory=0.16, bound=rounding(4e-15, 2e-7),
            unit="mm2", relative=True, why=ROUNDING)
 
 

@@ -21,6 +21,7 @@ static point_set fastest(void) {
     return sets[0];
 }
 
+/* Tolerances are a few times what rounding leaves, with either compiler and on all instruction sets. */
 static void assert_close(double a, double b, double tolerance) {
     if (!(fabs(a - b) <= tolerance))
         fail_msg("%.12g is not %.12g within %g", a, b, tolerance);
@@ -126,7 +127,7 @@ static void test_potential(void **state) {
         differentiate(&p, damage, s, e);
         assert_int_equal(closed_form(&p, damage, e, back), here);
         for (int k = 0; k < 9; k++)
-            assert_close(back[k / 3][k % 3], s[k / 3][k % 3], 1e-8 * 3e9);
+            assert_close(back[k / 3][k % 3], s[k / 3][k % 3], 3e-12 * 3e9);
         count[here]++;
     }
     assert_true(count[1] > 500 && count[2] > 500 && count[3] > 500);
@@ -152,8 +153,8 @@ static void test_transitions(void **state) {
             assert_int_equal(rg_reference_de_invariants(&p, damage, high + 1e-14, eb, &mean[1], &mises[1]),
                              lower + 1);
             double scale = fmax(fabs(mean[0]), mises[0]);
-            assert_close(mean[0], mean[1], 1e-9 * scale);
-            assert_close(mises[0], mises[1], 1e-9 * scale);
+            assert_close(mean[0], mean[1], 6e-12 * scale);
+            assert_close(mises[0], mises[1], 3e-12 * scale);
             assert_int_equal(rg_reference_de_regime(&p, damage, mean[0] - 1e-9 * scale, mises[0]), lower);
             assert_int_equal(rg_reference_de_regime(&p, damage, mean[1] + 1e-9 * scale, mises[1]), lower + 1);
         }
@@ -348,13 +349,13 @@ static double shear(const rg_deshpande_evans *p, double rate, double end, int st
             a.F[point_index(0, i, 9)] = F[i / 3][i % 3];
         set.step(&a.args, 1);
         double ep = arrays_history(&a, 0, RG_DE_STRAIN), mises = mises_at(p, eb - ep);
-        assert_close(kirchhoff_mises(&a, F), mises, 1e-9 * mises);
+        assert_close(kirchhoff_mises(&a, F), mises, 1.3e-11 * mises);
         if (ep > before + 1e-10)
-            assert_close(rg_reference_de_flow_stress(p, ep, (ep - before) / dt), mises, 1e-6 * mises);
+            assert_close(rg_reference_de_flow_stress(p, ep, (ep - before) / dt), mises, 4e-12 * mises);
         assert_true(ep >= before);
         before = ep;
     }
-    assert_close(unimodular(&a), 1, 1e-11);
+    assert_close(unimodular(&a), 1, 3e-15);
     arrays_free(&a);
     return before;
 }
@@ -423,7 +424,7 @@ static void test_conjugate(void **state) {
             double slope = 0;
             for (size_t n = 0; n < 4; n++)
                 slope += weight[n] * arrays_result(&a, i * STENCIL + 1 + 4 * k + n, POINT_ENERGY) / h;
-            assert_close(P[k / 3][k % 3], slope, 1e-8 * a.constants.p_modulus * 0.1);
+            assert_close(P[k / 3][k % 3], slope, 4e-10 * a.constants.p_modulus * 0.1);
         }
     }
     assert_true(count[1] > 500 && count[2] > 500 && count[3] > 500);
@@ -456,9 +457,9 @@ static void check_objectivity(const point_set *set) {
         arrays_get_P(&turned, i, ours);
         for (int k = 0; k < 9;
              k++) /* e is known to rounding: see the scale in the test against the reference */
-            assert_close(ours[k / 3][k % 3], expected[k / 3][k % 3], 1e-10 * a.constants.p_modulus * 0.01);
+            assert_close(ours[k / 3][k % 3], expected[k / 3][k % 3], 3.5e-13 * a.constants.p_modulus * 0.01);
         for (size_t k = 0; k < RG_DE_HISTORY; k++)
-            assert_close(arrays_history(&turned, i, k), arrays_history(&a, i, k), 1e-10);
+            assert_close(arrays_history(&turned, i, k), arrays_history(&a, i, k), 1.2e-12);
         flown += arrays_result(&a, i, POINT_PLASTIC) > 0;
         grown += fabs(arrays_result(&a, i, POINT_DAMAGE)) > 0;
     }
@@ -585,7 +586,7 @@ static void test_paths(void **state) {
             assert_true(X <= most && rg_de_damage(&p, X) < 1);
             assert_true(ep >= before[point_index(i, RG_DE_STRAIN, RG_DE_HISTORY)]);
             assert_true(plastic >= -1e-14 * trial[i]);
-            assert_close(arrays_result(&a, i, POINT_ENERGY) + plastic + damage, trial[i], 1e-12 * trial[i]);
+            assert_close(arrays_result(&a, i, POINT_ENERGY) + plastic + damage, trial[i], 8e-16 * trial[i]);
             flows += plastic > 0;
             grows += X > before[point_index(i, RG_DE_GROWTH, RG_DE_HISTORY)];
             ends += k == STEPS && X == most;

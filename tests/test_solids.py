@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from conftest import BENCH, CASES, SINGLE, launch, overrides
+from conftest import BENCH, CASES, SINGLE, launch, overrides, rounding
 from figures import ROUNDING
 from test_parallel import assert_same_bits
 
@@ -72,7 +72,7 @@ def test_small_strains_are_those_of_the_neo_hookean_solid(run, figure, model, bo
     large, small = difference(40), difference(4)
     assert 1e-5 < small < 2e-3
     figure(f"{model} against neo-hookean: stress apart at 10 times the strain, over that at one", large / small, theory=10,
-           bound=bound, relative=True)  # of first order in the strain
+           bound=rounding(bound, 0.15), relative=True)  # of first order in the strain
 
 
 def test_a_spinning_body_grows_if_it_is_linear(run, figure):
@@ -97,7 +97,7 @@ def test_a_spinning_body_grows_if_it_is_linear(run, figure):
         figure(f"spinning cube, {model}: size over that at the start", worst(model, 1), theory=1, bound=2.5e-4, relative=True)
     theory = np.sqrt(1 + (rate * end) ** 2)
     figure("spinning cube, linear-elastic: size over that at the start", worst("linear-elastic", theory), theory=theory,
-           bound=2e-14, relative=True, why=ROUNDING)
+           bound=rounding(2e-14, 1.8e-6), relative=True, why=ROUNDING)
 
 
 def test_check_tells_the_material(tmp_path):
