@@ -107,11 +107,12 @@ def test_wave_speed_of_intrinsic_faces(run, figure):
     assert run.summary["limiting_state"] == "cohesive and closed"
 
 
-def test_intrinsic_wave_is_late_and_low_and_does_not_spall(run):
+def test_intrinsic_wave_is_late_and_low_and_does_not_spall(run, figure):
     """A coarse bar; theory: 100 MPa at 0.1123 us, 200 MPa, spall at 0.2246 us."""
     sets = {"mesh.cells": [2, 2, 30], "output.fields": [], "time.end": 0.35e-6}
     run = run(BENCH / "intrinsic.yaml", threads=2, sets=sets)
     time, stress = run.history["time"], run.history["p1mm_szz"]
-    assert time[np.argmax(stress > 100e6)] > 1.03 * 0.1123e-6
-    assert stress[(time > 0.2e-6) & (time < 0.3e-6)].mean() < 0.97 * 200e6
+    assert time[np.argmax(stress > 100e6)] > 1.05 * 0.1123e-6
+    assert stress[(time > 0.2e-6) & (time < 0.3e-6)].mean() < 0.94 * 200e6
     assert run.summary["first_fracture_time_s"] is None and run.summary["broken_area_m2"] == 0
+    figure("intrinsic faces, coarse bar: energy error", run.summary["energy_error_rel"], bound=6e-5)
