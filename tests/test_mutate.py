@@ -75,6 +75,7 @@ def test_every_room_has_files_and_tests():
 
 def test_a_test_that_no_row_names_touches_all_of_src():
     assert touches("newcomer", "src/ledger.c") and not touches("newcomer", "kernels/vec.h")
+    assert not touches("test_count.py", "src/ledger.c")
     assert touches("pace", "src/pace.c") and not touches("pace", "src/case.c")
     assert touches("test_plot.py", "bench/plot") and not touches("newcomer", "bench/plot")
 
