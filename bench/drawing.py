@@ -16,6 +16,8 @@ except ImportError as missing:
 INK, GREY, FAINT = "#22272e", "#57606a", "#8b949e"
 BLUE, RED, GREEN, YELLOW = "#1f6fb2", "#c8392b", "#2a9d62", "#e0a100"
 plt.rcParams.update({
+    "figure.constrained_layout.use": True,
+    "figure.figsize": (8.5, 4.2),
     "font.size": 10,
     "axes.edgecolor": FAINT,
     "axes.labelcolor": INK,

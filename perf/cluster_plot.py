@@ -66,7 +66,7 @@ def draw(record):
     """{"thesis": figure, "clusters": figure}."""
     figures = {}
     for name, panels in (("thesis", [plot_thesis]), ("clusters", [plot_strong, plot_weak])):
-        figures[name], axes = plt.subplots(1, len(panels), figsize=(5.6 * len(panels), 4.4), squeeze=False, layout="constrained")
+        figures[name], axes = plt.subplots(1, len(panels), figsize=(5.6 * len(panels), 4.4), squeeze=False)
         for axis, panel in zip(axes[0], panels):
             panel(axis, record)
             axis.legend()

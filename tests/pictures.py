@@ -32,6 +32,11 @@ def style(axes, label):
     return to_rgba(found.get_color()), found.get_linestyle(), found.get_marker()
 
 
+def look(one):
+    """Colour and line style of a line."""
+    return to_rgba(one.get_color()), one.get_linestyle()
+
+
 def labels(axes):
     """Of the lines that have one of their own."""
     return [one.get_label() for one in axes.get_lines() if not one.get_label().startswith("_")]

@@ -495,6 +495,7 @@ def test_pictures_are_saved_and_told(tmp_path, capsys):
 
 def test_titles_stand_at_the_left():
     figure = drawing.plt.figure()
+    assert figure.get_size_inches() == pytest.approx((8.5, 4.2)) and figure.get_constrained_layout()
     drawing.add_title(figure, "words")
     assert figure._suptitle.get_text() == "words" and figure._suptitle.get_position()[0] < 0.05
     assert figure._suptitle.get_ha() == "left"

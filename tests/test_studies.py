@@ -10,12 +10,13 @@ import numpy as np
 import pytest
 import synthetic_run as synthetic
 from conftest import BENCH
-from pictures import assert_panels_apart, assert_readable, labels, legend, line, script, segments, style, texts, title
+from matplotlib.colors import to_rgba
+from pictures import assert_panels_apart, assert_readable, labels, legend, line, look, script, segments, style, texts, title
 
 import launch
 import rhegma
 import theory
-from drawing import plt
+from drawing import BLUE, FAINT, GREEN, INK, RED, YELLOW, plt
 
 TWO_MATERIALS = "materials=[{name: steel, where: 'z < 0', model: neo-hookean, young: 1e9, poisson: 0.3, density: 1e3}]"
 
@@ -118,14 +119,22 @@ def test_free_bar(tmp_path, monkeypatch, runs, saved, capsys):
     assert (step == STEP).all() and change == pytest.approx(np.maximum(np.abs(table["total"] / table["total"][0] - 1), 1e-9))
     step, change = line(axes, "incomplete")
     assert (step == STEP[STEP < 300]).all() and change[-1] == pytest.approx(math.exp(280 - 20) - 1)
-    assert style(axes, "variational") != style(axes, "incomplete")
+    assert [style(axes, form)[:2] for form in labels(axes)] == [(to_rgba(BLUE), "-"), (to_rgba(RED), "-")]
     assert (axes.get_xlabel(), axes.get_ylabel(), axes.get_yscale()) == ("step", "relative change of energy", "log")
     assert axes.get_xlim() == (0, 16000) and axes.get_ylim() == (1e-9, 1e9)
     (bound,) = [one for one in axes.get_lines() if one.get_label().startswith("_")]
+    assert look(bound) == (to_rgba(FAINT), "--") and axes.texts[0].get_ha() == "right"
     assert bound.get_ydata() == [0.005, 0.005] and [text.get_text() for text in axes.texts] == ["0.5 %"]
     assert axes.texts[0].xy == (16000, 0.005)
     assert title(axes) == "Free elastic bar: energy in the two DG forms"
     assert_readable(figures["free-bar.png"])
+
+
+def test_free_bar_takes_as_many_steps_as_it_says(tmp_path, monkeypatch, runs, saved):
+    fake, figures = runs(bar_result), saved(free_bar)
+    start(free_bar, monkeypatch, "--out", tmp_path)
+    assert [call.sets["time.steps"] for call in fake.calls] == [20000, 20000] and fake.calls[0].overrides == []
+    assert figures["free-bar.png"].axes[0].get_xlim() == (0, 20000)
 
 
 # ---- bench/ceramic-curves ----
@@ -169,8 +178,8 @@ def test_ceramic_curves(tmp_path, monkeypatch, runs, saved, capsys):
             assert stress == pytest.approx(4 * rate**0.1 * np.sin(4 * np.arange(end) / 100), abs=1e-12)
         assert (axes.get_xlabel(), axes.get_ylabel()) == (f"{side}, strain (%)", "stress (GPa)")
         assert axes.get_xlim() == (0, far) and axes.get_ylim()[0] == 0
-        assert len({style(axes, label) for label in labels(axes)}) == 2
-    assert texts(figure)[0] == "deshpande-evans, uniaxial stress"
+        assert [style(axes, label)[0] for label in labels(axes)] == [to_rgba(BLUE), to_rgba(GREEN)]
+    assert texts(figure)[0] == "deshpande-evans, uniaxial stress" and figure.get_size_inches() == pytest.approx((10, 4.2))
     assert_readable(figure)
     assert_panels_apart(figure)
 
@@ -189,7 +198,14 @@ def test_curve_ends_below_a_tenth_of_the_largest():
 
 def test_more_rates_than_colours():
     curves = {side: {10.0**k: (np.zeros(2), np.zeros(2)) for k in range(6)} for side in ceramic.SIDES}
-    assert len(labels(ceramic.draw(curves, "m").axes[0])) == 6
+    axes = ceramic.draw(curves, "m").axes[0]
+    assert [style(axes, label)[0] for label in labels(axes)] == [to_rgba(c) for c in (BLUE, GREEN, YELLOW, RED, BLUE, GREEN)]
+
+
+def test_ceramic_has_four_rates_unless_told(tmp_path, monkeypatch, runs, saved):
+    fake, _ = runs(cube_result), saved(ceramic)
+    start(ceramic, monkeypatch, "--out", tmp_path)
+    assert [call.out.name for call in fake.calls[:4]] == [f"compression-1e+0{k}" for k in (3, 4, 5, 6)] and len(fake.calls) == 8
 
 
 # ---- bench/intrinsic ----
@@ -229,7 +245,7 @@ def test_intrinsic_spall(tmp_path, monkeypatch, runs, saved, capsys):
     (axes,) = figures["spall-history.png"].axes
     label = "theory, spall at 0.2246 µs"
     assert labels(axes) == [label, "DG", "intrinsic", "continuous"] == legend(axes)
-    assert len({style(axes, one)[0] for one in labels(axes)}) == 4
+    assert [style(axes, one)[:2] for one in labels(axes)] == [(to_rgba(FAINT), "--"), *((to_rgba(c), "-") for c in (BLUE, RED, GREEN))]
     time, stress = line(axes, label)
     assert time[-1] == pytest.approx(0.45) and stress == pytest.approx(bar.stress(1e-3, 1e-6 * time) / 1e6)
     time, stress = line(axes, "intrinsic")
@@ -252,6 +268,7 @@ def test_intrinsic_spall(tmp_path, monkeypatch, runs, saved, capsys):
             assert np.array(sorted(map(tuple, corners))) == pytest.approx(moved)
             assert picture.get_clim() == pytest.approx((0, 400)) and one.get_aspect() == 1
     assert [axes.get_xlabel() for axes in panels[:, 0]] == ["", "", "", "z (mm), displacements x 300"]
+    assert figure.get_size_inches() == pytest.approx((12, 3.9))
     assert figure.axes[-1].get_ylabel() == "stress along the bar (MPa)" and not any(len(axes.get_yticks()) for axes in panels.flat)
 
 
@@ -340,7 +357,7 @@ def test_intrinsic_slopes(tmp_path, monkeypatch, runs, saved, capsys):
 
     (axes,) = figures["interface-stress.png"].axes
     assert labels(axes) == ["theory", "s h/E = 0.3", "s h/E = 3", "s h/E = 30"] == legend(axes)
-    assert len({style(axes, one)[0] for one in labels(axes)}) == 4
+    assert [style(axes, one)[:2] for one in labels(axes)] == [(to_rgba(FAINT), "--"), *((to_rgba(c), "-") for c in (YELLOW, RED, BLUE))]
     end = 1e6 * intrinsic.step_of_stress(row)["time.end"]
     time, stress = line(axes, "theory")
     assert time[-1] == pytest.approx(end) and stress == pytest.approx(np.where(time > half, row.stress() / 1e6, 0))
@@ -374,7 +391,8 @@ def test_intrinsic_speed(tmp_path, monkeypatch, runs, saved, capsys):
     (axes,) = figures["wave-speed.png"].axes
     assert labels(axes) == ["formula (3.10)", "measured"] == legend(axes)
     found, speeds = line(axes, "measured")
-    assert found == pytest.approx(ratios) and speeds == pytest.approx(slowed, rel=1e-5) and style(axes, "measured")[1:] == ("None", "o")
+    assert found == pytest.approx(ratios) and speeds == pytest.approx(slowed, rel=1e-5) and style(axes, "measured") == (to_rgba(BLUE), "None", "o")
+    assert style(axes, "formula (3.10)")[:2] == (to_rgba(FAINT), "--")
     fine, formula = line(axes, "formula (3.10)")
     assert formula == pytest.approx(np.sqrt(fine / (1 + fine))) and fine.min() < 0.3 and fine.max() > 3
     assert (axes.get_xlabel(), axes.get_ylabel(), axes.get_xscale(), axes.get_ylim()) == (
@@ -430,6 +448,13 @@ def test_findings_that_do_not_hold(fault, which):
     assert {k for k, (_, _, holds) in enumerate(study.findings(results, BAR)) if not holds} == which
 
 
+def test_findings_state_what_is_farthest_off():
+    results = {"uniform": result(first=0.2300e-6, error=5e-3), "middle": result(first=0.2200e-6), "graded": result()}
+    values = [value for _, value, _ in study.findings(results, BAR)]
+    assert values[1] == f"within {100 * 0.01e-6 / BAR.meeting():.1f} %" and values[3] == f"{100 * (0.23e-6 / BAR.meeting() - 1):.1f} %"
+    assert values[4] == "0.50 %"
+
+
 def test_findings_of_one_mesh_and_of_one_that_did_not_break():
     assert [words.split()[0] for words, _, _ in study.findings({"middle": result()}, BAR)] == ["thesis:", "first", "energy", "done"]
     assert len(study.findings({"uniform": result(), "graded": result()}, BAR)) == 5
@@ -465,15 +490,17 @@ def test_pictures_of_the_study():
     time, energy = line(axes, "graded, 12,345 tets")
     assert time == pytest.approx([0, 0.98e6 * BAR.crossing(), 0.6]) and energy == pytest.approx([0, 7, 9])
     flat, meeting = [one for one in axes.get_lines() if one.get_label().startswith("_")]
+    assert look(flat) == (to_rgba(FAINT), "--") and look(meeting) == (to_rgba(FAINT), "-")
     assert flat.get_ydata() == pytest.approx([5.44, 5.44]) and meeting.get_xdata() == pytest.approx([1e6 * BAR.meeting()] * 2)
     assert [text.get_text() for text in axes.texts] == ["flat plane"] and axes.texts[0].xy == (0, pytest.approx(5.44))
     assert (axes.get_xlabel(), axes.get_ylabel()) == ("time (µs)", "dissipated energy (µJ)")
     assert axes.get_xlim()[0] == axes.get_ylim()[0] == 0 and title(axes) == "Spall: dissipated energy on three meshes"
-    assert style(axes, "uniform, 12,345 tets")[0] != style(axes, "graded, 12,345 tets")[0]
+    assert [style(axes, one)[0] for one in labels(axes)] == [to_rgba(BLUE), to_rgba(GREEN)]
     assert_readable(figure)
 
     figure = study.draw_cracks(results, BAR)
-    assert [axes.get_title("left") or axes.get_title() for axes in figure.axes] == ["uniform", "graded"]
+    assert [axes.get_title() for axes in figure.axes] == ["uniform", "graded"] and figure.get_size_inches() == pytest.approx((10, 4.6))
+    assert all(axes.get_position().height > 0.7 for axes in figure.axes)
     assert texts(figure)[0] == "Fully broken faces near the middle"
     for axes in figure.axes:
         (faces,) = axes.collections
@@ -484,7 +511,22 @@ def test_pictures_of_the_study():
         assert axes.get_xlabel() == "x (mm)" and (axes.elev, axes.azim) == (17, -68)
         assert np.ptp(axes._box_aspect) < 1e-12
     assert len({tuple(axes.collections[0].get_facecolor()[0]) for axes in figure.axes}) == 2
+    figure.canvas.draw()
     assert_panels_apart(figure)
+
+
+def test_cracks_of_a_bar_anywhere():
+    """Of another bar, wider in y than in x and not around the origin, the faces around its middle."""
+    box = np.array([[1.0, 2.0, 5.0], [1.2, 2.6, 9.0]])  # half its width: 0.3; so 0.45 on both sides of z = 7
+    bar = theory.Spall(rhegma.read_case(BENCH / "spall.yaml"), box)
+    at = [7.44, 6.56, 7.46, 6.54]
+    corners = np.array([[[0, 0, 7], [1, 0, 7], [0, 1, z]] for z in at])
+    faces, half = study.near_middle({"points": corners, "damage": np.ones(4)}, bar)
+    assert faces == pytest.approx(1e3 * corners[:2]) and half == pytest.approx(300)
+    one = result()
+    one.crack["points"] = corners
+    (axes,) = study.draw_cracks({"middle": one}, bar).axes
+    assert axes.get_zlim() == pytest.approx((6700, 7300)) and axes.get_xlim() == pytest.approx((800, 1400)) and axes.get_ylim() == pytest.approx((2000, 2600))
 
 
 def study_result(out, sets):
@@ -533,6 +575,15 @@ def test_meshing_is_timed_once(tmp_path, monkeypatch):
     assert study.mesh_once("uniform", mesh) == 17.5
     (tmp_path / "uniform.mesh-s").unlink()
     assert study.mesh_once("uniform", mesh) == 0
+
+
+def test_study_runs_to_the_end_it_says(tmp_path, monkeypatch, runs, saved, capfd):
+    fake, _ = runs(study_result), saved(study)
+    monkeypatch.setattr(launch, "call", lambda words, **options: options["show"])
+    start(study, monkeypatch, "--out", tmp_path / "a" / "b", "--threads", 1)
+    assert [call.out.name for call in fake.calls] == ["uniform", "middle", "graded"]
+    assert fake.calls[0].sets["time.end"] == 0.6e-6 and fake.calls[0].sets["time.safety"] == 0.9
+    assert fake.calls[0].keywords["launcher"] == [] and len(capfd.readouterr().out.splitlines()) == 5 + 6
 
 
 def test_threads_of_the_study(tmp_path, monkeypatch):
@@ -608,8 +659,15 @@ def test_fragmentation(tmp_path, monkeypatch, runs, saved, capsys):
     assert line(axes, "planes of the mesh")[1].tolist() == [99, 99]
     assert (axes.get_xscale(), axes.get_yscale(), axes.get_xlabel(), axes.get_ylabel()) == (
         "log", "log", "strain rate (1/s)", "fragments of 20 mm")
-    assert title(axes) == "Fragments of a stretched bar" and len({style(axes, one) for one in labels(axes)}) == 4
+    assert title(axes) == "Fragments of a stretched bar"
+    assert [style(axes, one)[:2] for one in labels(axes)] == [(to_rgba(INK), "--"), (to_rgba(INK), "-"), (to_rgba(FAINT), ":"), (to_rgba(BLUE), "None")]
     assert_readable(figure)
+
+
+def test_fragmentation_has_its_rates_and_seeds(tmp_path, monkeypatch, runs, saved):
+    fake, _ = runs(pieces_result), saved(fragmentation)
+    start(fragmentation, monkeypatch, "--out", tmp_path)
+    assert [call.out.name for call in fake.calls] == [f"rate-{rate}-seed-{seed}" for rate in ("10000", "30000", "100000", "300000") for seed in (1, 2)]
 
 
 def test_fragmentation_without_the_table(tmp_path, monkeypatch, runs):
