@@ -10,6 +10,8 @@
 #include <string.h>
 
 #include "../src/case.h"
+#include "../src/hash.h"
+#include "../src/mesh_case.h"
 #include "../src/solver.h"
 #include "../src/tile.h"
 
@@ -46,18 +48,19 @@ static face face_of(const rg_solver *s, const rg_tile *t, size_t i) {
     int32_t link = s->domain->side[0][i];
     const double *corner = s->domain->corner + 12 * (t->begin * RG_LANES + (size_t)link / RG_FACES);
     const int *node = rg_face_node[link % RG_FACES];
-    for (int c = 0; c < 3; c++) {
-        f.middle[c] = corner[3 * node[0] + c] + corner[3 * node[1] + c] + corner[3 * node[2] + c];
+    for (int c = 0; c < 3; c++) { /* the same bits in any order of the corners */
+        double x = corner[3 * node[0] + c], y = corner[3 * node[1] + c], z = corner[3 * node[2] + c];
+        double least = fmin(fmin(x, y), z), most = fmax(fmax(x, y), z);
+        double between = fmax(fmin(x, y), fmin(fmax(x, y), z));
+        f.middle[c] = least + between + most;
     }
     f.strength = s->scale[i / RG_LANES * 2 * RG_LANES + i % RG_LANES];
     f.opening = s->scale[(i / RG_LANES * 2 + 1) * RG_LANES + i % RG_LANES];
     return f;
 }
 
-/* All faces of a case, seams twice, sorted by place; the caller frees them. */
-static face *faces_of(int overrides, const char *const override[], size_t *count) {
-    rg_case *c = read_case(overrides, override);
-    rg_solver *s = rg_solver_make(c, MPI_COMM_SELF);
+/* All faces of a solver, seams twice, sorted by place; the caller frees them. Frees the solver. */
+static face *list_faces(rg_solver *s, size_t *count) {
     face *list = calloc(s->domain->iblocks * RG_LANES, sizeof *list);
     assert_non_null(list);
     *count = 0;
@@ -71,8 +74,14 @@ static face *faces_of(int overrides, const char *const override[], size_t *count
         }
     }
     rg_solver_free(s);
-    rg_case_free(c);
     qsort(list, *count, sizeof *list, by_place);
+    return list;
+}
+
+static face *faces_of(int overrides, const char *const override[], size_t *count) {
+    rg_case *c = read_case(overrides, override);
+    face *list = list_faces(rg_solver_make(c, MPI_COMM_SELF), count);
+    rg_case_free(c);
     return list;
 }
 
@@ -119,6 +128,86 @@ static void test_seed_and_keep(void **state) {
     free(b);
 }
 
+/* ---- The same body in other numbers ---- */
+
+/* Gives vertex v the number to[v]; the corners of an element ascend again, so that its faces and their
+ * corners change their order. The sides of the box lose their names. */
+static void renumber(rg_mesh *mesh, const rg_gid *to) {
+    double *x = malloc(3 * (size_t)mesh->vertices * sizeof *x);
+    assert_non_null(x);
+    memcpy(x, mesh->x, 3 * (size_t)mesh->vertices * sizeof *x);
+    for (rg_gid v = 0; v < mesh->vertices; v++) {
+        memcpy(mesh->x + 3 * to[v], x + 3 * v, 3 * sizeof *x);
+    }
+    for (rg_gid e = 0; e < mesh->elements; e++) {
+        rg_gid *corner = mesh->corner + 4 * e;
+        for (int k = 0; k < 4; k++) {
+            corner[k] = to[corner[k]];
+        }
+        for (int k = 0; k < 9; k++) { /* exchanges enough to sort four */
+            rg_gid *pair = corner + k % 3, low = pair[0];
+            if (low > pair[1]) {
+                pair[0] = pair[1];
+                pair[1] = low;
+            }
+        }
+    }
+    memset(mesh->set, -1, 4 * (size_t)mesh->elements);
+    free(x);
+    rg_mesh_connect(mesh);
+}
+
+enum { AS_IT_IS, REVERSED, SHUFFLED, MINUS_ZERO, NUMBERS };
+
+static face *faces_in(const rg_case *c, int numbers, size_t *count) {
+    rg_mesh *mesh = rg_mesh_of_case(c);
+    rg_gid *to = malloc((size_t)mesh->vertices * sizeof *to);
+    assert_non_null(to);
+    for (rg_gid v = 0; v < mesh->vertices; v++) {
+        to[v] = numbers == REVERSED ? mesh->vertices - 1 - v : v;
+    }
+    for (rg_gid v = mesh->vertices - 1; v > 0 && numbers == SHUFFLED; v--) {
+        rg_gid other = (rg_gid)(rg_hash(3, (uint64_t)v) % (uint64_t)(v + 1)), kept = to[v];
+        to[v] = to[other];
+        to[other] = kept;
+    }
+    for (rg_gid k = 0; k < 3 * mesh->vertices && numbers == MINUS_ZERO; k++) {
+        mesh->x[k] = fabs(mesh->x[k]) > 0 ? mesh->x[k] : -0.0;
+    }
+    renumber(mesh, to);
+    rg_part *part = rg_part_distribute(mesh, 96, MPI_COMM_SELF);
+    free(to);
+    rg_mesh_free(mesh);
+    return list_faces(rg_solver_make_from_part(c, part, MPI_COMM_SELF), count);
+}
+
+/* The strength of a face follows from where its corners are, in whatever order they are numbered, and 0 is
+ * where -0 is. */
+static void test_numbers(void **state) {
+    (void)state;
+    const char *const set[] = {"interface.weibull={modulus: 8, area: 2e-9}", "mesh.origin=[0, 0, 0]"};
+    const char *const jitter[] = {"mesh.jitter=0.15", "mesh.jitter=0"};
+    for (int regular = 0; regular < 2; regular++) {
+        const char *all[] = {"mesh.cells=[4, 4, 8]", set[0], set[1], jitter[regular]};
+        rg_case *c = rg_case_read(RG_SOURCE_ROOT "/bench/cases/spall.yaml", 4, all, stderr);
+        assert_non_null(c);
+        size_t count, others;
+        face *f = faces_in(c, AS_IT_IS, &count);
+        for (int numbers = REVERSED; numbers < NUMBERS; numbers++) {
+            face *g = faces_in(c, numbers, &others);
+            assert_int_equal(count, others);
+            for (size_t i = 0; i < count; i++) {
+                assert_int_equal(by_place(&f[i], &g[i]), 0);
+                assert_true(fabs(f[i].strength - g[i].strength) <= 1e-14 * f[i].strength);
+                assert_true(fabs(f[i].opening - g[i].opening) <= 1e-14 * f[i].opening);
+            }
+            free(g);
+        }
+        free(f);
+        rg_case_free(c);
+    }
+}
+
 /* The last set that holds counts; faces in none keep the law's values. */
 static void test_sets(void **state) {
     (void)state;
@@ -150,10 +239,8 @@ static void test_uniform(void **state) {
 
 int main(int argc, char **argv) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_weibull),
-        cmocka_unit_test(test_seed_and_keep),
-        cmocka_unit_test(test_sets),
-        cmocka_unit_test(test_uniform),
+        cmocka_unit_test(test_weibull), cmocka_unit_test(test_seed_and_keep), cmocka_unit_test(test_numbers),
+        cmocka_unit_test(test_sets),    cmocka_unit_test(test_uniform),
     };
     MPI_Init(&argc, &argv);
     int failed = cmocka_run_group_tests(tests, NULL, NULL);
