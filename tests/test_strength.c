@@ -28,10 +28,13 @@ static rg_case *read_case(int overrides, const char *const override[]) {
     return c;
 }
 
-/* A face: what identifies it, and its factors. */
+/* A face: what identifies it, and its factors; a sum over hashes of its corners, from a seed. */
 typedef struct {
     double middle[3], normal[3], area, strength, opening;
+    uint64_t corners;
 } face;
+
+enum { SEED = 5 };
 
 static int by_place(const void *a, const void *b) {
     const face *p = a, *q = b;
@@ -54,6 +57,10 @@ static face face_of(const rg_solver *s, const rg_tile *t, size_t i) {
         double between = fmax(fmin(x, y), fmin(fmax(x, y), z));
         f.middle[c] = least + between + most;
     }
+    for (int k = 0; k < RG_FCORNERS; k++) {
+        const double *x = corner + 3 * node[k];
+        f.corners += rg_hash_double(rg_hash_double(rg_hash_double(SEED, x[0] + 0.0), x[1] + 0.0), x[2] + 0.0);
+    }
     f.strength = s->scale[i / RG_LANES * 2 * RG_LANES + i % RG_LANES];
     f.opening = s->scale[(i / RG_LANES * 2 + 1) * RG_LANES + i % RG_LANES];
     return f;
@@ -73,6 +80,11 @@ static face *list_faces(rg_solver *s, size_t *count) {
             }
         }
     }
+    double stiffest = 0;
+    for (size_t i = 0; i < *count; i++) {
+        stiffest = fmax(stiffest, list[i].strength / list[i].opening);
+    }
+    assert_true(fabs(s->stiffest - stiffest) <= 1e-6 * stiffest); /* also where factors are floats */
     rg_solver_free(s);
     qsort(list, *count, sizeof *list, by_place);
     return list;
@@ -208,6 +220,36 @@ static void test_numbers(void **state) {
     }
 }
 
+/* A case of today has the same strengths with any later program: U of a face is pinned, and a set's strength
+ * is what the weakest link is multiplied with. */
+static void test_formula(void **state) {
+    (void)state;
+    const char *const set[] = {"interface.weibull={modulus: 8, area: 2e-9, seed: 5}",
+                               "interface.sets=[{where: z < 0, strength: 800e6, energy: 68}]"};
+    size_t count;
+    face *f = faces_of(2, set, &count);
+    for (size_t i = 0; i < count; i++) {
+        double u = rg_hash_uniform(rg_hash(SEED, f[i].corners)), set_strength = f[i].middle[2] < 0 ? 2 : 1;
+        double weakest = pow(-2e-9 / f[i].area * log(1 - u), 1 / 8.0);
+        assert_true(fabs(f[i].strength - set_strength * weakest) <= 1e-6 * f[i].strength);
+        assert_true(fabs(f[i].opening * weakest - 1) <= 1e-6);
+    }
+    free(f);
+}
+
+/* Faces without a law of softening have no opening of their own. */
+static void test_without_softening(void **state) {
+    (void)state;
+    const char *const set[] = {
+        "interface={law: free, strength: 400e6, sets: [{where: z < 0, strength: 800e6}]}"};
+    size_t count;
+    face *f = faces_of(1, set, &count);
+    for (size_t i = 0; i < count; i++) {
+        assert_true(f[i].opening == 1 && f[i].strength == (f[i].middle[2] < 0 ? 2 : 1));
+    }
+    free(f);
+}
+
 /* The last set that holds counts; faces in none keep the law's values. */
 static void test_sets(void **state) {
     (void)state;
@@ -239,8 +281,10 @@ static void test_uniform(void **state) {
 
 int main(int argc, char **argv) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_weibull), cmocka_unit_test(test_seed_and_keep), cmocka_unit_test(test_numbers),
-        cmocka_unit_test(test_sets),    cmocka_unit_test(test_uniform),
+        cmocka_unit_test(test_weibull),           cmocka_unit_test(test_seed_and_keep),
+        cmocka_unit_test(test_numbers),           cmocka_unit_test(test_formula),
+        cmocka_unit_test(test_without_softening), cmocka_unit_test(test_sets),
+        cmocka_unit_test(test_uniform),
     };
     MPI_Init(&argc, &argv);
     int failed = cmocka_run_group_tests(tests, NULL, NULL);
