@@ -57,6 +57,10 @@ def test_python_has_faults_outside_its_texts():
     assert [f.planted(text).split("\n")[2] for f in faults["sign"]] == ["    return a - 1"]
 
 
+def test_texts_as_indices_stay_where_they_are():
+    assert changed("exchanged index", 'a = b["c"][i]', path="bench/plot") == ['a = b["c"][0]']
+
+
 def test_a_fault_is_found_again_in_a_file_that_has_moved():
     text = "{\n    a = b + c;\n    d = 1;\n    a = b + c;\n"
     second = faults_of("a.c", text)["sign"][1]

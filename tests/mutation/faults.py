@@ -110,7 +110,7 @@ SYMMETRIC = ("strcmp", "strcasecmp", "strncmp", "strncasecmp", "memcmp")  # wher
 
 def exchanged_index(code):
     for m in re.finditer(r"\[([^\[\]]+)\]\[([^\[\]]+)\]", code):
-        if m[1] != m[2]:
+        if m[1] != m[2] and m[1].strip() and m[2].strip():  # no text
             yield m.start(), m.end(), f"[{m[2]}][{m[1]}]"
     for m in re.finditer(r"(?<=[\w\])]\[)[0-2](?=\])", code):
         yield m.start(), m.end(), {"0": "1", "1": "0", "2": "1"}[m[0]]
