@@ -499,10 +499,8 @@ static void test_words(void **state) {
             said,
             "rhegma: warning: bar.yaml: material material: later materials claim all of its elements\n");
         const char *elements = strstr(printed, "elements       12 ("),
-                   *ranks = strstr(printed, "\nrank 0         "),
-                   *threads = ranks != NULL ? strstr(ranks, " thread") : NULL;
-        assert_true(elements == printed && threads != NULL);
-        assert_int_equal(atoi(ranks + strlen("\nrank 0         ")), omp_get_max_threads());
+                   *ranks = strstr(printed, "rank 0         1 thr");
+        assert_true(elements == printed && ranks > elements);
         assert_int_equal(strstr(printed, "results in out\n") != NULL, !check);
         assert_int_equal(access("out", F_OK) == 0, !check);
         clear(NULL);
@@ -531,6 +529,7 @@ int main(int argc, char **argv) {
         cmocka_unit_test_teardown(test_words, clear),
     };
     MPI_Init(&argc, &argv);
+    omp_set_num_threads(1); /* more than the machine has processors would be told */
     int failed = cmocka_run_group_tests(tests, set_up, tear_down);
     MPI_Finalize();
     return failed;
