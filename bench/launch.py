@@ -76,8 +76,11 @@ def run(case, out, sets=None, overrides=(), *, launcher=(), build=None, quiet=Tr
 def run_once(case, out, sets=None, overrides=(), **keywords):
     """The same, unless a run of these values is there already. Returns the seconds that it took, also of an earlier time."""
     record, asked = out.parent / f"{out.name}.run", [str(case), *options(sets), *overrides]
-    before = json.loads(record.read_text()) if record.exists() and (out / "summary.json").exists() else {}
-    if before.get("asked") == asked:
+    try:
+        before = read_mapping(record, json.loads)
+    except BadInput:
+        before = {}
+    if before.get("asked") == asked and (out / "summary.json").exists():
         return before["seconds"]
     record.unlink(missing_ok=True)
     begin = time.monotonic()

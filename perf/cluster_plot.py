@@ -56,7 +56,8 @@ def plot_strong(axis, record):
 def plot_weak(axis, record):
     for study, shade in (("weak", 0), ("weak, 16 threads", 4)):
         for k, (network, (_, label)) in enumerate(STYLE.items()):
-            draw_study(axis, points_of(record, study, network), share_of_sweeps, f"C{shade + k}", f"{study[6:] or '1 thread'}, {label}")
+            draw_study(axis, points_of(record, study, network), share_of_sweeps, f"C{shade + k}",
+                       f"{study[6:] or '1 thread'}, {label}")
     axis.axhline(0.95, color="k", ls=":")
     axis.set(xscale="log", xlabel="cores", ylabel="sweeps / time of the step", ylim=(0, 1.05),
              title="weak scaling, 50,000 tets a core")

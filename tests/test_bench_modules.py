@@ -98,6 +98,9 @@ def test_run_once_repeats_what_is_not_the_same(tmp_path, monkeypatch):
     (out / "summary.json").unlink()
     launch.run_once("d", out, {"a": 2}, ["b=3"])
     assert words_of(tmp_path).count("run") == 5
+    (tmp_path / "out.run").write_text("of an earlier time")
+    launch.run_once("d", out, {"a": 2}, ["b=3"])
+    assert words_of(tmp_path).count("run") == 6
 
 
 def test_run_once_does_not_remember_a_run_that_failed(tmp_path, monkeypatch):
@@ -184,7 +187,8 @@ def test_tables(tmp_path):
     assert rhegma.fragments(tmp_path)["mass"].tolist() == [2.0]
 
 
-@pytest.mark.parametrize("name, read, needed", [("energy", rhegma.energy, ["time", "total"]), ("history", rhegma.history, ["time"]),
+@pytest.mark.parametrize("name, read, needed",
+                         [("energy", rhegma.energy, ["time", "total"]), ("history", rhegma.history, ["time"]),
                                                 ("fragments", rhegma.fragments, ["time", "id", "mass"])])
 def test_tables_need_their_columns(tmp_path, name, read, needed):
     for left_out in needed:
@@ -194,7 +198,8 @@ def test_tables_need_their_columns(tmp_path, name, read, needed):
 
 
 @pytest.mark.parametrize("text, complaint", [("", "no column 'time'"), ("time", "has no rows"), ("time\n", "has no rows"),
-                                             ("time,x\n1\n", "x.csv: "), ("time,x\n1,b\n", "x.csv: "), ("time,time\n1,2\n", "x.csv: ")])
+                                             ("time,x\n1\n", "x.csv: "), ("time,x\n1,b\n", "x.csv: "),
+                                             ("time,time\n1,2\n", "x.csv: ")])
 def test_tables_that_are_none(tmp_path, text, complaint):
     (tmp_path / "x.csv").write_text(text)
     with pytest.raises(rhegma.BadInput, match=complaint):
@@ -252,7 +257,8 @@ def test_moduli_and_speeds():
     solid = rhegma.material_of({"model": "j2", "young": 10e9, "poisson": 0.25, "density": 1000.0})
     assert (solid.name, solid.model, solid.density, solid.poisson) == ("material", "j2", 1000, 0.25)
     for found, expected in ((solid.shear, 4e9), (solid.lame, 4e9), (solid.young, 10e9), (solid.uniaxial, 12e9),
-                            (solid.dilatational_speed, math.sqrt(12e6)), (solid.shear_speed, 2000), (solid.bar_speed, math.sqrt(10e6))):
+                            (solid.dilatational_speed, math.sqrt(12e6)), (solid.shear_speed, 2000),
+                            (solid.bar_speed, math.sqrt(10e6))):
         assert found == pytest.approx(expected, rel=1e-14)
     ceramic = rhegma.material_of({"name": "c", "model": "deshpande-evans", "shear": 4e9, "poisson": 0.25, "density": 1000})
     assert ceramic.name == "c" and ceramic.young == pytest.approx(10e9, rel=1e-14)
@@ -405,7 +411,8 @@ def test_cases_that_are_no_spall_test(sections, complaint):
 
 
 def test_displacements_of_nothing_hold_the_sides():
-    held = [{"set": m["set"], "component": m["component"], "displacement": 0} if m["set"][0] != "z" else m for m in pulled(-7, 7)]
+    held = [{"set": m["set"], "component": m["component"], "displacement": 0} if m["set"][0] != "z" else m
+            for m in pulled(-7, 7)]
     assert theory.Spall.of(spall_case(boundary=[*held, {"set": "z+", "component": "x", "velocity": 0}])) is not None
 
 
@@ -453,7 +460,8 @@ def test_fragment_sizes():
 
 
 @pytest.mark.parametrize("sections, complaint", [
-    ({"materials": [STEEL]}, "one material"), ({"material": {**STEEL, "model": "j2"}}, "has j2"), ({"mesh": {"file": "x"}}, "built-in box"),
+    ({"materials": [STEEL]}, "one material"), ({"material": {**STEEL, "model": "j2"}}, "has j2"),
+                                                 ({"mesh": {"file": "x"}}, "built-in box"),
     ({"interface": {"law": "none"}}, "nothing can break"), ({"interface": {"strength": 1e6}}, "nothing can break"),
     ({"interface": None}, "nothing can break"), ({"interface": {"strength": "a", "energy": 1}}, "plain numbers, not 'a'")])
 def test_cases_without_fragment_sizes(sections, complaint):
@@ -468,7 +476,8 @@ def test_cases_without_fragment_sizes(sections, complaint):
     (2e-7, "s", {}, 1e9, "ns"), (4.4e-7, "s", {"least": 0.1}, 1e6, "µs"), (0.99e-7, "s", {"least": 0.1}, 1e9, "ns"),
     (5.0, "Pa", {}, 1, "Pa"), (1e3, "Pa", {}, 1e-3, "kPa"), (999.0, "Pa", {}, 1, "Pa"), (2e8, "Pa", {}, 1e-6, "MPa"),
     (3e11, "Pa", {}, 1e-9, "GPa"), (5e13, "Pa", {}, 1e-9, "GPa"), (4e-3, "m", {}, 1e3, "mm"), (5e-12, "J", {}, 1e9, "nJ"),
-    (1.6e-7, "m", {"power": 2}, 1e12, "µm²"), (2e-6, "m", {"power": 2}, 1e6, "mm²"), (0, "s", {}, 1, "s"), (math.inf, "s", {}, 1, "s"),
+    (1.6e-7, "m", {"power": 2}, 1e12, "µm²"), (2e-6, "m", {"power": 2}, 1e6, "mm²"), (0, "s", {}, 1, "s"),
+                                                                 (math.inf, "s", {}, 1, "s"),
     (1e-6, "m", {}, 1e6, "µm")])
 def test_units(value, unit, keywords, factor, name):
     found = drawing.prefixed(value, unit, **keywords)

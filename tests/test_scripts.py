@@ -1,6 +1,6 @@
-"""Every script of bench/ and perf/ once, as a user starts it but on tiny meshes: none is broken unseen. What they make of their
-results is held to account in test_plot.py, test_plot_impact.py, test_studies.py and test_perf.py; bench/scaling, bench/efficiency
-and perf/simulate run are started in test_scaling.py."""
+"""Every script of bench/ and perf/ once, as a user starts it but on tiny meshes: none is broken unseen. What they make of
+their results is held to account in test_plot.py, test_plot_impact.py, test_studies.py and test_perf.py; bench/scaling,
+bench/efficiency and perf/simulate run are started in test_scaling.py."""
 
 import json
 import os
@@ -54,7 +54,8 @@ def test_demo(tmp_path):
 @pytest.mark.skipif(SINGLE, reason="the ceramic needs double precision")
 def test_impact_and_its_pictures(tmp_path):
     """bench/impact calls bench/plot and bench/plot-impact; what is there already is not run again."""
-    words = ["structured", "--out", tmp_path, "--set", "mesh.cells=[8, 8, 4]", "--set", "time.end=0.4e-6", "--set", "output.times=[0.4e-6]"]
+    words = ["structured", "--out", tmp_path, "--set", "mesh.cells=[8, 8, 4]", "--set", "time.end=0.4e-6", "--set",
+             "output.times=[0.4e-6]"]
     told, _ = script("bench/impact", *words)
     out = tmp_path / "structured"
     assert json.loads((out / "summary.json").read_text())["ranks"] == 2
@@ -83,10 +84,12 @@ def test_ceramic_curves(tmp_path):
 
 
 def test_intrinsic(tmp_path):
-    told, _ = script("bench/intrinsic", "--out", tmp_path, "--only", "spall", "--set", "mesh.cells=[1, 1, 10]", "--set", "time.end=0.2e-6")
+    told, _ = script("bench/intrinsic", "--out", tmp_path, "--only", "spall", "--set", "mesh.cells=[1, 1, 10]", "--set",
+                     "time.end=0.2e-6")
     assert told.count("(theory 0.1123), plateau ") == 3
     assert_pictures(tmp_path, told, "spall-history.png", "spall-snapshots.png")
-    told, _ = script("bench/intrinsic", "--out", tmp_path, "--only", "slopes", "speed", "--set", "mesh.cells=[1, 1, 4]", "--set", "time.steps=60")
+    told, _ = script("bench/intrinsic", "--out", tmp_path, "--only", "slopes", "speed", "--set", "mesh.cells=[1, 1, 4]",
+                     "--set", "time.steps=60")
     assert told.count("by (3.10)") == 6 and told.count("formula (3.10)") == 5
     assert_pictures(tmp_path, told, "interface-stress.png", "wave-speed.png")
 
@@ -99,7 +102,8 @@ def test_mesh_study(tmp_path):
     told, _ = script(*words, expect=1)  # too coarse for its limits
     assert "flat plane 5.44 uJ, waves meet at 0.2246 us" in told and told.count("  NO\n") >= 1
     assert_pictures(tmp_path, told, "energy.png", "cracks.png")
-    told, complaint = script(*words, "--set", "materials=[{name: b, where: 'z < 0', model: neo-hookean, young: 1e9, poisson: 0, density: 1e3}]",
+    told, complaint = script(*words, "--set",
+                             "materials=[{name: b, where: 'z < 0', model: neo-hookean, young: 1e9, poisson: 0, density: 1e3}]",
                              expect=2)
     assert told == "" and complaint == ("mesh-study: 1-D theory of the spall test is for bodies of one material; "
                                         "this case has material, b\n")
@@ -134,7 +138,8 @@ def test_meshes(tmp_path):
 
 
 def test_mistakes_are_the_programs_own(tmp_path):
-    _, complaint = script("bench/fragmentation", "--out", tmp_path, "--rates", "1e5", "--seeds", 1, "--set", "mesh.jiter=1", expect=2)
+    _, complaint = script("bench/fragmentation", "--out", tmp_path, "--rates", "1e5", "--seeds", 1, "--set", "mesh.jiter=1",
+                          expect=2)
     assert complaint.startswith("fragmentation: ") and "mesh.jiter: unknown key; did you mean 'mesh.jitter'?" in complaint
 
 
@@ -149,15 +154,18 @@ def test_large_tells_its_limits(tmp_path):
 
 
 def test_checkpoint(tmp_path):
-    told, _ = script("bench/checkpoint", "--cells", "2,2,20", "--rounds", 1, "--ranks", 2, "--threads", 1, "--directory", tmp_path)
+    told, _ = script("bench/checkpoint", "--cells", "2,2,20", "--rounds", 1, "--ranks", 2, "--threads", 1, "--directory",
+                     tmp_path)
     assert told.splitlines()[-1].startswith("480 elements, ") and not list(tmp_path.iterdir())
 
 
 @benches
 def test_scaling_as_a_job(tmp_path):
     """bench/scaling.slurm without Slurm: one layout of its list."""
-    process = subprocess.run(["bash", ROOT / "bench/scaling.slurm", "--cells", "2,2,20", "--steps", "3", "--repeats", "1", "--build", BUILD],
-                             env={**os.environ, **ENVIRONMENT, "RHEGMA_ROOT": str(ROOT), "LAYOUTS": "1x1,1x2", "SLURM_ARRAY_TASK_ID": "1",
+    process = subprocess.run(["bash", ROOT / "bench/scaling.slurm", "--cells", "2,2,20", "--steps", "3", "--repeats", "1",
+                              "--build", BUILD],
+                             env={**os.environ, **ENVIRONMENT, "RHEGMA_ROOT": str(ROOT), "LAYOUTS": "1x1,1x2",
+                                  "SLURM_ARRAY_TASK_ID": "1",
                                   "SLURM_ARRAY_JOB_ID": "7", "LAUNCHER": "mpirun --bind-to none -n {ranks}"},
                              capture_output=True, text=True, timeout=TIMEOUT, cwd=tmp_path)
     assert process.returncode == 0, process.stderr
@@ -166,7 +174,8 @@ def test_scaling_as_a_job(tmp_path):
 
 @benches
 def test_overlap(tmp_path):
-    told, _ = script("perf/overlap", "--build", BUILD, "--cells", "2,2,20", "--rounds", 1, "--transport", "memory", "--json", tmp_path / "r.json",
+    told, _ = script("perf/overlap", "--build", BUILD, "--cells", "2,2,20", "--rounds", 1, "--transport", "memory", "--json",
+                     tmp_path / "r.json",
                      "--plot", tmp_path / "p.png")
     (record,) = json.loads((tmp_path / "r.json").read_text())["records"]
     assert record["tets"] == 480 and len(record["delays_s"]) == 9 and min(map(min, record["samples_s"])) > 0
@@ -175,7 +184,8 @@ def test_overlap(tmp_path):
 
 @benches
 def test_simulate_calibrates(tmp_path):
-    told, _ = script("perf/simulate", "calibrate", "--build", BUILD, "--costs", tmp_path / "costs.json", "--quick", "--repeats", 1)
+    told, _ = script("perf/simulate", "calibrate", "--build", BUILD, "--costs", tmp_path / "costs.json", "--quick", "--repeats",
+                     1)
     costs = json.loads((tmp_path / "costs.json").read_text())
     assert [row["tets"] for row in costs["alone"]] == [1620, 3840] and [row["tets"] for row in costs["busy_checks"]] == [1080]
     assert all(row["first"] > 0 and row["second"] > 0 for row in costs["alone"] + costs["busy"]) and len(told.splitlines()) == 6

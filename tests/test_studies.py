@@ -213,6 +213,9 @@ def test_ceramic_has_four_rates_unless_told(tmp_path, monkeypatch, runs, saved):
 intrinsic = script("bench/intrinsic")
 
 
+MOMENTS = [0.07e-6, 0.1e-6, 0.15e-6, 0.2e-6, 0.31e-6, 0.36e-6, 0.42e-6, 0.5e-6]
+
+
 def spall_result(out, sets):
     """The wave comes a tenth late and is a tenth low; a mesh of two elements, of which the upper one has a side in y+."""
     case = rhegma.read_case(BENCH / "spall.yaml")
@@ -221,18 +224,22 @@ def spall_result(out, sets):
     points = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 1, 1], [0, 1, 1.5]])
     tets = [[0, 1, 2, 3], [2, 4, 5, 1]]  # (2, 4, 5) lies in y = 1
     cells = np.array([tet + [0] * 6 for tet in tets])
-    moments = [0.1e-6, 0.3e-6, 0.42e-6]
+    moments = MOMENTS
     stress = np.arange(12.0).reshape(2, 6) * 1e7
-    frames = [{"time": moment, "displacement": np.full((6, 3), moment), "stress": (k + 1) * stress} for k, moment in enumerate(moments)]
-    synthetic.write_run(out, case=case_text("spall.yaml"), summary={"first_fracture_time_s": None if out.name == "intrinsic" else 2.3e-7},
-                        history={"time": time, "p1mm_szz": 0.9 * bar.stress(1e-3, time / 1.1)}, fields=(1e-3 * points, cells, frames))
+    frames = [{"time": moment, "displacement": np.full((6, 3), moment), "stress": (k + 1) * stress} for k,
+              moment in enumerate(moments)]
+    synthetic.write_run(out, case=case_text("spall.yaml"),
+                        summary={"first_fracture_time_s": None if out.name == "intrinsic" else 2.3e-7},
+                        history={"time": time, "p1mm_szz": 0.9 * bar.stress(1e-3, time / 1.1)},
+                        fields=(1e-3 * points, cells, frames))
 
 
 def test_intrinsic_spall(tmp_path, monkeypatch, runs, saved, capsys):
     fake, figures = runs(spall_result), saved(intrinsic)
     start(intrinsic, monkeypatch, "--out", tmp_path, "--only", "spall", "--set", "a=1")
     asked = [(call.case.name, call.out.name, call.overrides) for call in fake.calls]
-    assert asked == [("spall.yaml", "dg", ["a=1"]), ("intrinsic.yaml", "intrinsic", ["a=1"]), ("spall.yaml", "continuous", ["a=1"])]
+    assert asked == [("spall.yaml", "dg", ["a=1"]), ("intrinsic.yaml", "intrinsic", ["a=1"]),
+                     ("spall.yaml", "continuous", ["a=1"])]
     assert fake.calls[0].sets == fake.calls[1].sets == {}
     assert fake.calls[2].sets == {"interface.form": "continuous", "interface.faces": "abs(z) < 1e-6", "output.fields": []}
     bar = theory.Spall(rhegma.read_case(BENCH / "spall.yaml"))
@@ -245,11 +252,13 @@ def test_intrinsic_spall(tmp_path, monkeypatch, runs, saved, capsys):
     (axes,) = figures["spall-history.png"].axes
     label = "theory, spall at 0.2246 µs"
     assert labels(axes) == [label, "DG", "intrinsic", "continuous"] == legend(axes)
-    assert [style(axes, one)[:2] for one in labels(axes)] == [(to_rgba(FAINT), "--"), *((to_rgba(c), "-") for c in (BLUE, RED, GREEN))]
+    assert [style(axes, one)[:2] for one in labels(axes)] == [(to_rgba(FAINT), "--"),
+                                                              *((to_rgba(c), "-") for c in (BLUE, RED, GREEN))]
     time, stress = line(axes, label)
-    assert time[-1] == pytest.approx(0.45) and stress == pytest.approx(bar.stress(1e-3, 1e-6 * time) / 1e6)
+    assert time[[0, -1]] == pytest.approx([0, 0.45]) and stress == pytest.approx(bar.stress(1e-3, 1e-6 * time) / 1e6)
     time, stress = line(axes, "intrinsic")
-    assert time == pytest.approx(np.linspace(0, 0.45, 4501)) and stress == pytest.approx(0.9e-6 * bar.stress(1e-3, 1e-6 * time / 1.1))
+    assert time == pytest.approx(np.linspace(0, 0.45, 4501))
+    assert stress == pytest.approx(0.9e-6 * bar.stress(1e-3, 1e-6 * time / 1.1))
     assert axes.get_xlim() == pytest.approx((0, 0.45))
     assert (axes.get_xlabel(), axes.get_ylabel()) == ("time (µs)", "stress along the bar at z = 1 mm (MPa)")
     assert title(axes).startswith("Spall test: DG, intrinsic cohesive faces, shared nodes")
@@ -258,9 +267,9 @@ def test_intrinsic_spall(tmp_path, monkeypatch, runs, saved, capsys):
     figure = figures["spall-snapshots.png"]
     panels = np.array(figure.axes[:-1]).reshape(4, 2)
     for axes, name in zip(panels.T, ("DG", "intrinsic")):
-        assert [title(one) for one in axes] == [f"{name}, {moment} µs" for moment in ("0.10", "0.10", "0.30", "0.42")]
-        for one, k in zip(axes, (0, 0, 1, 2)):
-            moment = (0.1e-6, 0.3e-6, 0.42e-6)[k]
+        assert [title(one) for one in axes] == [f"{name}, {moment} µs" for moment in ("0.07", "0.15", "0.31", "0.42")]
+        for one, k in zip(axes, (0, 2, 4, 6)):
+            moment = MOMENTS[k]
             (picture,) = one.collections
             assert np.asarray(picture.get_array()) == pytest.approx([(k + 1) * 110])  # MPa: zz of the second element
             corners = picture.get_paths()[0].vertices[:3]
@@ -269,16 +278,17 @@ def test_intrinsic_spall(tmp_path, monkeypatch, runs, saved, capsys):
             assert picture.get_clim() == pytest.approx((0, 400)) and one.get_aspect() == 1
     assert [axes.get_xlabel() for axes in panels[:, 0]] == ["", "", "", "z (mm), displacements x 300"]
     assert figure.get_size_inches() == pytest.approx((12, 3.9))
-    assert figure.axes[-1].get_ylabel() == "stress along the bar (MPa)" and not any(len(axes.get_yticks()) for axes in panels.flat)
+    assert figure.axes[-1].get_ylabel() == "stress along the bar (MPa)"
+    assert not any(len(axes.get_yticks()) for axes in panels.flat)
 
 
 def test_passage_of_the_wave_on_the_other_side():
     """A probe below the middle sees the wave of the lower end first."""
     case = rhegma.read_case(BENCH / "spall.yaml")
     case["boundary"][1]["velocity"] = -3.0
-    bar = theory.Spall(case)
+    bar = theory.Spall(case, np.array([[0, 0, 3e-3], [1e-4, 1e-4, 7e-3]]))
     time = np.linspace(0, 0.4e-6, 4001)
-    for z, expected in ((-1e-3, bar.low), (1e-3, bar.high)):
+    for z, expected in ((4e-3, bar.low), (6e-3, bar.high)):
         history = synthetic.structured({"time": time, "p_szz": bar.stress(z, time)})
         arrival, plateau, begin, near = intrinsic.passage(history, bar, ("p", z))
         assert (arrival, begin) == pytest.approx((1e-3 / bar.speed,) * 2, abs=1e-10)
@@ -318,7 +328,8 @@ def test_row_of_cubes():
     """Slope s = strength^2/(2 ascent energy): s h/E is what was asked for."""
     row = intrinsic.Row(ROW)
     modulus = row.material.uniaxial
-    assert row.length == pytest.approx(4e-3) and row.cube == pytest.approx(1e-4) and row.crossing() == pytest.approx(4e-3 / ROW_SPEED)
+    assert row.length == pytest.approx(4e-3) and row.cube == pytest.approx(1e-4)
+    assert row.crossing() == pytest.approx(4e-3 / ROW_SPEED)
     for ratio in (0.3, 7.0):
         slope = 1e9**2 / (2 * 0.5 * row.energy(ratio))
         assert slope * 1e-4 / modulus == pytest.approx(ratio)
@@ -338,7 +349,8 @@ def row_result(out, sets):
     stress = 3690 * ROW_SPEED * 5 * 1.1 * slowed * (time * slowed * ROW_SPEED > 2e-3)
     half = 4e-3 / ROW_SPEED / slowed
     energy = {"time": time, "total": 0 * time, "kinetic": 1 + np.cos(2 * np.pi * time / half)}
-    synthetic.write_run(out, case=case_text("spring-bar.yaml"), energy_table=energy, history={"time": time, "middle_szz": stress})
+    synthetic.write_run(out, case=case_text("spring-bar.yaml"), energy_table=energy,
+                        history={"time": time, "middle_szz": stress})
 
 
 def test_intrinsic_slopes(tmp_path, monkeypatch, runs, saved, capsys):
@@ -350,17 +362,20 @@ def test_intrinsic_slopes(tmp_path, monkeypatch, runs, saved, capsys):
     for call, ratio in zip(fake.calls, (0.3, 3, 30)):
         assert call.sets == {"interface.energy": pytest.approx(row.energy(ratio)), **intrinsic.step_of_stress(row)}
     half = 2e3 / ROW_SPEED
-    for said, ratio in zip(capsys.readouterr().out.splitlines(), (0.3, 3, 30)):
+    lines = capsys.readouterr().out.splitlines()
+    assert len(lines) == 3
+    for said, ratio in zip(lines, (0.3, 3, 30)):
         slowed = math.sqrt(ratio / (1 + ratio))
         numbers = [float(word.strip(",;")) for word in said.replace(":", "").split() if word.strip(",;")[0].isdigit()]
         assert numbers == pytest.approx([ratio, half / slowed, half / slowed, half, 1.1 * slowed, slowed, 678], abs=6e-4), said
 
     (axes,) = figures["interface-stress.png"].axes
     assert labels(axes) == ["theory", "s h/E = 0.3", "s h/E = 3", "s h/E = 30"] == legend(axes)
-    assert [style(axes, one)[:2] for one in labels(axes)] == [(to_rgba(FAINT), "--"), *((to_rgba(c), "-") for c in (YELLOW, RED, BLUE))]
+    assert [style(axes, one)[:2] for one in labels(axes)] == [(to_rgba(FAINT), "--"),
+                                                              *((to_rgba(c), "-") for c in (YELLOW, RED, BLUE))]
     end = 1e6 * intrinsic.step_of_stress(row)["time.end"]
     time, stress = line(axes, "theory")
-    assert time[-1] == pytest.approx(end) and stress == pytest.approx(np.where(time > half, row.stress() / 1e6, 0))
+    assert time[[0, -1]] == pytest.approx([0, end]) and stress == pytest.approx(np.where(time > half, row.stress() / 1e6, 0))
     time, stress = line(axes, "s h/E = 3")
     assert time == pytest.approx(np.linspace(0, end, 3001))
     assert stress == pytest.approx(1.1 * row.stress() / 1e6 * math.sqrt(0.75) * (time > half / math.sqrt(0.75)))
@@ -383,15 +398,21 @@ def test_intrinsic_speed(tmp_path, monkeypatch, runs, saved, capsys):
     start(intrinsic, monkeypatch, "--out", tmp_path, "--only", "speed")
     ratios, row = (0.3, 0.6, 1, 2, 3), intrinsic.Row(ROW)
     slowed = [math.sqrt(ratio / (1 + ratio)) for ratio in ratios]
-    assert [(call.case.name, call.out.name) for call in fake.calls] == [("spring-bar.yaml", f"speed-{ratio}") for ratio in ratios]
+    assert [(call.case.name, call.out.name) for call in fake.calls] == [("spring-bar.yaml", f"speed-{ratio}")
+                                                                        for ratio in ratios]
     for call, ratio, slow in zip(fake.calls, ratios, slowed):
-        assert call.sets == {"interface.energy": pytest.approx(row.energy(ratio)), "time.end": pytest.approx(1.2 * 4e-3 / ROW_SPEED / slow)}
-    for said, ratio, slow in zip(capsys.readouterr().out.splitlines(), ratios, slowed):
-        assert said in [f"s h/E = {ratio}: speed {slow:.4f} of {ROW_SPEED:.0f} m/s, formula (3.10) {slow:.4f}, {sign}0.00 %" for sign in "+-"]
+        assert call.sets == {"interface.energy": pytest.approx(row.energy(ratio)),
+                             "time.end": pytest.approx(1.2 * 4e-3 / ROW_SPEED / slow)}
+    lines = capsys.readouterr().out.splitlines()
+    assert len(lines) == 5
+    for said, ratio, slow in zip(lines, ratios, slowed):
+        assert said in [f"s h/E = {ratio}: speed {slow:.4f} of {ROW_SPEED:.0f} m/s, formula (3.10) {slow:.4f}, {sign}0.00 %"
+                        for sign in "+-"]
     (axes,) = figures["wave-speed.png"].axes
     assert labels(axes) == ["formula (3.10)", "measured"] == legend(axes)
     found, speeds = line(axes, "measured")
-    assert found == pytest.approx(ratios) and speeds == pytest.approx(slowed, rel=1e-5) and style(axes, "measured") == (to_rgba(BLUE), "None", "o")
+    assert found == pytest.approx(ratios) and speeds == pytest.approx(slowed, rel=1e-5)
+    assert style(axes, "measured") == (to_rgba(BLUE), "None", "o")
     assert style(axes, "formula (3.10)")[:2] == (to_rgba(FAINT), "--")
     fine, formula = line(axes, "formula (3.10)")
     assert formula == pytest.approx(np.sqrt(fine / (1 + fine))) and fine.min() < 0.3 and fine.max() > 3
@@ -413,7 +434,8 @@ def test_intrinsic_does_all_parts_unless_told(monkeypatch):
 
 study = script("bench/mesh-study")
 BAR = theory.Spall(rhegma.read_case(BENCH / "spall.yaml"))
-CORNERS = np.array([[[0, 0, 0], [1, 0, 0], [0, 1, 0.0]], [[0, 0, 2.9], [1, 0, 2.9], [0, 1, 2.9]], [[0, 0, 0], [1, 0, 0], [0, 1, 3.1]],
+CORNERS = np.array([[[0, 0, 0], [1, 0, 0], [0, 1, 0.0]], [[0, 0, 2.9], [1, 0, 2.9], [0, 1, 2.9]],
+                    [[0, 0, 0], [1, 0, 0], [0, 1, 3.1]],
                     [[0, 0, -1], [1, 0, -1], [0, 1, -1]]]) * 1e-4
 
 
@@ -441,7 +463,8 @@ def test_findings_that_hold():
 
 @pytest.mark.parametrize("fault, which", [
     ({"at": 5.43e-6}, {0}), ({"first": 0.2314e-6}, {1, 3}), ({"first": 0.2178e-6}, {1, 3}), ({"first": 0.2180e-6}, set()),
-    ({"at": 7.1e-6}, {2}), ({"error": 1.01e-2}, {4}), ({"error": 0.99e-2}, set()), ({"run_s": 1e3}, {5}), ({"mesh_s": 1e3}, {5}),
+    ({"at": 7.1e-6}, {2}), ({"error": 1.01e-2}, {4}), ({"error": 0.99e-2}, set()), ({"run_s": 1e3}, {5}),
+                                          ({"mesh_s": 1e3}, {5}),
     ({"run_s": 770}, set()), ({"at": 5.45e-6}, set()), ({"first": 0.2311e-6}, set())])
 def test_findings_that_do_not_hold(fault, which):
     results = {"uniform": result(**fault), "middle": result(at=7e-6), "graded": result()}
@@ -451,12 +474,14 @@ def test_findings_that_do_not_hold(fault, which):
 def test_findings_state_what_is_farthest_off():
     results = {"uniform": result(first=0.2300e-6, error=5e-3), "middle": result(first=0.2200e-6), "graded": result()}
     values = [value for _, value, _ in study.findings(results, BAR)]
-    assert values[1] == f"within {100 * 0.01e-6 / BAR.meeting():.1f} %" and values[3] == f"{100 * (0.23e-6 / BAR.meeting() - 1):.1f} %"
+    assert values[1] == f"within {100 * 0.01e-6 / BAR.meeting():.1f} %"
+    assert values[3] == f"{100 * (0.23e-6 / BAR.meeting() - 1):.1f} %"
     assert values[4] == "0.50 %"
 
 
 def test_findings_of_one_mesh_and_of_one_that_did_not_break():
-    assert [words.split()[0] for words, _, _ in study.findings({"middle": result()}, BAR)] == ["thesis:", "first", "energy", "done"]
+    assert [words.split()[0] for words, _, _ in study.findings({"middle": result()}, BAR)] == ["thesis:", "first", "energy",
+                                                                                               "done"]
     assert len(study.findings({"uniform": result(), "graded": result()}, BAR)) == 5
     whole = study.findings({"uniform": result(first=None)}, BAR)
     assert [holds for _, _, holds in whole] == [True, False, True, True]
@@ -474,10 +499,12 @@ def test_energies_are_compared_before_the_ends_break():
 
 def test_table_of_the_study():
     heading, row, last = study.table({"uniform": result()}, BAR)
-    assert heading.split() == ["mesh", "tets", "steps", "first", "fracture", "at", "0.44", "us", "at", "the", "end", "energy", "error",
+    assert heading.split() == ["mesh", "tets", "steps", "first", "fracture", "at", "0.44", "us", "at", "the", "end", "energy",
+                               "error",
                                "meshing", "run"]
     percent = 100 * (0.2246e-6 / BAR.meeting() - 1)
-    assert row.split() == ["uniform", "12,345", "678", "0.2246", "us", f"{percent:+.1f}", "%", "6.00", "uJ", "9.00", "uJ", "0.10", "%",
+    assert row.split() == ["uniform", "12,345", "678", "0.2246", "us", f"{percent:+.1f}", "%", "6.00", "uJ", "9.00", "uJ",
+                           "0.10", "%",
                            "60", "s", "120", "s"]
     assert last == "flat plane 5.44 uJ, waves meet at 0.2246 us; after 0.44 us the ends break too"
 
@@ -499,7 +526,8 @@ def test_pictures_of_the_study():
     assert_readable(figure)
 
     figure = study.draw_cracks(results, BAR)
-    assert [axes.get_title() for axes in figure.axes] == ["uniform", "graded"] and figure.get_size_inches() == pytest.approx((10, 4.6))
+    assert [axes.get_title() for axes in figure.axes] == ["uniform", "graded"]
+    assert figure.get_size_inches() == pytest.approx((10, 4.6))
     assert all(axes.get_position().height > 0.7 for axes in figure.axes)
     assert texts(figure)[0] == "Fully broken faces near the middle"
     for axes in figure.axes:
@@ -526,7 +554,8 @@ def test_cracks_of_a_bar_anywhere():
     one = result()
     one.crack["points"] = corners
     (axes,) = study.draw_cracks({"middle": one}, bar).axes
-    assert axes.get_zlim() == pytest.approx((6700, 7300)) and axes.get_xlim() == pytest.approx((800, 1400)) and axes.get_ylim() == pytest.approx((2000, 2600))
+    assert axes.get_zlim() == pytest.approx((6700, 7300)) and axes.get_xlim() == pytest.approx((800, 1400))
+    assert axes.get_ylim() == pytest.approx((2000, 2600))
 
 
 def study_result(out, sets):
@@ -534,7 +563,8 @@ def study_result(out, sets):
     frames = [{"time": 0.6e-6, "crack/points": CORNERS.reshape(-1, 3), "crack/damage": np.ones((4, 1))}]
     made = result()
     synthetic.write_run(out, case=case_text("spall.yaml", mesh={"file": "m.h5"}), summary=made.summary,
-                        energy_table={"time": made.energy["time"], "total": 0 * made.energy["time"], "dissipated": made.energy["dissipated"]},
+                        energy_table={"time": made.energy["time"], "total": 0 * made.energy["time"],
+                                      "dissipated": made.energy["dissipated"]},
                         fields=(points, np.zeros((1, 10), int), frames))
 
 
@@ -545,15 +575,18 @@ def test_mesh_study(tmp_path, monkeypatch, runs, saved, capsys):
     status = start(study, monkeypatch, "--out", tmp_path, "--ranks", 2, "--threads", 3, "--end", "0.5e-6", "--safety", 0.7,
                    "--only", "graded", "uniform", "--set", "c=3")
     ((words, options),) = meshed
-    assert words == [launch.program(), "mesh", BENCH / "spall-uniform.geo", "-o", tmp_path / "uniform.h5", "--scale", "1e-3", "--improve"]
+    assert words == [launch.program(), "mesh", BENCH / "spall-uniform.geo", "-o", tmp_path / "uniform.h5", "--scale", "1e-3",
+                     "--improve"]
     assert float((tmp_path / "uniform.mesh-s").read_text()) < 1 and not (tmp_path / "graded.mesh-s").exists()
     for call, name in zip(fake.calls, ("graded", "uniform")):
         assert (call.case.name, call.out, call.overrides) == ("spall.yaml", tmp_path / name, ["c=3"])
-        assert call.sets == {"mesh": {"file": str(tmp_path / f"{name}.h5")}, "time.end": 0.5e-6, "time.safety": 0.7, "output.fields": ["crack"]}
+        assert call.sets == {"mesh": {"file": str(tmp_path / f"{name}.h5")}, "time.end": 0.5e-6, "time.safety": 0.7,
+                             "output.fields": ["crack"]}
         assert call.keywords == {"launcher": launch.ranks_launcher(2), "show": True, "OMP_NUM_THREADS": "3"}
     assert set(figures) == {"energy.png", "cracks.png"}
     said = capsys.readouterr().out
-    assert said.count("  yes\n") == 5 and "NO" not in said and status == 0 and "graded       12,345" in said and "0 s     2 s" in said
+    assert said.count("  yes\n") == 5 and "NO" not in said and status == 0 and "graded       12,345" in said
+    assert "0 s     2 s" in said
 
 
 def test_mesh_study_says_what_does_not_hold(tmp_path, monkeypatch, runs, saved, capsys):
@@ -588,7 +621,8 @@ def test_study_runs_to_the_end_it_says(tmp_path, monkeypatch, runs, saved, capfd
 
 def test_threads_of_the_study(tmp_path, monkeypatch):
     asked = []
-    monkeypatch.setattr(study, "compute", lambda name, args: asked.append(args.threads) or (_ for _ in ()).throw(rhegma.BadInput("stop")))
+    monkeypatch.setattr(study, "compute", lambda name, args: asked.append(args.threads)
+                        or (_ for _ in ()).throw(rhegma.BadInput("stop")))
     monkeypatch.setattr(study.os, "cpu_count", lambda: 7)
     for words in (["--ranks", 2], ["--ranks", 9], ["--threads", 5]):
         with pytest.raises(rhegma.BadInput, match="stop"):
@@ -610,7 +644,8 @@ def test_settings_of_a_stretched_bar():
     for key, along in (("initial.displacement", strain), ("initial.velocity", 3e4)):
         found = [float(sets[key][c].removesuffix(f"*{c}")) for c in "xyz"]
         assert found == pytest.approx([-0.21 * along, -0.21 * along, along])
-    assert sets["boundary"] == [{"set": side, "component": "z", "velocity": pytest.approx(speed)} for side, speed in (("z+", 300), ("z-", -300))]
+    assert sets["boundary"] == [{"set": side, "component": "z", "velocity": pytest.approx(speed)} for side,
+                                speed in (("z+", 300), ("z-", -300))]
     size, opening = bar.glenn_chudnovsky(3e4), 2 * 340 / 400e6
     end = 0.13 * 400e6 / 260e9 / 3e4 + 6 * size / math.sqrt(260e9 / 3690) + 4 * opening / (3e4 * size)
     assert sets["time.end"] == pytest.approx(end) and sets["output.interval"] == pytest.approx(end / 20)
@@ -636,7 +671,8 @@ def pieces_result(out, sets):
 
 def test_fragmentation(tmp_path, monkeypatch, runs, saved, capsys):
     fake, figures = runs(pieces_result), saved(fragmentation)
-    start(fragmentation, monkeypatch, "--out", tmp_path, "--rates", "3e4", "1e4", "--seeds", 1, 5, "--set", "mesh.cells=[1, 1, 99]",
+    start(fragmentation, monkeypatch, "--out", tmp_path, "--rates", "3e4", "1e4", "--seeds", 1, 5, "--set",
+          "mesh.cells=[1, 1, 99]",
           "--set", "interface.energy=170")
     assert [(call.case.name, call.out.name) for call in fake.calls] == [
         ("fragmentation.yaml", f"rate-{rate}-seed-{seed}") for rate in (30000, 10000) for seed in (1, 5)]
@@ -644,30 +680,35 @@ def test_fragmentation(tmp_path, monkeypatch, runs, saved, capsys):
     assert fake.calls[3].sets == fragmentation.settings(bar, 1e4, 5)
     assert fake.calls[0].overrides == ["mesh.cells=[1, 1, 99]", "interface.energy=170"]
     said = capsys.readouterr().out.splitlines()
-    assert said[1] == "rate 3e+04/s, seed 5: 35 fragments (the same since 0.50 of the time), mean size 0.571 mm, energy error 1.2e-03"
-    assert said[4:6] == [f"rate {rate:.3g}/s: Grady {1e3 * bar.grady(rate):.3g} mm, Glenn-Chudnovsky {1e3 * bar.glenn_chudnovsky(rate):.3g} mm"
-                         for rate in (1e4, 3e4)]
+    assert said[1] == ("rate 3e+04/s, seed 5: 35 fragments (the same since 0.50 of the time), mean size 0.571 mm, "
+                       "energy error 1.2e-03")
+    sizes = [(rate, 1e3 * bar.grady(rate), 1e3 * bar.glenn_chudnovsky(rate)) for rate in (1e4, 3e4)]
+    assert said[4:6] == [f"rate {rate:.3g}/s: Grady {one:.3g} mm, Glenn-Chudnovsky {other:.3g} mm" for rate, one, other in sizes]
     figure = figures["fragmentation.png"]
     (axes,) = figure.axes
     computed = "computed, one mark a mesh"
     assert labels(axes) == ["Grady 1982", "Glenn & Chudnovsky 1986", "planes of the mesh", computed] == legend(axes)
     rates, numbers = line(axes, computed)
-    assert sorted(zip(rates, numbers)) == [(1e4, 11), (1e4, 15), (3e4, 31), (3e4, 35)] and style(axes, computed)[1:] == ("None", "o")
+    assert sorted(zip(rates, numbers)) == [(1e4, 11), (1e4, 15), (3e4, 31), (3e4, 35)]
+    assert style(axes, computed)[1:] == ("None", "o")
     for label, size in (("Grady 1982", bar.grady), ("Glenn & Chudnovsky 1986", bar.glenn_chudnovsky)):
         rates, numbers = line(axes, label)
-        assert numbers == pytest.approx([20e-3 / size(rate) for rate in rates]) and rates[[0, -1]] == pytest.approx([1e4 / 1.5, 4.5e4])
+        assert numbers == pytest.approx([20e-3 / size(rate) for rate in rates])
+        assert rates[[0, -1]] == pytest.approx([1e4 / 1.5, 4.5e4])
     assert line(axes, "planes of the mesh")[1].tolist() == [99, 99]
     assert (axes.get_xscale(), axes.get_yscale(), axes.get_xlabel(), axes.get_ylabel()) == (
         "log", "log", "strain rate (1/s)", "fragments of 20 mm")
     assert title(axes) == "Fragments of a stretched bar"
-    assert [style(axes, one)[:2] for one in labels(axes)] == [(to_rgba(INK), "--"), (to_rgba(INK), "-"), (to_rgba(FAINT), ":"), (to_rgba(BLUE), "None")]
+    assert [style(axes, one)[:2] for one in labels(axes)] == [(to_rgba(INK), "--"), (to_rgba(INK), "-"), (to_rgba(FAINT), ":"),
+                                                              (to_rgba(BLUE), "None")]
     assert_readable(figure)
 
 
 def test_fragmentation_has_its_rates_and_seeds(tmp_path, monkeypatch, runs, saved):
     fake, _ = runs(pieces_result), saved(fragmentation)
     start(fragmentation, monkeypatch, "--out", tmp_path)
-    assert [call.out.name for call in fake.calls] == [f"rate-{rate}-seed-{seed}" for rate in ("10000", "30000", "100000", "300000") for seed in (1, 2)]
+    assert [call.out.name for call in fake.calls] == [f"rate-{rate}-seed-{seed}"
+                                                      for rate in ("10000", "30000", "100000", "300000") for seed in (1, 2)]
 
 
 def test_fragmentation_without_the_table(tmp_path, monkeypatch, runs):
