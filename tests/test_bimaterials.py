@@ -79,7 +79,8 @@ def test_wave_is_reflected_and_transmitted_as_impedances_say(run, figure, way):
     incoming = plateau("alumina", arrival - away / speed(first), arrival + away / speed(first))
     behind = plateau("alumina", arrival + away / speed(first), end)
     beyond = plateau("steel", arrival + away / speed(second), end)
-    stresses = {"incoming": (incoming, STRESS), "behind the reflected wave": (behind, through), "transmitted": (beyond, through)}
+    stresses = {"incoming": (incoming, STRESS), "behind the reflected wave": (behind, through),
+                "transmitted": (beyond, through)}
     for (name, (found, theory)), bound in zip(stresses.items(), bounds):
         figure(f"wave from {way}: stress {name}", 1e-6 * found, theory=1e-6 * theory, bound=bound, unit="MPa", relative=True)
     figure(f"wave from {way}: energy error", bar.summary["energy_error_rel"], bound=bounds[3])
@@ -96,19 +97,19 @@ def test_reflection_breaks_the_interface(delamination, figure):
     through = transmitted(ALUMINA, STEEL) * STRESS
     assert STRESS < 110e6 < through
     summary, energy = delamination.summary, delamination.energy
-    figure("interface of alumina and steel: first fracture", 1e6 * summary["first_fracture_time_s"], theory=1e6 * arrival, bound=0.03,
-           unit="us", relative=True)
+    figure("interface of alumina and steel: first fracture", 1e6 * summary["first_fracture_time_s"],
+           theory=1e6 * arrival, bound=0.03, unit="us", relative=True)
     figure("interface of alumina and steel: area that comes off", 1e6 * summary["failed_area_m2"], theory=1e6 * area,
            bound=rounding(4e-15, 1e-5), unit="mm2", relative=True, why=ROUNDING)
-    figure("interface of alumina and steel: energy against G_c times the area", 1e6 * summary["dissipated_J"], theory=1e6 * 5 * area,
-           bound=rounding(4e-15, 1e-5), unit="uJ", relative=True, why=ROUNDING)
+    figure("interface of alumina and steel: energy against G_c times the area", 1e6 * summary["dissipated_J"],
+           theory=1e6 * 5 * area, bound=rounding(4e-15, 1e-5), unit="uJ", relative=True, why=ROUNDING)
     figure("interface of alumina and steel: energy error", summary["energy_error_rel"], bound=3e-3)
     assert np.abs(delamination.frames()[-1]["crack/points"][:, 2]).max() < 1e-6
     rate = (1 / impedance(ALUMINA) + 1 / impedance(STEEL)) * 110e6 / (2 * 5 / 110e6)
     separation = np.log(through / (through - 110e6)) / rate
     half = np.interp(0.5 * area, energy["failed_area"], energy["time"])
-    figure("interface of alumina and steel: time at which half of it has come off", 1e6 * half, theory=1e6 * (arrival + separation),
-           bound=0.006, unit="us", relative=True)
+    figure("interface of alumina and steel: time at which half of it has come off", 1e6 * half,
+           theory=1e6 * (arrival + separation), bound=0.006, unit="us", relative=True)
 
 
 def test_reflection_from_the_softer_side_does_not(run):
@@ -143,7 +144,8 @@ def test_laminate_under_constant_stress_stays_at_rest(run, figure):
         "initial": {"displacement": {"z": f"z < 0 ? {strain[1]}*z : {strain[0]}*z"}}, "output.fields": ["stress"],
         "boundary": [{"set": s, "component": s[0], "velocity": 0} for s in ("x-", "x+", "y-", "y+", "z-", "z+")]})
     stress = bar.frames()[-1]["stress"]
-    figure("laminate at rest: stress, relative", np.abs(stress[:, ZZ] / STRESS - 1).max(), bound=rounding(6e-14, 1e-3), why=ROUNDING)
+    figure("laminate at rest: stress, relative", np.abs(stress[:, ZZ] / STRESS - 1).max(), bound=rounding(6e-14, 1e-3),
+           why=ROUNDING)
     figure("laminate at rest: kinetic energy, of that stored", bar.energy["kinetic"][-1] / bar.energy["bulk"][-1],
            bound=rounding(1.2e-27, 1e-8), why=ROUNDING)
 

@@ -36,7 +36,8 @@ def test_angular_momentum_is_handed_over(bounce, figure):
     """A ball is pushed along lines through its centre only."""
     energy = bounce.energy
     figure("sphere and block, penalty isotropic: change of angular momentum, of momentum times radius",
-           max(np.ptp(energy[f"angular_{axis}"]) for axis in "xyz") / (BALL * FALL * 1e-3), bound=rounding(4e-15, 1e-5), why=ROUNDING)
+           max(np.ptp(energy[f"angular_{axis}"]) for axis in "xyz") / (BALL * FALL * 1e-3), bound=rounding(4e-15, 1e-5),
+           why=ROUNDING)
 
 
 def test_energy_is_handed_over(bounce, figure):
@@ -62,19 +63,22 @@ def test_force_moves_the_ball(bounce, figure):
     history = bounce.history
     impulse = np.sum(0.5 * (history["ball_fz"][1:] + history["ball_fz"][:-1]) * np.diff(history["time"]))
     figure("sphere: impulse of its force against its change of momentum", 1e6 * impulse,
-           theory=1e6 * BALL * (history["ball_vz"][-1] + FALL), bound=rounding(5e-14, 1e-6), unit="uN s", relative=True, why=ROUNDING)
+           theory=1e6 * BALL * (history["ball_vz"][-1] + FALL), bound=rounding(5e-14, 1e-6), unit="uN s", relative=True,
+           why=ROUNDING)
 
 
 @pytest.mark.parametrize("name, sets, bound", [
-    ("lumped mass", {"mass": "lumped"}, 3e-5), ("incomplete form", {"interface.form": "incomplete", "interface.beta_s": 40}, 9e-4)])
+    ("lumped mass", {"mass": "lumped"}, 3e-5),
+    ("incomplete form", {"interface.form": "incomplete", "interface.beta_s": 40}, 9e-4)])
 def test_other_discretizations_hand_over_momentum_and_energy(run, figure, name, sets, bound):
     other = run(CASES / "bounce.yaml", sets=sets)
-    figure("sphere and block, other discretizations: change of linear momentum", np.ptp(other.energy["momentum_z"]) / (BALL * FALL),
-           bound=rounding(7e-15, 1e-6), why=ROUNDING)
+    figure("sphere and block, other discretizations: change of linear momentum",
+           np.ptp(other.energy["momentum_z"]) / (BALL * FALL), bound=rounding(7e-15, 1e-6), why=ROUNDING)
     figure(f"sphere and block, {name}: energy error of the bounce", other.summary["energy_error_rel"], bound=bound)
 
 
-@pytest.mark.parametrize("name, change, bound", [("penalty of 400", {"penalty": 400}, 2.5e-4), ("mass of 10 ug", {"mass": 1e-8}, 2e-3)])
+@pytest.mark.parametrize("name, change, bound", [
+    ("penalty of 400", {"penalty": 400}, 2.5e-4), ("mass of 10 ug", {"mass": 1e-8}, 2e-3)])
 def test_time_step_follows_stiff_contact_and_light_bodies(run, bounce, figure, name, change, bound):
     """Both would be unstable at the step of the solid alone."""
     ball = {"name": "ball", "shape": "sphere", "motion": "free", "at": [0.1e-3, 0, 1e-3], "radius": 1e-3,
@@ -103,15 +107,16 @@ def test_wall_sends_a_plane_wave(run, figure, wall):
     push = run(CASES / "push.yaml", sets={"bodies": [{**WALL, **WALLS[wall]}]})
     history, stress = push.history, -DENSITY * SPEED * 5
     late = history["time"] > 0.1e-6
-    figure("rigid wall pushes a bar: stress against rho c V", 1e-6 * history["p_szz"][late].mean(), theory=1e-6 * stress, bound=5e-4,
-           unit="MPa", relative=True)
+    figure("rigid wall pushes a bar: stress against rho c V", 1e-6 * history["p_szz"][late].mean(),
+           theory=1e-6 * stress, bound=5e-4, unit="MPa", relative=True)
     figure("rigid wall pushes a bar: force on the wall against rho c V times the area", history["wall_fz"][late].mean(),
            theory=-stress * 0.04e-6, bound=2e-3, unit="N", relative=True)
-    figure("rigid wall pushes a bar: force across, relative", abs(history["wall_fx"]).max() / abs(stress * 0.04e-6), bound=2.5e-9)
-    figure("rigid wall pushes a bar: arrival", 1e6 * passage(history["time"], -history["p_szz"], -0.5 * stress), theory=1e6 * (0.5e-3 / SPEED + math.log(2) * rise), bound=0.02,
-           unit="us", relative=True)
-    figure("rigid wall pushes a bar: its work", 1e6 * push.energy["external_work"][-1], theory=-1e6 * stress * 0.04e-6 * 5 * (0.2e-6 - rise),
-           bound=6e-4, unit="uJ", relative=True)
+    figure("rigid wall pushes a bar: force across, relative", abs(history["wall_fx"]).max() / abs(stress * 0.04e-6),
+           bound=2.5e-9)
+    figure("rigid wall pushes a bar: arrival", 1e6 * passage(history["time"], -history["p_szz"], -0.5 * stress),
+           theory=1e6 * (0.5e-3 / SPEED + math.log(2) * rise), bound=0.02, unit="us", relative=True)
+    figure("rigid wall pushes a bar: its work", 1e6 * push.energy["external_work"][-1],
+           theory=-1e6 * stress * 0.04e-6 * 5 * (0.2e-6 - rise), bound=6e-4, unit="uJ", relative=True)
     figure("rigid wall pushes a bar: energy error", push.summary["energy_error_rel"], bound=5e-4)
 
 
@@ -137,9 +142,10 @@ def test_slow_ball_is_pressed_back_as_hertz_says(run, figure):
     assert held["ball_z"] == pytest.approx(radius - depth, abs=1e-10)
     force = 4 / 3 * YOUNG / (1 - NU**2) * math.sqrt(radius) * depth**1.5
     force *= layer_factor(math.sqrt(radius * depth) / thickness)
-    figure("sphere pressed into a layer: force against Hertz, for a layer", 4 * held["ball_fz"].mean(), theory=force, bound=0.03,
-           unit="N", relative=True)  # a quarter of the layer
-    figure("sphere pressed into a layer: swing of the force, relative", np.ptp(held["ball_fz"]) / held["ball_fz"].mean(), bound=0.1)
+    figure("sphere pressed into a layer: force against Hertz, for a layer", 4 * held["ball_fz"].mean(), theory=force,
+           bound=0.03, unit="N", relative=True)  # a quarter of the layer
+    figure("sphere pressed into a layer: swing of the force, relative",
+           np.ptp(held["ball_fz"]) / held["ball_fz"].mean(), bound=0.1)
 
 
 # ---- shapes ----
@@ -157,7 +163,8 @@ def test_cylinder_pushes_across_its_axis_alone(run, figure):
     assert largest > 10
     assert abs(along["roll_fx"]).max() == 0
     apart = max(np.abs(along["roll_fz"] - across["roll_fz"]).max(), np.abs(along["roll_fy"] - across["roll_fx"]).max())
-    figure("cylinder along x and along y: forces apart, of the largest", apart / largest, bound=rounding(1e-13, 1e-3), why=ROUNDING)
+    figure("cylinder along x and along y: forces apart, of the largest", apart / largest, bound=rounding(1e-13, 1e-3),
+           why=ROUNDING)
 
 
 def test_block_between_two_walls_is_held(run, figure):
@@ -166,8 +173,8 @@ def test_block_between_two_walls_is_held(run, figure):
               "velocity": {"z": "5*t/3e-6"}} for name, at, n in (("low", -2e-3, 1), ("high", 0, -1))]
     held = run(CASES / "bounce.yaml", sets={"bodies": walls})
     energy = held.energy
-    figure("block between two walls: momentum against that at their speed", 1e3 * energy["momentum_z"][-1], theory=1e3 * BLOCK * 5,
-           bound=0.1, unit="g m/s", relative=True)  # it swings between them
+    figure("block between two walls: momentum against that at their speed", 1e3 * energy["momentum_z"][-1],
+           theory=1e3 * BLOCK * 5, bound=0.1, unit="g m/s", relative=True)  # it swings between them
     impulse = [np.trapz(held.history[f"{name}_fz"], held.history["time"]) for name in ("low", "high")]
     figure("block between two walls: impulse of the walls against its momentum", -1e3 * sum(impulse),
            theory=1e3 * energy["momentum_z"][-1], bound=rounding(2e-14, 1e-6), unit="g m/s", relative=True, why=ROUNDING)

@@ -62,7 +62,8 @@ def test_ledger_closes_where_cracks_grow_and_the_solid_flows(crushed, form, figu
     assert crushed.summary["status"] == "completed"
     assert crushed.summary["plastic_J"] > 1e-4 * energy["kinetic"][0]
     assert crushed.summary["damage_J"] > 0.02 * energy["kinetic"][0]
-    figure(f"ceramic halves that collide at 1400 m/s, {form} form: energy error", np.abs(energy["error_rel"]).max(), bound={"variational": 3e-3, "incomplete": 4.5e-3}[form])
+    figure(f"ceramic halves that collide at 1400 m/s, {form} form: energy error", np.abs(energy["error_rel"]).max(),
+           bound={"variational": 3e-3, "incomplete": 4.5e-3}[form])
     assert (np.diff(energy["plastic"]) >= 0).all()
     parts = ("kinetic", "bulk", "penalty", "cohesive", "contact", "dissipated", "plastic", "damage")
     assert np.allclose(sum(energy[name] for name in parts) - energy["external_work"], energy["total"], rtol=1e-12)
@@ -127,8 +128,8 @@ def test_uniaxial_strength_is_that_of_a_point(run, figure, load, sign, end, stre
     top = np.argmax(np.abs(history["middle_szz"]))
     figure(f"ceramic cube, {load} at 1e4/s: strength", 1e-9 * abs(history["middle_szz"][top]), theory=strength, bound=0.006,
            unit="GPa", relative=True, why=DIGITS)
-    figure(f"ceramic cube, {load} at 1e4/s: strain there", 100 * abs(rate * history["time"][top]), theory=strain, bound=0.015,
-           unit="%", relative=True, why=DIGITS)
+    figure(f"ceramic cube, {load} at 1e4/s: strain there", 100 * abs(rate * history["time"][top]), theory=strain,
+           bound=0.015, unit="%", relative=True, why=DIGITS)
     assert abs(history["middle_szz"][-1]) < 0.6e9 * strength
 
 

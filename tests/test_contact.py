@@ -22,8 +22,8 @@ def test_bar_is_torn_before_it_closes(collision, figure):
     (torn,) = openings(collision, TORN - 0.5e-8, TORN + 0.5e-8)
     assert torn.max() > 0.02 * EDGE
     at = np.argmin(np.abs(collision.energy["time"] - TORN))
-    figure("halves that are torn apart: area of the crack", 1e6 * collision.energy["failed_area"][at], theory=0.16, bound=rounding(4e-15, 2e-7),
-           unit="mm2", relative=True, why=ROUNDING)
+    figure("halves that are torn apart: area of the crack", 1e6 * collision.energy["failed_area"][at], theory=0.16,
+           bound=rounding(4e-15, 2e-7), unit="mm2", relative=True, why=ROUNDING)
 
 
 def test_closed_crack_stays_pressed(collision, figure):
@@ -42,8 +42,8 @@ def test_contact_takes_up_energy_and_gives_it_back(collision, figure):
     energy = collision.energy
     late = energy["time"] > CLOSED
     assert energy["contact"].max() > 1e-6
-    figure("halves pressed together: least energy of contact later, of the most", energy["contact"][late].min() / energy["contact"].max(),
-           bound=1e-5)
+    figure("halves pressed together: least energy of contact later, of the most",
+           energy["contact"][late].min() / energy["contact"].max(), bound=1e-5)
 
 
 def test_energy_balance_through_tearing_and_collision(collision, figure):

@@ -51,11 +51,12 @@ def test_fragments_add_up_to_the_body(torn, figure):
         assert step == ledger["step"]
         assert rows["elements"].sum() == torn.summary["elements"]
         found = {"mass": [rows["mass"].sum() / mass - 1], "kinetic energy": [rows["kinetic"].sum() / ledger["kinetic"] - 1],
-                 "momentum": [(rows[f"momentum_{axis}"].sum() - ledger[f"momentum_{axis}"]) / np.abs(rows[f"momentum_{axis}"]).sum()
-                              for axis in "xyz"]}
+                 "momentum": [(rows[name].sum() - ledger[name]) / np.abs(rows[name]).sum()
+                              for name in ("momentum_x", "momentum_y", "momentum_z")]}
         worst = {name: max(worst[name], np.abs(found[name]).max()) for name in worst}
     for name, error in worst.items():
-        figure(f"fragments of a torn bar: sum against the body, {name}, relative", error, bound=rounding(1e-15, 1e-6), why=ROUNDING)
+        figure(f"fragments of a torn bar: sum against the body, {name}, relative", error, bound=rounding(1e-15, 1e-6),
+               why=ROUNDING)
 
 
 def test_moving_and_turning_take_no_more_than_the_kinetic_energy(torn):

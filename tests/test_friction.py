@@ -37,15 +37,15 @@ def test_block_slows_down_as_coulomb_says(slide, figure):
     sliding = blocks.relative > 0.3
     assert sliding.sum() > 30
     slowing = -np.polyfit(blocks.time[sliding], blocks.velocity[sliding], 1)[0]
-    figure("sliding block: deceleration against mu p/(rho h)", 1e-6 * slowing, theory=1e-6 * SLOWING, bound=0.003, unit="Mm/s2",
-           relative=True)
+    figure("sliding block: deceleration against mu p/(rho h)", 1e-6 * slowing, theory=1e-6 * SLOWING, bound=0.003,
+           unit="Mm/s2", relative=True)
 
 
 def test_block_stops_after_the_stopping_distance(slide, figure):
     blocks = table(slide)
     distance = blocks.slip[-1] - blocks.slip[0]
-    figure("sliding block: stopping distance", 1e6 * distance, theory=1e6 * blocks.velocity[0] ** 2 / (2 * SLOWING), bound=0.004,
-           unit="um", relative=True)
+    figure("sliding block: stopping distance", 1e6 * distance, theory=1e6 * blocks.velocity[0] ** 2 / (2 * SLOWING),
+           bound=0.004, unit="um", relative=True)
     figure("sliding block: motion at rest, of the distance", np.ptp(blocks.slip[-20:]) / distance, bound=0.03)
 
 
@@ -111,7 +111,8 @@ def test_block_slips_above_it(run, figure):
     blocks = table(slipped)
     far = blocks.time > PRESSED + 5e-8
     figure("block that is dragged along: acceleration against mu p/(rho h)",
-           1e-6 * np.polyfit(blocks.time[far], blocks.velocity[far], 1)[0], theory=1e-6 * SLOWING, bound=0.006, unit="Mm/s2", relative=True)
+           1e-6 * np.polyfit(blocks.time[far], blocks.velocity[far], 1)[0], theory=1e-6 * SLOWING, bound=0.006,
+           unit="Mm/s2", relative=True)
     assert slipped.energy["friction"][-1] > 0
 
 

@@ -32,8 +32,8 @@ def test_rubble_is_the_same_on_any_layout(run, impact, ranks, threads):
 def test_ball_and_plate_keep_their_momentum(impact, figure):
     energy = impact.energy
     assert energy["momentum_z"][0] == pytest.approx(-BALL, rel=1e-12)
-    figure("ball on a plate that breaks: change of linear momentum", max(np.ptp(energy[f"momentum_{axis}"]) for axis in "xyz") / BALL,
-           bound=1e-14, why=ROUNDING)
+    figure("ball on a plate that breaks: change of linear momentum",
+           max(np.ptp(energy[f"momentum_{axis}"]) for axis in "xyz") / BALL, bound=1e-14, why=ROUNDING)
 
 
 def test_ledger_closes(impact, figure):
@@ -65,7 +65,7 @@ def test_wave_crosses_the_plate_at_the_dilatational_speed(run, figure):
         "output": {"interval": 1e-7, "fields": [], "probes": [{"name": "back", "at": [0.25e-3, 0.25e-3, -thickness]}]},
     })
     history = wave.history
-    figure("ceramic plate: passage of a plane wave", 1e6 * passage(history["time"], -history["back_vz"], push), theory=1e6 * thickness / SPEED,
-           bound=0.03, unit="us", relative=True)
+    figure("ceramic plate: passage of a plane wave", 1e6 * passage(history["time"], -history["back_vz"], push),
+           theory=1e6 * thickness / SPEED, bound=0.03, unit="us", relative=True)
     figure("ceramic plate: speed at the back before the wave, of that after it",
            np.abs(history["back_vz"][history["time"] < 0.8 * thickness / SPEED]).max() / (2 * push), bound=0.015)

@@ -50,8 +50,10 @@ PULLED = {"mesh.cells": [2, 2, 6], "mesh.size": [0.2e-3, 0.2e-3, 0.6e-3], "mesh.
 
 
 # Where DG points switch the ledger of the default activation has the error that the README tells of.
-LEDGERS = {"linear": 0.03, "rate": 0.027, "fatigue": 0.03, "free": 0.03, "exponential": 3.5e-4, "bilinear": 6e-4, "tvergaard": 5e-4,
-           "polynomial": 1.6e-4, "needleman": 2.5e-4, "xu-needleman": 2e-4, "linear conserving": 6e-4, "rate conserving": 4e-4}
+LEDGERS = {"linear": 0.03, "rate": 0.027, "fatigue": 0.03, "free": 0.03,
+           "exponential": 3.5e-4, "bilinear": 6e-4, "tvergaard": 5e-4,
+           "polynomial": 1.6e-4, "needleman": 2.5e-4, "xu-needleman": 2e-4,
+           "linear conserving": 6e-4, "rate conserving": 4e-4}
 
 
 @pytest.mark.parametrize("law", LEDGERS)
@@ -79,11 +81,12 @@ def test_step_follows_the_opening(run, figure):
     fixed, once, twice = (np.diff(pulled(steps).history["time"])[:-1] for steps in (0, 60, 120))
     assert np.ptp(fixed) < 1e-9 * fixed[0] and once[0] == pytest.approx(fixed[0])
     assert once.min() < 0.5 * fixed[0]
-    figure("bilinear law: smallest step for twice the steps an opening, over that for once", twice.min() / once.min(), theory=0.5,
-           bound=2e-12, why=ROUNDING)
+    figure("bilinear law: smallest step for twice the steps an opening, over that for once", twice.min() / once.min(),
+           theory=0.5, bound=2e-12, why=ROUNDING)
     assert pulled(60).summary["broken_area_m2"] > 0
     for steps, bound in ((0, 1.5e-4), (60, 3e-5)):
-        figure(f"bilinear law, {steps} steps an opening: energy error", pulled(steps).summary["energy_error_rel"], bound=bound)
+        figure(f"bilinear law, {steps} steps an opening: energy error", pulled(steps).summary["energy_error_rel"],
+               bound=bound)
 
 
 def test_wave_speed_of_intrinsic_faces(run, figure):
@@ -101,8 +104,8 @@ def test_wave_speed_of_intrinsic_faces(run, figure):
         return np.linalg.lstsq(basis, kinetic, rcond=None)[1][0]
 
     half = min(expected * np.linspace(0.9, 1.1, 2001), key=misfit)
-    figure("bar of springs, s h/E = 1: wave speed against formula (3.10)", expected / half * rate, theory=rate, bound=0.012, unit="m/s",
-           relative=True)
+    figure("bar of springs, s h/E = 1: wave speed against formula (3.10)", expected / half * rate, theory=rate,
+           bound=0.012, unit="m/s", relative=True)
     figure("bar of springs, s h/E = 1: energy error", run.summary["energy_error_rel"], bound=1.6e-6)
     assert run.summary["limiting_state"] == "cohesive and closed"
 

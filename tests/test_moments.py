@@ -12,7 +12,8 @@ RATE = 2e7  # 1/s, of the motions: 80 steps to a period
 BOX = {"mesh": {"cells": [2, 1, 1], "size": [2 * EDGE, EDGE, EDGE]}, "interface": {"law": "none"}, "initial.velocity": {},
        "material": {"model": "linear-elastic", "young": YOUNG, "poisson": POISSON, "density": DENSITY},
        "output": {"interval": 7, "energy_limit": 1e9, "fields": ["displacement", "velocity", "stress"],
-                  "probes": [{"name": "top", "at": [1.7 * EDGE, 0.2 * EDGE, EDGE]}, {"name": "left", "at": [0, 0.8 * EDGE, 0.3 * EDGE]}]}}
+                  "probes": [{"name": "top", "at": [1.7 * EDGE, 0.2 * EDGE, EDGE]},
+                             {"name": "left", "at": [0, 0.8 * EDGE, 0.3 * EDGE]}]}}
 
 # ---- Prescribed motions ----
 
@@ -59,15 +60,16 @@ def test_prescribed_velocity_acts_in_the_middle_of_each_step(moved, figure):
     figure("prescribed velocity: displacement against the sum over the middles of the steps, of the largest",
            np.abs(moved.history["top_uz"] - place).max() / place.max(), bound=rounding(6e-15, 1e-6), why=ROUNDING)
     figure("prescribed velocity: velocity at the step, of the largest",
-           np.abs(moved.history["top_vz"] - scale * np.sin(RATE * time)).max() / scale, bound=rounding(1.5e-15, 2e-7), why=ROUNDING)
+           np.abs(moved.history["top_vz"] - scale * np.sin(RATE * time)).max() / scale, bound=rounding(1.5e-15, 2e-7),
+           why=ROUNDING)
 
 
 def test_prescribed_displacement_is_that_of_the_step(moved, figure):
     time, dt = steps(moved)
     place = 1e-8 * (1 - np.cos(RATE * time))
-    speed = 1e-8 * np.sin(RATE * time) * 2 * np.sin(RATE * dt / 2) / dt  # difference from half a step before to half a step after
-    figure("prescribed displacement: displacement, of the largest", np.abs(moved.history["left_ux"] - place).max() / place.max(),
-           bound=rounding(1.5e-15, 2e-7), why=ROUNDING)
+    speed = 1e-8 * np.sin(RATE * time) * 2 * np.sin(RATE * dt / 2) / dt  # from half a step before to half a step after
+    figure("prescribed displacement: displacement, of the largest",
+           np.abs(moved.history["left_ux"] - place).max() / place.max(), bound=rounding(1.5e-15, 2e-7), why=ROUNDING)
     figure("prescribed displacement: velocity at the step, of the largest",
            np.abs(moved.history["left_vx"] - speed).max() / np.abs(speed).max(), bound=rounding(3e-13, 2e-7), why=ROUNDING)
 
@@ -99,7 +101,8 @@ def test_fields_are_those_of_the_prescribed_motion(moved, figure):
         place, speed = scale * summed_sine(time, dt), scale * np.sin(RATE * time)
         aside = 1e-8 * (1 - np.cos(RATE * time))
         worst = max(worst, np.abs(frame["displacement"][top, 2] - place).max() / 5e-7,
-                    np.abs(frame["velocity"][top, 2] - speed).max() / 3, np.abs(frame["displacement"][left, 0] - aside).max() / 2e-8)
+                    np.abs(frame["velocity"][top, 2] - speed).max() / 3,
+                    np.abs(frame["displacement"][left, 0] - aside).max() / 2e-8)
     figure("fields of prescribed motions at their times, of the largest", worst, bound=rounding(5e-15, 7e-7), why=ROUNDING)
 
 
@@ -107,8 +110,8 @@ def test_history_has_the_fields_of_the_same_step(run, figure):
     """At a corner, which is a node, of a body that is shaken."""
     at = [2 * EDGE, EDGE, EDGE]
     shaken = run(BENCH / "torn-bar.yaml", sets={
-        **BOX, "boundary": [{"set": "z-", "component": "z", "velocity": f"3*sin({RATE}*t)"}], "time.end": 1, "time.steps": 50,
-        "output": {**BOX["output"], "probes": [{"name": "corner", "at": at}]}})
+        **BOX, "boundary": [{"set": "z-", "component": "z", "velocity": f"3*sin({RATE}*t)"}],
+        "time.end": 1, "time.steps": 50, "output": {**BOX["output"], "probes": [{"name": "corner", "at": at}]}})
     node = np.flatnonzero(np.abs(shaken.points() - at).max(axis=1) < 1e-9 * EDGE)
     worst = 0
     for frame in shaken.frames():
@@ -141,9 +144,12 @@ def test_energy_has_the_velocities_of_the_same_step(moved, figure):
 def test_stress_energy_and_work_are_those_of_their_time(run, figure):
     """All sides move so that F = I + t L: no waves, and energies that grow with the square of time."""
     rate = np.array([[2e4, 1e4, 0], [-3e4, 1e4, 5e3], [4e3, 0, -1e4]])
-    motion = {axis: "+".join(f"({value!r})*{name}" for value, name in zip(row, "xyz")) for axis, row in zip("xyz", rate.tolist())}
-    boundary = [{"set": axis + side, "component": c, "velocity": motion[c]} for axis in "xyz" for side in "-+" for c in "xyz"]
-    still = run(BENCH / "torn-bar.yaml", sets={**BOX, "boundary": boundary, "initial.velocity": motion, "time.end": 1, "time.steps": 100})
+    motion = {axis: "+".join(f"({value!r})*{name}" for value, name in zip(row, "xyz"))
+              for axis, row in zip("xyz", rate.tolist())}
+    boundary = [{"set": axis + side, "component": c, "velocity": motion[c]}
+                for axis in "xyz" for side in "-+" for c in "xyz"]
+    still = run(BENCH / "torn-bar.yaml", sets={**BOX, "boundary": boundary, "initial.velocity": motion, "time.end": 1,
+                                               "time.steps": 100})
     strain = (rate + rate.T) / 2  # per second
     growth = LAMBDA * np.trace(strain) * np.eye(3) + 2 * MU * strain
     volume = 2 * EDGE**3
@@ -151,8 +157,8 @@ def test_stress_energy_and_work_are_those_of_their_time(run, figure):
     time = energy["time"]
     assert len(time) == 16
     stored = volume * np.tensordot(growth, strain) / 2 * time**2
-    figure("homogeneous strain: energy stored at its time, of the largest", np.abs(energy["bulk"] - stored).max() / stored[-1],
-           bound=rounding(1.5e-14, 5e-6), why=ROUNDING)
+    figure("homogeneous strain: energy stored at its time, of the largest",
+           np.abs(energy["bulk"] - stored).max() / stored[-1], bound=rounding(1.5e-14, 5e-6), why=ROUNDING)
     figure("homogeneous strain: work of the sides at its time, of the largest",
            np.abs(energy["external_work"] - stored).max() / stored[-1], bound=rounding(1.5e-14, 3e-7), why=ROUNDING)
     worst = 0

@@ -94,7 +94,8 @@ def test_a_spinning_body_grows_if_it_is_linear(run, figure):
         return max(growth(model), key=lambda size: abs(size - theory))
 
     for model in ("neo-hookean", "st-venant-kirchhoff"):
-        figure(f"spinning cube, {model}: size over that at the start", worst(model, 1), theory=1, bound=2.5e-4, relative=True)
+        figure(f"spinning cube, {model}: size over that at the start", worst(model, 1), theory=1, bound=2.5e-4,
+               relative=True)
     theory = np.sqrt(1 + (rate * end) ** 2)
     figure("spinning cube, linear-elastic: size over that at the start", worst("linear-elastic", theory), theory=theory,
            bound=rounding(2e-14, 1.8e-6), relative=True, why=ROUNDING)
@@ -143,9 +144,10 @@ def test_plastic_wave_follows_an_elastic_precursor(run, figure):
     figure("plastic wave: passage of the precursor, relative", late.pop(first / 2), bound=4e-4)
     figure("plastic wave: passage of 30, 40 and 50 m/s, relative", max(late.values(), key=abs), bound=1.8e-3)
     between, after = (time > 0.76e-6) & (time < 0.83e-6), time > 1.4e-6
-    figure("plastic wave: speed behind the precursor", np.mean(speed[between]), theory=first, bound=1.7e-3, unit="m/s", relative=True)
-    figure("plastic wave: stress behind the precursor", 1e-6 * np.mean(stress[between]), theory=1e-6 * np.interp(first, v, sigma),
-           bound=5e-3, unit="MPa", relative=True)
+    figure("plastic wave: speed behind the precursor", np.mean(speed[between]), theory=first, bound=1.7e-3, unit="m/s",
+           relative=True)
+    figure("plastic wave: stress behind the precursor", 1e-6 * np.mean(stress[between]),
+           theory=1e-6 * np.interp(first, v, sigma), bound=5e-3, unit="MPa", relative=True)
     figure("plastic wave: speed behind the wave", np.mean(speed[after]), theory=last, bound=3e-4, unit="m/s", relative=True)
     figure("plastic wave: stress behind the wave", 1e-6 * np.mean(stress[after]), theory=1e-6 * np.interp(last, v, sigma),
            bound=4.5e-4, unit="MPa", relative=True)

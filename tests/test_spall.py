@@ -36,8 +36,8 @@ def plateau(history, begin=0.125e-6):
 @pytest.mark.parametrize("mesh", MESHES)
 def test_breaks_when_the_waves_meet(bar, figure, mesh):
     assert bar(mesh).summary["status"] == "completed"
-    figure(f"spall, {mesh}: first fracture", 1e6 * bar(mesh).summary["first_fracture_time_s"], theory=1e6 * MEETING, unit="us",
-           bound=0.025, relative=True)
+    figure(f"spall, {mesh}: first fracture", 1e6 * bar(mesh).summary["first_fracture_time_s"], theory=1e6 * MEETING,
+           unit="us", bound=0.025, relative=True)
 
 
 @pytest.mark.parametrize("mesh, bound", [("regular", 5e-4), ("jittered", 1e-3)])
@@ -67,8 +67,8 @@ def test_regular_mesh_breaks_on_the_mid_plane(spall, figure):
     triangles = crack["crack/points"].reshape(-1, 3, 3)[crack["crack/damage"].ravel() > 0.99]
     assert np.abs(triangles[:, :, 2]).max() < 1e-6
     cross = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
-    figure("spall, regular: area of the crack, in sections of the bar", np.linalg.norm(cross, axis=1).sum() / 2 / AREA, theory=1,
-           bound=2.5e-5, relative=True)
+    figure("spall, regular: area of the crack, in sections of the bar", np.linalg.norm(cross, axis=1).sum() / 2 / AREA,
+           theory=1, bound=2.5e-5, relative=True)
 
 
 @pytest.mark.parametrize("mesh, bound", [("regular", 0.05), ("jittered", 0.1)])

@@ -27,7 +27,8 @@ def test_a_standing_wave_decays_as_in_a_viscous_solid(run, figure):
     half = energy["time"] >= 0.5 * energy["time"][-1]
     slope = np.polyfit(energy["time"][half], np.log(stored[half]), 1)[0]
     assert stored[-1] < 0.6 * stored[0]
-    figure("standing wave, viscosity 0.1: decay of its energy", -1e-6 * slope, theory=1e-6 * rate, bound=0.003, unit="1/us", relative=True)
+    figure("standing wave, viscosity 0.1: decay of its energy", -1e-6 * slope, theory=1e-6 * rate, bound=0.003,
+           unit="1/us", relative=True)
     figure("standing wave, viscosity 0.1: energy error", np.abs(energy["error_rel"]).max(), bound=2.4e-4)
 
 

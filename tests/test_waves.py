@@ -106,7 +106,8 @@ class Wave:
 def test_displacements_converge(run, figure, form, mass, theory, bound):
     orders = Wave(run, mass, form).orders()
     assert (orders > theory - 0.15).all()
-    figure(f"standing wave, {form} form, {mass} mass: order of convergence, 16 to 32 cubes", orders[-1], theory=theory, bound=bound)
+    figure(f"standing wave, {form} form, {mass} mass: order of convergence, 16 to 32 cubes", orders[-1], theory=theory,
+           bound=bound)
 
 
 def test_time_steps_are_small_enough_to_see_the_order(run, figure):
