@@ -171,11 +171,13 @@ static void test_inner_faces_stay(void **state) {
             }
             m->inners += in_middle(m, slot);
         }
-        for (size_t i = 0; i < m->inners / 2; i++) { /* in no order */
+        dice d = {.seed = 17};
+        for (size_t i = m->inners; i > 1; i--) { /* in no order */
+            size_t k = (size_t)(dice_unit(&d) * (double)i);
             rg_gid swap[3];
-            memcpy(swap, m->inner + 3 * i, sizeof swap);
-            memcpy(m->inner + 3 * i, m->inner + 3 * (m->inners - 1 - i), sizeof swap);
-            memcpy(m->inner + 3 * (m->inners - 1 - i), swap, sizeof swap);
+            memcpy(swap, m->inner + 3 * (i - 1), sizeof swap);
+            memcpy(m->inner + 3 * (i - 1), m->inner + 3 * k, sizeof swap);
+            memcpy(m->inner + 3 * k, swap, sizeof swap);
         }
         improve(m);
         if (named == 1) {

@@ -51,6 +51,11 @@ def test_left_alone(line):
     assert not [f for kind in KINDS if kind not in ("dropped line", "exchanged index") for f in faults[kind]]
 
 
+def test_what_gives_back_goes_on_doing_so():
+    text = "{\n    if (a != NULL) {\n        closedir(a);\n    }\n"
+    assert not faults_of("a.c", text)["relaxed bound"]
+
+
 def test_python_has_faults_outside_its_texts():
     text = 'def f(a):\n    """a + 1"""\n    return a + 1\n'
     faults = faults_of("bench/plot", text)

@@ -168,7 +168,7 @@ def dropped_line(code, before, python):
         yield begin, len(code.rstrip()), ";"
 
 
-def relaxed_bound(code, integers, python):
+def relaxed_bound(code, after, integers, python):
     loop = re.match(r"\s*for\b", code)  # one turn more or less is `off_by_one`; one past an array is for sanitizers
     for m in [] if loop else re.finditer(rf"({OPERAND}|\d+) (<=?|>=?) ({OPERAND}|\d+)(?![\w.(\[*])", code):
         if is_integer(m[1], integers) and is_integer(m[3], integers):
@@ -184,7 +184,7 @@ def relaxed_bound(code, integers, python):
             yield m.start(1), m.end(1), f"False and ({m[1]})"
     else:
         m = re.match(r"\s*(?:\} else )?if \((.+)\) \{\s*$", code)
-        if m:
+        if m and not GIVES_BACK.match(after.strip()):
             yield m.start(1), m.end(1), f"0 && ({m[1]})"
 
 
@@ -214,7 +214,7 @@ def faults_of(path, text):
     lines, code = text.split("\n"), (code_of_python if python else code_of_c)(text).split("\n")
     integers = integers_of(text)
     seen, found, before = {}, {kind: [] for kind in KINDS}, "{"
-    for line, line_code in zip(lines, code):
+    for line, line_code, after in zip(lines, code, [*code[1:], ""]):
         occurrence = seen[line] = seen.get(line, -1) + 1
         if not line_code.strip():
             continue
@@ -226,7 +226,7 @@ def faults_of(path, text):
                 "exchanged index": exchanged_index(line_code) if "(" not in line_code or not is_head(line_code) else (),
                 "dropped term": dropped_term(line_code),
                 "dropped line": dropped_line(line_code, before, python),
-                "relaxed bound": relaxed_bound(line_code, integers, python),
+                "relaxed bound": relaxed_bound(line_code, after, integers, python),
             }
             size = ARRAY.match(line_code)
             for kind, where in places.items():
