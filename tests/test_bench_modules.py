@@ -91,7 +91,8 @@ def test_run_once_repeats_what_is_not_the_same(tmp_path, monkeypatch):
     monkeypatch.setenv("RHEGMA", str(fake_program(tmp_path, f"mkdir -p {out}; echo '{{}}' >{out}/summary.json; sleep 0.05")))
     seconds = launch.run_once("c", out, {"a": 1}, ["b=2"])
     assert 0.05 <= seconds < 5
-    assert launch.run_once("c", out, {"a": 1}, ["b=2"]) == seconds and words_of(tmp_path).count("run") == 1
+    assert launch.run_once("c", out, {"a": 1}, ["b=2"]) == seconds
+    assert words_of(tmp_path) == ["run", "c", "-o", str(out), "-q", "--set", "a=1", "--set", "b=2"]
     for changed in (("d", {"a": 1}, ["b=2"]), ("d", {"a": 2}, ["b=2"]), ("d", {"a": 2}, ["b=3"])):
         launch.run_once(changed[0], out, *changed[1:])
     assert words_of(tmp_path).count("run") == 4
@@ -116,7 +117,7 @@ def test_run_once_does_not_remember_a_run_that_failed(tmp_path, monkeypatch):
 
 def test_ranks_launcher():
     assert launch.ranks_launcher(1) == []
-    assert launch.ranks_launcher(3) == ["mpirun", "--bind-to", "none", "-n", 3]
+    assert launch.ranks_launcher(2) == ["mpirun", "--bind-to", "none", "-n", 2]
 
 
 # ---- rhegma.py: cases ----
@@ -478,7 +479,7 @@ def test_cases_without_fragment_sizes(sections, complaint):
     (3e11, "Pa", {}, 1e-9, "GPa"), (5e13, "Pa", {}, 1e-9, "GPa"), (4e-3, "m", {}, 1e3, "mm"), (5e-12, "J", {}, 1e9, "nJ"),
     (1.6e-7, "m", {"power": 2}, 1e12, "µm²"), (2e-6, "m", {"power": 2}, 1e6, "mm²"), (0, "s", {}, 1, "s"),
                                                                  (math.inf, "s", {}, 1, "s"),
-    (1e-6, "m", {}, 1e6, "µm")])
+    (1e-6, "m", {}, 1e6, "µm"), (1e-7, "s", {"least": 0.1}, 1e6, "µs")])
 def test_units(value, unit, keywords, factor, name):
     found = drawing.prefixed(value, unit, **keywords)
     assert found == (pytest.approx(factor, rel=1e-12), name)
@@ -489,10 +490,11 @@ def test_values_with_units():
     assert drawing.with_unit(-3e-6, "J") == "-3 µJ"
     assert drawing.with_unit(1.6e-7, "m", 2) == "0.16 mm²"
     assert drawing.place([0, -2e-4, 1.5e-3]) == "(0, -0.2, 1.5) mm"
+    assert drawing.place([0, 0, 2e-4]) == "(0, 0, 0.2) mm"
 
 
 def test_pictures_are_saved_and_told(tmp_path, capsys):
-    path = tmp_path / "new" / "a.png"
+    path = tmp_path / "new" / "one" / "a.png"
     drawing.save(drawing.plt.figure(), path)
     assert path.read_bytes()[:4] == b"\x89PNG" and capsys.readouterr().out == f"{path}\n"
     assert not drawing.plt.get_fignums()

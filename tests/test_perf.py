@@ -214,6 +214,14 @@ def test_scaling_draws_weak_records_alone():
     assert labels(scaling.draw(RECORDS[4:]).axes[0]) == ["weak, 1 thread a rank"]
 
 
+def test_scaling_prints_its_records(capsys):
+    scaling.print_table(RECORDS)
+    assert capsys.readouterr().out.splitlines()[2:] == [
+        "| strong, 1x1 | 1,000 | 1000.0 | 1.00 |  |", "| strong, 2x1 | 1,000 | 600.0 | 0.83 | 76 % |",
+        "| strong, 1x4 | 1,000 | 400.0 | 0.62 |  |", "| strong, 2x2 | 1,000 | 300.0 | 0.83 | 50 % |",
+        "| weak, 1x1 | 500 | 1000.0 | 1.00 |  |", "| weak, 2x1 | 1,000 | 1250.0 | 0.80 |  |"]
+
+
 def test_scaling_plot_reads_records(tmp_path, monkeypatch):
     import drawing
 
