@@ -61,8 +61,6 @@ static void make_body(rg_bodies *all, int i, const rg_body_input *in) {
     for (int c = 0; c < 3; c++) {
         b->v[c] = velocity_at(all, i, c, 0);
     }
-    memcpy(b->seen.x, b->x, sizeof b->x);
-    memcpy(b->seen.v, b->v, sizeof b->v);
 }
 
 static void refuse_lapse(const rg_bodies *b, const rg_case *c) {

@@ -36,10 +36,12 @@ typedef struct {
     "flaw_radius: "                                                                                          \
     "19e-6, flaw_density: 1e12, toughness: 3e6, yield_stress: 4e9}"
 #define BODIES                                                                                               \
-    "bodies=[{name: ball, shape: sphere, motion: free, at: [1.2e-4, 0, 0], radius: 0.2e-4, density: 8e3, "   \
-    "velocity: {x: -50}}, {name: pin, shape: cylinder, motion: free, at: [0, 1.4e-4, 1e-4], axis: [2, 0, "   \
-    "0], radius: 0.4e-4, mass: 1e-9, velocity: {y: -30, x: 1}}, {name: wall, shape: plane, motion: "         \
-    "prescribed, at: [0, 0, -6e-4], normal: [0, 0, 2], velocity: {z: '30 + 1e9*t'}, faces: [z-, y+]}]"
+    "bodies=[{name: ball, shape: sphere, motion: free, at: [51e-4, 0, 1e-4], radius: 5e-3, density: 1, "     \
+    "velocity: {x: -50, z: 4}}, {name: pin, shape: cylinder, motion: free, at: [0, 31e-4, 3e-4], axis: [2, " \
+    "0, 0.6], radius: 3e-3, mass: 1e-7, velocity: {y: -30, x: 1}}, {name: wall, shape: plane, motion: "      \
+    "prescribed, at: [0, 0, -6e-4], normal: [0, 0, 2], velocity: {z: '30 + 1e9*t'}, faces: [z-, y+]}, "      \
+    "{name: roll, shape: cylinder, motion: prescribed, at: [0, -21e-4, 0], axis: [0, 0, 3], radius: 2e-3, "  \
+    "velocity: {y: 20, x: '-1e9*t'}}]"
 
 static const variant variants[] = {
     {"variational", {NULL}},
@@ -72,6 +74,10 @@ static const variant variants[] = {
     {"bodies", {BODIES}},
     {"bodies, shared nodes", {BODIES, "interface.form=continuous", "mass=lumped", "interface.faces=1"}},
     {"no law", {"interface={law: none}", "mass=lumped"}},
+    {"suddenly placed",
+     {"boundary=[{set: z-, component: z, displacement: '2e-9*cos(4e8*t)'}, {set: x-, component: y, "
+      "displacement: "
+      "3e-9}, {set: x+, component: x, velocity: 2}]"}},
 };
 
 enum { VARIANTS = sizeof variants / sizeof *variants };

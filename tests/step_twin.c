@@ -167,6 +167,7 @@ static double touch_all(const twin *w, rg_real *force) {
 static void kick_body(const twin *w, const rg_body_input *in, twin_body *b) {
     bool moved = in->motion == RG_MOTION_PRESCRIBED;
     b->work_now = b->work;
+    memcpy(b->x_now, b->x, sizeof b->x);
     for (int c = 0; c < 3; c++) {
         double before = b->v[c], a = b->force[c] / b->mass;
         b->v_now[c] = moved ? body_velocity(in, c, w->time) : before + w->dt / 2 * a;

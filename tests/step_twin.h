@@ -11,7 +11,7 @@
 /* A rigid body: in the middle of a step, and as it is seen at the time of the forces. */
 typedef struct {
     double mass, direction[3];
-    double x[3], v[3], v_now[3], force[3];
+    double x[3], v[3], x_now[3], v_now[3], force[3];
     double work, work_now; /* of what moves it */
 } twin_body;
 
