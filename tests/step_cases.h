@@ -41,7 +41,8 @@ typedef struct {
     "0, 0.6], radius: 3e-3, mass: 1e-7, velocity: {y: -30, x: 1}}, {name: wall, shape: plane, motion: "      \
     "prescribed, at: [0, 0, -6e-4], normal: [0, 0, 2], velocity: {z: '30 + 1e9*t'}, faces: [z-, y+]}, "      \
     "{name: roll, shape: cylinder, motion: prescribed, at: [0, -21e-4, 0], axis: [0, 0, 3], radius: 2e-3, "  \
-    "velocity: {y: 20, x: '-1e9*t'}}]"
+    "velocity: {y: 20, x: '-1e9*t'}}, {name: ghost, shape: plane, motion: free, at: [-1e-4, 0, 0], normal: " \
+    "[1, 0, 0], mass: 1e-7, velocity: {x: 9}, faces: [z+]}]"
 
 static const variant variants[] = {
     {"variational", {NULL}},

@@ -60,7 +60,7 @@ static const char *const kind_name[] = {"displacement",
                                         "energy",
                                         "history",
                                         "crack"};
-static const int kind_begin[] = {DISPLACEMENT, VELOCITY, NOW,    STIFFENING, HEAT,    PACE,  BODY,
+static const int kind_begin[] = {DISPLACEMENT, VELOCITY, NOW,    STIFFENING, HEAT,    PACE,  BODY, PLACE,
                                  FORCE,        FIRST,    STORED, ENERGY,     HISTORY, CRACK, KINDS};
 
 /* Largest difference and largest value of each kind on this rank, over all steps. */
