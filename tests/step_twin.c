@@ -268,12 +268,9 @@ static void share_nodes(twin *w) {
     rg_free(sum);
 }
 
-void twin_kick(twin *w, double dt) {
-    w->dt_next = dt;
+static void evaluate(twin *w, bool advance) {
     for (int m = 0; m <= w->input->others; m++) {
-        if (w->dt > 0)
-            rg_material_prepare(&w->material[m], w->dt);
-        rg_bulk_args bulk = bulk_args(w, m, w->dt > 0);
+        rg_bulk_args bulk = bulk_args(w, m, advance);
         rg_reference_bulk(&bulk, w->begin[m], w->begin[m + 1]);
         if (w->heat != NULL)
             dampen(w, m, &bulk);
@@ -284,6 +281,17 @@ void twin_kick(twin *w, double dt) {
     accelerate(w);
     if (w->joined)
         share_nodes(w);
+}
+
+void twin_accelerate(twin *w) {
+    evaluate(w, false);
+}
+
+void twin_kick(twin *w, double dt) {
+    w->dt_next = dt;
+    for (int m = 0; m <= w->input->others && w->dt > 0; m++)
+        rg_material_prepare(&w->material[m], w->dt);
+    evaluate(w, w->dt > 0);
     for (size_t k = 0; k < w->blocks * RG_NODE_BLOCK; k++) {
         w->now[k] = (rg_real)(w->velocity[k] + w->dt / 2 * w->acceleration[k]);
         w->velocity[k] += (rg_real)((w->dt + dt) / 2 * w->acceleration[k]);

@@ -59,6 +59,9 @@ void twin_start(twin *w);
 void twin_kick(twin *w, double dt);
 void twin_drift(twin *w);
 
+/* `acceleration` of the state `u`; no history goes on. */
+void twin_accelerate(twin *w);
+
 /* The ledger between kick and drift, but for its error. */
 rg_energy twin_energy(const twin *w);
 
