@@ -2,6 +2,7 @@
  * kernels - tiles, seams, rows, links, materials, laws, strengths, shared nodes, prescribed motion, rigid
  * bodies - in every form, with faces that hold, open, break and close. Tiles have several blocks, which
  * meshes under a thousand elements have not by themselves. Prints TAP from rank 0. */
+#include <float.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdlib.h>
@@ -66,9 +67,10 @@ static const int kind_begin[] = {DISPLACEMENT, VELOCITY, NOW,    STIFFENING, HEA
 /* Largest difference and largest value of each kind on this rank, over all steps. */
 typedef struct {
     double error[KINDS], scale[KINDS];
-    bool warned;   /* of nodes that are not where they are placed, and only of them */
-    int masks;     /* interfaces whose bits differ */
-    int displaced; /* nodes that are not quite where they are to be */
+    bool warned;    /* of nodes that are not where they are placed, and only of them */
+    bool accounted; /* the ledger's error, and its worst */
+    int masks;      /* interfaces whose bits differ */
+    int displaced;  /* nodes that are not quite where they are to be */
     int watched, held, opened, parted, closed, seams, across_blocks;
 } record;
 
@@ -215,6 +217,28 @@ static void compare_energies(record *r, rg_energy got, rg_energy want) {
         note(r, ENERGY + k, a[k], b[k]);
 }
 
+/* What the ledger makes of them: the error is the change of the total over the largest energy so far, which
+ * is no less than what rounding of F makes; and it keeps the worst. */
+typedef struct {
+    double start, largest, worst;
+    bool begun, good;
+} account;
+
+static void keep_account(account *a, const rg_ledger *l, const twin *w) {
+    double stored = l->last.total + l->last.external, mu = 0, volume = 0;
+    for (size_t e = 0; e < w->elements; e++) {
+        mu = fmax(mu, w->material[w->of[e]].mu);
+        volume += w->geom[rg_geom_index(w->slot[e], RG_GEOM_VOLUME)];
+    }
+    a->start = a->begun ? a->start : l->last.total;
+    a->begun = true;
+    a->largest = fmax(fmax(a->largest, fabs(stored)), 1e3 * DBL_EPSILON * mu * volume);
+    double error = (l->last.total - a->start) / a->largest;
+    a->worst = fmax(a->worst, fabs(error));
+    a->good = a->good && fabs(l->last.error - error) <= 1e-14 && fabs(l->worst - a->worst) <= 1e-14 &&
+              fabs(l->largest - a->largest) <= 1e-14 * a->largest;
+}
+
 /* ---- A run ---- */
 
 /* What the solver said, and the first number in it. */
@@ -343,6 +367,7 @@ static record follow(const rg_case *c, const rg_mesh *mesh, bool suddenly) {
     rg_solver *s = make_solver(c, mesh);
     twin *w = twin_make(c, mesh);
     rg_ledger ledger = {.begun = false};
+    account account_of = {.good = true};
     r.warned = start(s, w, suddenly);
     watcher own = {&r, w};
     s->watch = watch;
@@ -358,6 +383,7 @@ static record follow(const rg_case *c, const rg_mesh *mesh, bool suddenly) {
         } else {
             rg_solver_kick(s, dt);
             compare_energies(&r, *rg_ledger_take(&ledger, s), twin_energy(w));
+            keep_account(&account_of, &ledger, w);
             compare_elements(&r, s, w, true);
             rg_solver_drift(s);
         }
@@ -366,6 +392,7 @@ static record follow(const rg_case *c, const rg_mesh *mesh, bool suddenly) {
         note_step(&r, s, w);
         compare_places(&r, s, w);
     }
+    r.accounted = account_of.good;
     double first = twin_first_fracture(w), found = rg_first_fracture(s);
     if (isfinite(first) || isfinite(found))
         note(&r, FIRST, found, first);
@@ -399,6 +426,7 @@ static void judge(const variant *v, const record *r) {
     report(r->masks == 0, v->name, "broken and unlinked points");
     report(r->displaced == 0, v->name, "prescribed places");
     report(r->warned, v->name, "what is said of them");
+    report(r->accounted, v->name, "error of the ledger");
     bool none = v->override[0] != NULL && strstr(v->override[0], "law: none") != NULL;
     bool parts =
         r->across_blocks > 1000 && r->seams > 1000 && r->opened > 500 && r->parted > 10 && r->closed > 300;
@@ -409,6 +437,26 @@ static void judge(const variant *v, const record *r) {
 }
 
 /* ---- The start, and a state that is none ---- */
+
+/* At rest there is nothing but what rounding could make, of the stiffest material. */
+static void check_rest(void) {
+    const variant still = {"rest", {HALVES, "boundary=[]"}};
+    rg_case *c = read_case(&still);
+    rg_mesh *mesh = make_mesh(c);
+    rg_solver *s = make_solver(c, mesh);
+    twin *w = twin_make(c, mesh);
+    rg_ledger ledger = {.begun = false};
+    account a = {.good = true};
+    rg_solver_start(s);
+    rg_solver_kick(s, 1e-10);
+    rg_ledger_take(&ledger, s);
+    keep_account(&a, &ledger, w);
+    report(a.good && ledger.largest > 0 && ledger.worst == 0, "rest", "error of the ledger");
+    twin_free(w);
+    rg_solver_free(s);
+    rg_mesh_free(mesh);
+    rg_case_free(c);
+}
 
 /* The initial fields are those of the case, and no face has broken though the stress is beyond the strength.
  */
@@ -467,5 +515,6 @@ int main(int argc, char **argv) {
         rg_case_free(c);
     }
     check_start();
+    check_rest();
     return finish();
 }
