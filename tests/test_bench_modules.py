@@ -436,10 +436,10 @@ def test_half_period_by_least_squares():
     """The kinetic energy of a mode of half period T has period T."""
     time = np.linspace(0, 10, 400)
     ringing = synthetic.structured({"time": time, "kinetic": 3 + 1.2 * np.cos(2 * np.pi * time / 0.8123 + 0.4)})
-    assert theory.half_period(ringing, 0.81, (1e-2, 1e-4, 1e-6)) == pytest.approx(0.8123, rel=2e-8)
-    assert theory.half_period(ringing, 0.7, (0.2, 1e-2, 1e-4)) == pytest.approx(0.8123, rel=2e-6)
-    assert abs(theory.half_period(ringing, 0.7, (1e-2,)) / 0.7 - 1) < 1.001e-2  # no farther than the widths
-    assert theory.half_period(ringing[:3], 0.81, (1e-2,)) == pytest.approx(0.81, rel=1.001e-2)  # too few rows to tell
+    assert theory.half_period(ringing, 0.81, 1e-2) == pytest.approx(0.8123, rel=6e-9)
+    assert theory.half_period(ringing, 0.7, 0.2) == pytest.approx(0.8123, rel=1.2e-7)
+    assert abs(theory.half_period(ringing, 0.7, 1e-2) / 0.7 - 1) < 1.02e-2  # no farther than that
+    assert theory.half_period(ringing[:3], 0.81, 1e-2) == pytest.approx(0.81, rel=1.02e-2)  # too few rows to tell
 
 
 def test_speed_through_springs():
