@@ -490,7 +490,7 @@ def test_values_with_units():
     assert drawing.with_unit(-3e-6, "J") == "-3 µJ"
     assert drawing.with_unit(1.6e-7, "m", 2) == "0.16 mm²"
     assert drawing.place([0, -2e-4, 1.5e-3]) == "(0, -0.2, 1.5) mm"
-    assert drawing.place([0, 0, 2e-4]) == "(0, 0, 0.2) mm"
+    assert drawing.place([0, 0, 1.5e-4]) == "(0, 0, 0.15) mm"
 
 
 def test_pictures_are_saved_and_told(tmp_path, capsys):
@@ -508,7 +508,7 @@ def test_titles_stand_at_the_left():
     figure = drawing.plt.figure()
     assert figure.get_size_inches() == pytest.approx((8.5, 4.2)) and figure.get_constrained_layout()
     drawing.add_title(figure, "words")
-    assert figure._suptitle.get_text() == "words" and figure._suptitle.get_position()[0] < 0.05
+    assert figure._suptitle.get_text() == "words" and figure._suptitle.get_position()[0] == 0.02
     assert figure._suptitle.get_ha() == "left"
     drawing.plt.close(figure)
 

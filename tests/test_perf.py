@@ -161,6 +161,9 @@ RECORDS = [record("strong", 2, 1, [0.6, 0.5, 0.9], hidden_share=0.756), record("
            record("weak", 2, 1, [1.25], 1000)]
 
 
+RECORDS[2]["repeats"][0]["phases_s"]["compute"][1] /= 2
+
+
 def test_scaling_draws_times_and_efficiency():
     figure = scaling.draw(RECORDS)
     times, efficiency, _ = figure.axes
@@ -181,7 +184,7 @@ def test_scaling_draws_times_and_efficiency():
         assert not len(axes.get_xticks(minor=True))
         assert all(style(axes, label)[1:] in (("-", "o"), (":", "None")) for label in labels(axes))
     assert efficiency.get_ylim() == (0, 1.1)
-    assert texts(figure)[0] == "measured"
+    assert texts(figure)[0] == "measured" and figure.get_size_inches() == pytest.approx((14, 4.2))
     assert_readable(figure)
     assert_panels_apart(figure)
 
@@ -190,15 +193,15 @@ def test_scaling_draws_where_the_time_goes():
     axes = scaling.draw(RECORDS).axes[2]
     assert [text.get_text() for text in axes.get_xticklabels()] == ["strong\n1x1", "strong\n2x1", "strong\n2x2", "strong\n1x4",
                                                                     "weak\n1x1", "weak\n2x1"]
-    heights = dict(zip(("compute", "jump", "pack", "exchange", "wait", "reduce", "rest"),
-                       (0.4, 0.3, 0.05, 0.04, 0.03, 0.02, 0.16)))
-    assert legend(axes) == list(heights) and len(axes.containers) == 7
-    bottom = 0
-    for bars, height in zip(axes.containers, heights.values()):
+    names = ("compute", "jump", "pack", "exchange", "wait", "reduce", "rest")
+    heights = np.array([(0.4, 0.3, 0.05, 0.04, 0.03, 0.02, 0.16)] * 6)
+    heights[3] = (0.2, 0.3, 0.05, 0.04, 0.03, 0.02, 0.36)  # of 1x4
+    assert tuple(legend(axes)) == names and len(axes.containers) == 7
+    for part, bars in enumerate(axes.containers):
         assert len(bars) == 6
         for k, bar in enumerate(bars):
-            assert (bar.get_x() + bar.get_width() / 2, bar.get_y(), bar.get_height()) == pytest.approx((k, bottom, height))
-        bottom += height
+            assert bar.get_x() + bar.get_width() / 2 == pytest.approx(k)
+            assert (bar.get_y(), bar.get_height()) == pytest.approx((heights[k, :part].sum(), heights[k, part]))
     assert [(text.get_position()[0], text.get_text()) for text in axes.texts] == [(1, "76 %"), (2, "50 %")]
     assert all(text.get_position()[1] > 1 for text in axes.texts)
     assert axes.get_ylabel() == "share of the step (above: exchanges hidden)" and axes.get_ylim() == (0, 1.12)

@@ -68,6 +68,14 @@ def test_history_marks_events_and_fracture(history):
         assert time == pytest.approx([4.2, 4.2])
 
 
+def test_history_has_the_unit_of_the_largest_stress():
+    for name in ("p-1", "low"):
+        large = HISTORY.copy()
+        large[f"{name}_szz"] *= 100
+        figure = plot.plot_history(large, CASE, PROBES, synthetic.SUMMARY)
+        assert [axes.get_ylabel() for axes in figure.axes] == ["σ$_{zz}$ (GPa)"] * 2
+
+
 def test_history_leaves_out_events_after_the_end():
     early = HISTORY[TIME < 3.1e-3]
     axes = plot.plot_history(early, CASE, PROBES[:1], synthetic.SUMMARY).axes[0]
@@ -91,7 +99,9 @@ def test_history_can_be_read(history):
     for axes in history.axes:  # the words of the events lie above the curves
         top = max(line(axes, "computed")[1].max(), line(axes, "1-D theory")[1].max())
         edge = axes.transData.transform((0, top))[1]
-        assert all(text.get_window_extent().y0 > edge for text in axes.texts)
+        frame = axes.get_window_extent()
+        assert all(text.get_window_extent().y0 > edge and text.get_window_extent().y1 <= frame.y1 for text in axes.texts)
+        assert 0.6 < (edge - frame.y0) / frame.height < 0.75  # and leave room for these
     assert len({text.get_window_extent().y0 // 3 for text in history.axes[0].get_legend().get_texts()}) == 1  # in a row
     width, height = history.get_size_inches()
     assert 8 < width < 12 and height == pytest.approx(1.2 + 2 * 3.2)
@@ -160,11 +170,17 @@ def test_energy_leaves_out_rare_parts_that_are_nothing():
         assert shown[:-2] == ["kinetic", "bodies", "bulk", "penalty", "cohesive", "contact", "dissipated", present]
 
 
-def test_energy_has_times_in_their_unit():
-    table = ENERGY.copy()
-    table["time"] *= 1e-4  # to 0.4 us
+@pytest.mark.parametrize("end, unit, factor", [(0.15e-6, "µs", 1e6), (0.09e-6, "ns", 1e9)])
+def test_times_have_their_unit(end, unit, factor):
+    table, history = ENERGY.copy(), HISTORY.copy()
+    table["time"] *= end / table["time"][-1]
+    history["time"] *= end / history["time"][-1]
     lower = plot.plot_energy(table, synthetic.SUMMARY).axes[1]
-    assert lower.get_xlabel() == "time (µs)" and lower.get_xlim() == pytest.approx((0.1, 0.4))
+    assert lower.get_xlabel() == f"time ({unit})" and lower.get_xlim() == pytest.approx((end * factor / 4, end * factor))
+    axes = plot.plot_history(history, CASE, PROBES[:1], synthetic.SUMMARY).axes[0]
+    assert axes.get_xlabel() == f"time ({unit})" and axes.get_xlim() == pytest.approx((0, end * factor))
+    fragments = synthetic.structured({"time": [end / 2, end], "id": [0, 0], "mass": [1.0, 1]})
+    assert plot.plot_fragments(fragments, synthetic.SUMMARY).axes[0].get_xlabel() == f"time ({unit})"
 
 
 def test_energy_that_is_not_finite_and_of_one_moment():
@@ -201,6 +217,7 @@ def test_fragments():
     assert (right.get_xscale(), right.get_yscale(), left.get_xscale(), left.get_yscale()) == ("log", "log", "linear", "linear")
     assert (right.get_xlabel(), right.get_ylabel()) == ("mass m / mass of the body", "fragments of mass m or more")
     assert texts(figure)[0] == "spall: 3 fragments at 5 ms, the heaviest 60 % of the body"
+    assert figure.get_size_inches() == pytest.approx((10, 4.2))
     assert_readable(figure)
     assert_panels_apart(figure)
 
@@ -440,10 +457,10 @@ def test_crack_has_the_unit_of_the_body():
     assert np.array(segments(collections(figure.axes[0], Poly3DCollection)[1])) == pytest.approx(ACROSS[:, :, [2, 0, 1]])
 
 
-def test_time_of_a_crack_and_of_fragments_in_their_unit():
-    assert texts(plot.plot_crack(BOX, 4.4e-7, ACROSS, DAMAGE, synthetic.SUMMARY))[1].startswith("t = 0.44 µs")
-    table = synthetic.structured({"time": [2e-7, 4e-7], "id": [0, 0], "mass": [1.0, 1]})
-    assert plot.plot_fragments(table, synthetic.SUMMARY).axes[0].get_xlabel() == "time (µs)"
+def test_body_far_from_the_origin_lies_as_any_other():
+    far = BOX + [[0, 500, 0]]
+    whole = plot.plot_crack(far, 4.4e-7, ACROSS + [0, 500, 0], DAMAGE, synthetic.SUMMARY).axes[0]
+    assert (whole.get_xlim(), whole.get_zlim()) == ((-4, 4), (498.5, 501.5))
 
 
 def test_intact_body_has_its_unit():
@@ -463,7 +480,8 @@ def test_body_that_did_not_break(triangles, message):
     figure = plot.plot_crack(BOX, 4.4e-3, triangles, None, synthetic.SUMMARY)
     assert texts(figure)[:3] == ["spall: fracture surface", "t = 4.4 ms   ·   12,345 elements", message]
     (axes,) = figure.axes
-    assert figure.texts[2].get_ha() == "center" and figure.texts[2].get_position()[0] == 0.5
+    assert figure.texts[2].get_ha() == "center" and figure.texts[2].get_position() == (0.5, 0.08)
+    assert figure.get_size_inches() == pytest.approx((11, 4.6))
     assert [text.get_text() for text in axes.texts] == ["z  8 m", "x  2 m", "y  3 m"]
     assert [len(segments(one)) for one in axes.collections] == [3, 3, 9]
     seen = on_paper(axes, corners_of(axes))

@@ -258,9 +258,9 @@ def test_slab():
     faces = np.array([triangle((0, 3.5 + y, 0), normal, 0.01) for y, normal in (
         (0, (1, 0, 0)), (0.98, (1, 0, 0)), (-0.98, (0, 0, 1)), (1.02, (1, 0, 0)), (-1.02, (1, 0, 0)), (0, (0, 1, 0)),
                                                                                 (0, (1, 1.05, 0)),
-        (0, (1, 0.95, 0)), (0, (0, -1.05, 1)))])
+        (0, (1, 0.95, 0)), (0, (0, -1.05, 1)))] + [triangle((0, 3.5 + 0.9, 0), (1, 0, 0), 0.3)])  # the last one reaches beyond
     inside, width = impact.in_slab(PLATE, faces)
-    assert inside.tolist() == [True, True, True, False, False, False, False, True, False] and width == pytest.approx(1)
+    assert inside.tolist() == [True, True, True, False, False, False, False, True, False, False] and width == pytest.approx(1)
 
 
 def test_views():

@@ -162,7 +162,7 @@ def test_ceramic_curves(tmp_path, monkeypatch, runs, saved, capsys):
         across = [float(call.sets["initial.velocity"][c].removesuffix(f"*{c}")) for c in "xy"]
         assert across == pytest.approx([-0.3 * rate] * 2)  # uniaxial stress: of the case's Poisson ratio
         assert call.sets["boundary"] == [{"set": side, "component": "z", "velocity": along} for side in ("z+", "z-")]
-        assert call.sets["output.energy_limit"] >= 1e9
+        assert call.sets["output.energy_limit"] == 1e9
     said = capsys.readouterr().out.splitlines()
     peaks = {rate: 4 * rate**0.1 * math.sin(1.56) for rate in (1e3, 1e5)}
     assert said[0].split() == ["compression", "1e+03", "/s:", f"{-peaks[1e3]:.3f}", "GPa", "at", f"{-0.039 * 40:.3f}", "%"]
@@ -345,7 +345,7 @@ def row_result(out, sets):
     """Everything as formula (3.10) says, so that what is told is the formula; but the stress a tenth more."""
     name, ratio = out.name.split("-")
     slowed = math.sqrt(float(ratio) / (1 + float(ratio)))
-    time = np.linspace(0, sets["time.end"], 3001)
+    time = np.linspace(0, sets["time.end"] * (1.1 if ratio == "3" else 1), 3001)
     stress = 3690 * ROW_SPEED * 5 * 1.1 * slowed * (time * slowed * ROW_SPEED > 2e-3)
     half = 4e-3 / ROW_SPEED / slowed
     energy = {"time": time, "total": 0 * time, "kinetic": 1 + np.cos(2 * np.pi * time / half)}
@@ -375,11 +375,11 @@ def test_intrinsic_slopes(tmp_path, monkeypatch, runs, saved, capsys):
                                                               *((to_rgba(c), "-") for c in (YELLOW, RED, BLUE))]
     end = 1e6 * intrinsic.step_of_stress(row)["time.end"]
     time, stress = line(axes, "theory")
-    assert time[[0, -1]] == pytest.approx([0, end]) and stress == pytest.approx(np.where(time > half, row.stress() / 1e6, 0))
+    assert time[[0, -1]] == pytest.approx([0, 1.1 * end]) and stress == pytest.approx(np.where(time > half, row.stress() / 1e6, 0))
     time, stress = line(axes, "s h/E = 3")
-    assert time == pytest.approx(np.linspace(0, end, 3001))
+    assert time == pytest.approx(np.linspace(0, 1.1 * end, 3001))
     assert stress == pytest.approx(1.1 * row.stress() / 1e6 * math.sqrt(0.75) * (time > half / math.sqrt(0.75)))
-    assert axes.get_xlim() == pytest.approx((0, end))
+    assert axes.get_xlim() == pytest.approx((0, 1.1 * end))
     assert (axes.get_xlabel(), axes.get_ylabel()) == ("time (µs)", "stress in the middle (MPa)")
     assert title(axes) == "A step of stress through interfaces of three slopes"
     assert_readable(figures["interface-stress.png"])
@@ -572,7 +572,8 @@ def test_mesh_study(tmp_path, monkeypatch, runs, saved, capsys):
     fake, figures, meshed = runs(study_result), saved(study), []
     monkeypatch.setattr(launch, "call", lambda words, **options: meshed.append((words, options)))
     (tmp_path / "graded.h5").write_text("made by somebody else")
-    status = start(study, monkeypatch, "--out", tmp_path, "--ranks", 2, "--threads", 3, "--end", "0.5e-6", "--safety", 0.7,
+    monkeypatch.chdir(tmp_path.parent)  # a mesh is sought from the case file on, so its path is made absolute
+    status = start(study, monkeypatch, "--out", tmp_path.name, "--ranks", 2, "--threads", 3, "--end", "0.5e-6", "--safety", 0.7,
                    "--only", "graded", "uniform", "--set", "c=3")
     ((words, options),) = meshed
     assert words == [launch.program(), "mesh", BENCH / "spall-uniform.geo", "-o", tmp_path / "uniform.h5", "--scale", "1e-3",
