@@ -19,22 +19,23 @@ ROOMS = {
              test_partition.py test_cli.py"""),
     "partition": (["src/partition.*", "src/tile_weight.*", "src/deal.*", "src/part.*", "src/part_*", "src/mesh_case.*",
                    "src/material.*", "src/material_map.*", "src/patch.*"],
-                  """tiles part part_read patch material materials material_map verify test_mesh_faults.py test_bimaterials.py test_partition.py test_meshes.py
+                  """tiles part part_read patch material materials material_map spectrum step verify test_mesh_faults.py test_bimaterials.py test_partition.py test_meshes.py
                   test_cli.py test_continuous.py test_parallel.py"""),
     "domain": (["src/domain.*", "src/interfaces.*", "src/element.*", "src/halo.*", "src/joint.*", "src/assembly*", "src/slab.*",
                 "src/sparse.*"],
-               """domain assembly slab patch fragment verify fragment_twin ledger snapshot test_invariance.py
+               """domain assembly slab patch step spectrum fragment verify fragment_twin ledger snapshot test_invariance.py
                test_contact.py test_bodies.py test_continuous.py test_fragments.py test_solids.py test_bimaterials.py
                test_ledger.py test_spall.py test_parallel.py"""),
     "solver": (["src/solver.*", "src/tile.*", "src/constraint.*", "src/body*", "src/law.*", "src/strength.*", "src/pace.*",
                 "src/phases.*", "src/spectrum.*", "src/balance.*", "src/state.*"],
-               """pace strength patch material verify case checkpoint_file ledger test_invariance.py test_contact.py
+               """step spectrum body checkpoint pace strength patch material verify case checkpoint_file ledger
+               test_invariance.py test_contact.py
                test_friction.py test_viscosity.py test_bodies.py test_output.py test_continuous.py test_ceramic.py
                test_laws.py test_ledger.py test_spall.py test_solids.py test_waves.py test_bimaterials.py
                test_fragments.py test_impact.py test_partition.py test_parallel.py test_restart.py"""),
     "diagnostics": (["src/ledger.*", "src/fragment*", "src/overlap.*", "src/crack_surface.*", "src/state_hash.*", "src/probe.*",
                      "src/autopsy.*"],
-                    """fragment fragment_table fragment_twin ledger probe verify test_output.py test_invariance.py
+                    """step fragment fragment_table fragment_twin ledger probe verify test_output.py test_invariance.py
                     test_friction.py test_viscosity.py test_bodies.py test_ceramic.py test_fragments.py test_ledger.py
                     test_spall.py test_faults.py test_bimaterials.py test_cli.py test_impact.py test_parallel.py
                     test_restart.py"""),
