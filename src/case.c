@@ -18,10 +18,10 @@ char *rg_case_file(const char *path, size_t *size) {
         return NULL;
     }
     char *text = NULL;
-    size_t got = 0;
+    size_t got = 0, room = 0;
     *size = 0;
     do {
-        text = rg_realloc(text, *size + CHUNK, 1);
+        text = rg_grow(text, &room, *size + CHUNK, 1);
         got = fread(text + *size, 1, CHUNK, file);
         *size += got;
     } while (got > 0 && *size <= MOST);

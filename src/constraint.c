@@ -367,7 +367,9 @@ void rg_constraints_work(const rg_constraints *k, rg_exact_sum *work) {
 
 void rg_constraints_register(rg_constraints *k, rg_state *st) {
     enum { VALUES = sizeof(memory) / sizeof(double) };
-    k->key = rg_realloc(k->key, k->entries + 1, sizeof *k->key);
+    if (k->key == NULL) { /* a list of state keeps a reference: all have the same */
+        k->key = rg_alloc(k->entries, sizeof *k->key);
+    }
     for (size_t n = 0; n < k->entries; n++) {
         k->key[n] = 4 * k->domain->id[k->entry[n].slot] + k->entry[n].component;
     }

@@ -285,8 +285,9 @@ static void test_most_elements_of_a_rank(void **state) {
 static rg_case weighed;
 
 static void set_weight(const char *text) {
+    static char path[] = "a.yaml";
     char *message = NULL;
-    weighed = (rg_case){.path = (char[]){"a.yaml"}};
+    weighed = (rg_case){.path = path};
     weighed.mesh.weight = rg_expr_new(text, &message);
     assert_non_null(weighed.mesh.weight);
 }
