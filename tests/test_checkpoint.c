@@ -14,8 +14,8 @@
 
 #include "assembly.h"
 #include "hash.h"
+#include "material_map.h"
 #include "mem.h"
-#include "mesh_case.h"
 #include "pace.h"
 #include "restart.h"
 #include "spectrum.h"
@@ -23,7 +23,7 @@
 #include "tap.h"
 
 /* Steps. Rows are written into two buffers in turn: an even number, so that both runs are at the same one. */
-enum { BEFORE = 10, AFTER = 3, MOST_BLOCKS = 1 << 14 };
+enum { BEFORE = 10, AFTER = 3, TILE = 40, MOST_BLOCKS = 1 << 14 };
 
 /* ---- Memory ---- */
 
@@ -172,8 +172,11 @@ typedef struct {
 static void open_half(half *h, const rg_case *c, const char *folder, bool first) {
     recording = &blocks_of[first ? 0 : 1];
     recording->count = 0;
-    h->solver = first ? rg_solver_make(c, MPI_COMM_WORLD)
-                      : rg_solver_make_from_part(c, rg_part_of_case(c, NULL, MPI_COMM_WORLD), MPI_COMM_WORLD);
+    rg_mesh *mesh = make_mesh(c);
+    rg_part *part = rg_part_distribute(mesh, TILE, MPI_COMM_WORLD);
+    rg_materials_assign(c, part, MPI_COMM_WORLD);
+    h->solver = rg_solver_make_from_part(c, part, MPI_COMM_WORLD);
+    rg_mesh_free(mesh);
     recording = NULL;
     rg_restart_register(&h->state, &h->keep, h->solver, &h->ledger, &h->summary);
     rg_checkpoints_open(&h->checkpoints, folder, h->solver, &h->state, &h->slab);
@@ -225,7 +228,7 @@ static void check(const variant *v, const char *folder) {
     rg_case *c = read_case(v);
     open_half(&a, c, folder, true);
     keep_made(&blocks_of[0]);
-    rg_spectrum(a.solver);
+    rg_spectrum_whole(a.solver);
     rg_solver_start(a.solver);
     disturb(a.solver);
     go_on(&a, BEFORE);

@@ -4,6 +4,7 @@
  * meshes under a thousand elements have not by themselves. Prints TAP from rank 0. */
 #include <float.h>
 #include <math.h>
+#include <omp.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,12 +14,13 @@
 #include "material_map.h"
 #include "mem.h"
 #include "reference.h"
+#include "state.h"
 #include "step_cases.h"
 #include "step_twin.h"
 #include "tap.h"
 #include "tile.h"
 
-enum { TILE = 40, STEPS = 16 };
+enum { TILE = 40, STEPS = 16, THREADS = 3 };
 
 /* Relative to the largest value of its kind; measured up to 9.5e-12, in what steep laws remember. The energy
  * of an element at strains of 1e-3 is left of terms that are a million times as large: 2.6e-11. */
@@ -67,10 +69,11 @@ static const int kind_begin[] = {DISPLACEMENT, VELOCITY, NOW,    STIFFENING, HEA
 /* Largest difference and largest value of each kind on this rank, over all steps. */
 typedef struct {
     double error[KINDS], scale[KINDS];
-    bool warned;    /* of nodes that are not where they are placed, and only of them */
-    bool accounted; /* the ledger's error, and its worst */
-    int masks;      /* interfaces whose bits differ */
-    int displaced;  /* nodes that are not quite where they are to be */
+    bool warned;        /* of nodes that are not where they are placed, and only of them */
+    bool accounted;     /* the ledger's error, and its worst */
+    int masks;          /* interfaces whose bits differ */
+    int displaced;      /* nodes that are not quite where they are to be */
+    int bits, energies; /* steps after which the state is not that of the lone solver, or its energies */
     int watched, held, opened, parted, closed, seams, across_blocks;
 } record;
 
@@ -316,10 +319,92 @@ static bool start(rg_solver *s, twin *w, bool suddenly) {
     return rank != 0 || (warnings == (jumps > 0) && (jumps == 0 || warned == jumps));
 }
 
-static rg_solver *make_solver(const rg_case *c, const rg_mesh *mesh) {
-    rg_part *part = rg_part_distribute(rank == 0 ? mesh : NULL, TILE, MPI_COMM_WORLD);
-    rg_materials_assign(c, part, MPI_COMM_WORLD);
-    return rg_solver_make_from_part(c, part, MPI_COMM_WORLD);
+static rg_solver *make_solver(const rg_case *c, const rg_mesh *mesh, MPI_Comm comm) {
+    int here;
+    MPI_Comm_rank(comm, &here);
+    rg_part *part = rg_part_distribute(here == 0 ? mesh : NULL, TILE, comm);
+    rg_materials_assign(c, part, comm);
+    return rg_solver_make_from_part(c, part, comm);
+}
+
+/* ---- The same on one rank with several threads ---- */
+
+typedef struct {
+    rg_solver *solver;
+    rg_ledger ledger;
+    size_t *slot, *interface; /* by element; by 4 * element + face of the side that its copy is of */
+} lone;
+
+static lone lone_make(const rg_case *c, const rg_mesh *mesh) {
+    omp_set_num_threads(THREADS);
+    lone one = {.solver = make_solver(c, mesh, MPI_COMM_SELF)};
+    omp_set_num_threads(1);
+    const rg_domain *d = one.solver->domain;
+    one.slot = RG_NEW(size_t, (size_t)mesh->elements);
+    one.interface = RG_NEW(size_t, RG_FACES * (size_t)mesh->elements);
+    for (size_t slot = 0; slot < d->blocks * RG_LANES; slot++)
+        if (d->id[slot] >= 0)
+            one.slot[d->id[slot]] = slot;
+    for (const rg_tile *t = d->tile; t < d->tile + d->tiles; t++)
+        for (size_t i = t->ibegin * RG_LANES; i < t->iend * RG_LANES; i++) {
+            double normal[3];
+            if (rg_interface_area(d, i, normal) > 0) /* not in padding */
+                one.interface[rg_face_number(d, t, i)] = i;
+        }
+    return one;
+}
+
+static void lone_step(lone *one, double dt) {
+    omp_set_num_threads(THREADS);
+    rg_solver_kick(one->solver, dt);
+    rg_ledger_take(&one->ledger, one->solver);
+    rg_solver_drift(one->solver);
+    omp_set_num_threads(1);
+}
+
+static void lone_free(lone *one) {
+    rg_solver_free(one->solver);
+    rg_free(one->slot);
+    rg_free(one->interface);
+}
+
+static bool same(const void *a, const void *b, size_t bytes) {
+    return memcmp(a, b, bytes) == 0;
+}
+
+/* All that the two have in common has the same bits. */
+static bool same_bits(const rg_solver *s, const lone *one) {
+    const rg_solver *o = one->solver;
+    bool good = s->stiffening_anywhere == o->stiffening_anywhere && s->pace == o->pace;
+    for (size_t slot = 0; slot < s->domain->blocks * RG_LANES; slot++) {
+        rg_gid id = s->domain->id[slot];
+        for (int k = 0; k < 3 * RG_NODES && id >= 0; k++) {
+            size_t i = rg_node_index(slot, k / 3, k % 3), j = rg_node_index(one->slot[id], k / 3, k % 3);
+            good = good && same(&s->u[i], &o->u[j], sizeof *s->u);
+            good = good && same(&s->velocity[i], &o->velocity[j], sizeof *s->u);
+        }
+        for (size_t k = 0; k < s->history_stride / RG_LANES && id >= 0; k++)
+            good = good &&
+                   same(&s->history[rg_history_index(slot, s->history_stride, k)],
+                        &o->history[rg_history_index(one->slot[id], s->history_stride, k)], sizeof *s->u);
+        good = good &&
+               (id < 0 || s->heat == NULL || same(&s->heat[slot], &o->heat[one->slot[id]], sizeof *s->heat));
+    }
+    for (const rg_tile *t = s->domain->tile; t < s->domain->tile + s->domain->tiles; t++)
+        for (size_t i = t->ibegin * RG_LANES; i < t->iend * RG_LANES; i++) {
+            double normal[3];
+            if (rg_interface_area(s->domain, i, normal) <= 0) /* padding */
+                continue;
+            size_t j = one->interface[rg_face_number(s->domain, t, i)], values = s->crack_stride / RG_LANES;
+            good = good && s->broken[i] == o->broken[j] && s->unlinked[i] == o->unlinked[j];
+            for (size_t k = 0; k < values && s->broken[i] != 0; k++)
+                good = good && same(&s->crack[i / RG_LANES * s->crack_stride + k * RG_LANES + i % RG_LANES],
+                                    &o->crack[j / RG_LANES * s->crack_stride + k * RG_LANES + j % RG_LANES],
+                                    sizeof *s->crack);
+        }
+    for (int b = 0; b < s->bodies->count; b++)
+        good = good && same(s->bodies->body[b].x, o->bodies->body[b].x, 6 * sizeof(double));
+    return good;
 }
 
 /* Looks at a tile between its kick and its drift. */
@@ -364,10 +449,12 @@ static void note_step(record *r, rg_solver *s, const twin *w) {
 
 static record follow(const rg_case *c, const rg_mesh *mesh, bool suddenly) {
     record r = {.masks = 0};
-    rg_solver *s = make_solver(c, mesh);
+    rg_solver *s = make_solver(c, mesh, MPI_COMM_WORLD);
     twin *w = twin_make(c, mesh);
+    lone one = lone_make(c, mesh);
     rg_ledger ledger = {.begun = false};
     account account_of = {.good = true};
+    start(one.solver, w, suddenly);
     r.warned = start(s, w, suddenly);
     watcher own = {&r, w};
     s->watch = watch;
@@ -378,16 +465,19 @@ static record follow(const rg_case *c, const rg_mesh *mesh, bool suddenly) {
         double dt = 4e-10 * (1 + 0.3 * sin(k));
         bool whole = k % 2 == 1;
         twin_kick(w, dt);
+        lone_step(&one, dt);
         if (whole) {
             rg_solver_step(s, dt);
         } else {
             rg_solver_kick(s, dt);
             compare_energies(&r, *rg_ledger_take(&ledger, s), twin_energy(w));
             keep_account(&account_of, &ledger, w);
+            r.energies += !same(&ledger.last, &one.ledger.last, sizeof ledger.last);
             compare_elements(&r, s, w, true);
             rg_solver_drift(s);
         }
         twin_drift(w);
+        r.bits += !same_bits(s, &one);
         compare_elements(&r, s, w, false);
         note_step(&r, s, w);
         compare_places(&r, s, w);
@@ -397,6 +487,7 @@ static record follow(const rg_case *c, const rg_mesh *mesh, bool suddenly) {
     if (isfinite(first) || isfinite(found))
         note(&r, FIRST, found, first);
     rg_solver_free(s);
+    lone_free(&one);
     twin_free(w);
     return r;
 }
@@ -405,7 +496,7 @@ static record follow(const rg_case *c, const rg_mesh *mesh, bool suddenly) {
 
 static void gather(record *r) {
     MPI_Allreduce(MPI_IN_PLACE, r->error, 2 * KINDS, MPI_DOUBLE, MPI_MAX, MPI_COMM_WORLD);
-    MPI_Allreduce(MPI_IN_PLACE, &r->masks, 9, MPI_INT, MPI_SUM, MPI_COMM_WORLD);
+    MPI_Allreduce(MPI_IN_PLACE, &r->masks, 11, MPI_INT, MPI_SUM, MPI_COMM_WORLD);
 }
 
 static void judge(const variant *v, const record *r) {
@@ -427,6 +518,8 @@ static void judge(const variant *v, const record *r) {
     report(r->displaced == 0, v->name, "prescribed places");
     report(r->warned, v->name, "what is said of them");
     report(r->accounted, v->name, "error of the ledger");
+    report(r->bits == 0, v->name, "the same bits on one rank with three threads");
+    report(r->energies == 0, v->name, "the same energies there");
     bool none = v->override[0] != NULL && strstr(v->override[0], "law: none") != NULL;
     bool parts =
         r->across_blocks > 1000 && r->seams > 1000 && r->opened > 500 && r->parted > 10 && r->closed > 300;
@@ -443,7 +536,7 @@ static void check_rest(void) {
     const variant still = {"rest", {HALVES, "boundary=[]"}};
     rg_case *c = read_case(&still);
     rg_mesh *mesh = make_mesh(c);
-    rg_solver *s = make_solver(c, mesh);
+    rg_solver *s = make_solver(c, mesh, MPI_COMM_WORLD);
     twin *w = twin_make(c, mesh);
     rg_ledger ledger = {.begun = false};
     account a = {.good = true};
@@ -468,7 +561,7 @@ static void check_start(void) {
          "boundary=[]"}};
     rg_case *c = read_case(&stretched);
     rg_mesh *mesh = make_mesh(c);
-    rg_solver *s = make_solver(c, mesh);
+    rg_solver *s = make_solver(c, mesh, MPI_COMM_WORLD);
     bool fields = true, whole = true;
     rg_solver_start(s);
     for (size_t slot = 0; slot < s->domain->blocks * RG_LANES; slot++)
