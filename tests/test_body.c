@@ -2,6 +2,7 @@
  * them. How they move and press is in test_step.c. */
 #include <math.h>
 #include <mpi.h>
+#include <omp.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -206,6 +207,7 @@ static void test_velocity(void **state) {
 }
 
 int main(int argc, char **argv) {
+    omp_set_num_threads(1); /* a child has none of its parent's threads */
     MPI_Init(&argc, &argv);
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_omega2),
