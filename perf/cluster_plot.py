@@ -1,8 +1,6 @@
 """Pictures of a record of perf/simulate: model as lines, simulated as open points, measured as full ones."""
 
-from drawing import plt, save  # of bench/, whose folder perf/simulate adds to the path
-
-__all__ = ["draw", "save"]
+from drawing import plt  # of bench/, whose folder perf/simulate adds to the path
 
 # Thesis, Figure 5-18, on cores of 7.2 GF/s. Of its scan only the axis can be read; the curve starts at 16
 # cores at about 1.8 s.

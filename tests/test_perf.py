@@ -278,7 +278,7 @@ def test_expected_step(delay, step):
 def test_overlap_measures(monkeypatch):
     """Turns before the measured ones belong to the set-up; the fastest of them all tells the sweeps."""
     asked = []
-    told = {"phases_s": {"compute": [0, 5, 9], "jump": [0, 5, 9]}, "inner_share": [0, 0.8, 1], "elements": 600,
+    told = {"phases_s": {"compute": [0, 5, 9], "jump": [0, 3, 9], "wait": [0, 2, 9]}, "inner_share": [0, 0.8, 1], "elements": 600,
             "exchange_alone_s": 0.02}
 
     def run(args, transport, delays, turns):
@@ -293,7 +293,7 @@ def test_overlap_measures(monkeypatch):
     delays = [0.4 * f for f in (0, 0.125, 0.25, 0.5, 0.75, 1, 1.25, 1.5, 2)]
     assert asked[1] == ("memory", pytest.approx(delays), 27)
     assert found["delays_s"] == pytest.approx(delays) and found["samples_s"] == [[0.001, 0.002]] * 9
-    assert found["sweeps_inside_s"] == pytest.approx([0.4, 0.4]) and (found["tets"], found["exchange_alone_s"]) == (600, 0.02)
+    assert found["sweeps_inside_s"] == pytest.approx([0.4, 0.24]) and (found["tets"], found["exchange_alone_s"]) == (600, 0.02)
 
 
 OVERLAP = {"transport": "memory", "tets": 6000, "delays_s": [0, 1e-3, 4e-3],
@@ -317,6 +317,7 @@ def test_overlap_picture():
         assert title(axes) == f"{transport}, 2 ranks, 6,000 tets"
     assert [axes.get_ylabel() for axes in figure.axes] == ["time per step (ms)", ""]
     assert legend(figure.axes[0]) == labels(figure.axes[0])
+    assert figure.get_size_inches() == pytest.approx((1 + 2 * 4.2, 3.8))
     assert_readable(figure)
     assert_panels_apart(figure)
 
@@ -389,6 +390,10 @@ def test_roofline_picture():
     assert (axes.get_xscale(), axes.get_yscale(), axes.get_xlabel(), axes.get_ylabel()) == (
         "log", "log", "intensity (flop per byte of traffic, cost model)", "Gflop/s (cost model / median time)")
     assert title(axes) == "a processor, 1 ranks x 2 threads, v4, abc"
+    names = next(text for text in axes.texts if text.get_text().startswith("1  bulk"))
+    axes.figure.canvas.draw()
+    room = names.get_window_extent()
+    assert axes.get_window_extent().x1 < room.x0 and room.x1 < axes.figure.bbox.width  # beside the panel
 
 
 def test_roofline_of_a_stored_record(tmp_path, monkeypatch):
@@ -560,10 +565,10 @@ NETWORKS = {"tree": "100 Gb/s fat tree", "ethernet": "10 Gb/s Ethernet"}
 
 
 def test_pictures_of_simulated_clusters(tmp_path, monkeypatch):
-    import cluster_plot
+    import drawing
 
     figures = {}
-    monkeypatch.setattr(cluster_plot, "save", lambda figure, path: figures.update({path: figure}))
+    monkeypatch.setattr(drawing, "save", lambda figure, path: figures.update({path: figure}))
     start(simulate, monkeypatch, "plot", RESULTS / "2026-11-22-simulated.json", "--out", tmp_path / "p")
     assert list(figures) == [tmp_path / "p-thesis.png", tmp_path / "p-clusters.png"]
     (thesis,) = figures[tmp_path / "p-thesis.png"].axes
@@ -590,7 +595,8 @@ def test_pictures_of_simulated_clusters(tmp_path, monkeypatch):
         assert (axes.get_xscale(), axes.get_xlabel(), axes.get_ylim()) == ("log", "cores", (0, 1.05))
         assert axes.get_ylabel() == "sweeps / time of the step"
         assert title(axes) == heading and legend(axes) == labels(axes)
-    for figure in figures.values():
+    for figure, panels in zip(figures.values(), (1, 2)):
+        assert figure.get_size_inches() == pytest.approx((5.6 * panels, 4.4))
         assert_readable(figure)
         assert_panels_apart(figure)
 
@@ -644,6 +650,10 @@ def test_large_takes_the_median_of_the_small_mesh(tmp_path, monkeypatch, capsys)
     assert order == [("small", 250, 4)] * 3 + [("large", 50, 4)] + [("small", 250, 4)] * 3
     assert made == [([15, 15, 164], tmp_path / "small.h5"), ([44, 44, 440], tmp_path / "large.h5")]
     assert not list(tmp_path.glob("*.h5")) and f"{0.6 / 0.55:10.4g}  at most 1.1    yes" in capsys.readouterr().out
+    steps["small"], steps["large"] = iter([0.5] * 2), iter([0.5])
+    order.clear(), made.clear()
+    assert start(large, monkeypatch, "--out", tmp_path, "--quick") == 0
+    assert order == [("small", 25, 2), ("large", 5, 2), ("small", 25, 2)] and [cells for cells, _ in made] == [[4, 4, 40], [6, 6, 60]]
     steps["small"], steps["large"] = iter([0.5] * 6), iter([0.6])
     assert start(large, monkeypatch, "--out", tmp_path) == 1 and capsys.readouterr().out.count("NO") == 1
 

@@ -375,7 +375,8 @@ def test_intrinsic_slopes(tmp_path, monkeypatch, runs, saved, capsys):
                                                               *((to_rgba(c), "-") for c in (YELLOW, RED, BLUE))]
     end = 1e6 * intrinsic.step_of_stress(row)["time.end"]
     time, stress = line(axes, "theory")
-    assert time[[0, -1]] == pytest.approx([0, 1.1 * end]) and stress == pytest.approx(np.where(time > half, row.stress() / 1e6, 0))
+    assert time[[0, -1]] == pytest.approx([0, 1.1 * end])
+    assert stress == pytest.approx(np.where(time > half, row.stress() / 1e6, 0))
     time, stress = line(axes, "s h/E = 3")
     assert time == pytest.approx(np.linspace(0, 1.1 * end, 3001))
     assert stress == pytest.approx(1.1 * row.stress() / 1e6 * math.sqrt(0.75) * (time > half / math.sqrt(0.75)))
@@ -684,7 +685,8 @@ def test_fragmentation(tmp_path, monkeypatch, runs, saved, capsys):
     assert said[1] == ("rate 3e+04/s, seed 5: 35 fragments (the same since 0.50 of the time), mean size 0.571 mm, "
                        "energy error 1.2e-03")
     sizes = [(rate, 1e3 * bar.grady(rate), 1e3 * bar.glenn_chudnovsky(rate)) for rate in (1e4, 3e4)]
-    assert said[4:6] == [f"rate {rate:.3g}/s: Grady {one:.3g} mm, Glenn-Chudnovsky {other:.3g} mm" for rate, one, other in sizes]
+    assert said[4:6] == [f"rate {rate:.3g}/s: Grady {one:.3g} mm, Glenn-Chudnovsky {other:.3g} mm" for rate, one,
+                         other in sizes]
     figure = figures["fragmentation.png"]
     (axes,) = figure.axes
     computed = "computed, one mark a mesh"
