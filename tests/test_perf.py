@@ -278,7 +278,8 @@ def test_expected_step(delay, step):
 def test_overlap_measures(monkeypatch):
     """Turns before the measured ones belong to the set-up; the fastest of them all tells the sweeps."""
     asked = []
-    told = {"phases_s": {"compute": [0, 5, 9], "jump": [0, 3, 9], "wait": [0, 2, 9]}, "inner_share": [0, 0.8, 1], "elements": 600,
+    told = {"phases_s": {"compute": [0, 5, 9], "jump": [0, 3, 9], "wait": [0, 2, 9]}, "inner_share": [0, 0.8, 1],
+            "elements": 600,
             "exchange_alone_s": 0.02}
 
     def run(args, transport, delays, turns):
@@ -653,7 +654,8 @@ def test_large_takes_the_median_of_the_small_mesh(tmp_path, monkeypatch, capsys)
     steps["small"], steps["large"] = iter([0.5] * 2), iter([0.5])
     order.clear(), made.clear()
     assert start(large, monkeypatch, "--out", tmp_path, "--quick") == 0
-    assert order == [("small", 25, 2), ("large", 5, 2), ("small", 25, 2)] and [cells for cells, _ in made] == [[4, 4, 40], [6, 6, 60]]
+    assert order == [("small", 25, 2), ("large", 5, 2), ("small", 25, 2)]
+    assert [cells for cells, _ in made] == [[4, 4, 40], [6, 6, 60]]
     steps["small"], steps["large"] = iter([0.5] * 6), iter([0.6])
     assert start(large, monkeypatch, "--out", tmp_path) == 1 and capsys.readouterr().out.count("NO") == 1
 
@@ -684,3 +686,65 @@ def test_checkpoint_takes_medians_and_rates(tmp_path, monkeypatch, capsys):
 def test_synthetic_tables_are_what_they_say():
     table = synthetic.energy()
     assert table["total"] == pytest.approx(sum(table[name] for name in synthetic.ENERGIES) - table["external_work"])
+
+
+def fake_study(monkeypatch, simulated):
+    """Two ranks of 600 and 400 tets that share 20 faces, and a simulation that takes so long, or too long."""
+    model = simulate.model
+    pattern = model.Pattern(np.array([600, 400]), np.array([500, 300]), np.array([0, 1]), np.array([1, 0]), np.array([20, 20]))
+    asked = []
+
+    def simulation(args, program, name, path, ranks, costs, network, threads):
+        asked.append((program, name, path, ranks, costs, network, threads))
+        if simulated is None:
+            raise subprocess.TimeoutExpired("smpirun", 600)
+        return simulated
+
+    monkeypatch.setitem(simulate.__dict__, "pattern", lambda args, cells, ranks: (cells, ranks))
+    monkeypatch.setattr(model, "read_pattern", lambda path: pattern)
+    monkeypatch.setitem(simulate.__dict__, "simulate", simulation)
+    return asked, pattern
+
+
+COSTS = {"busy": [{"tets": t, "first": 2e-7, "second": 1e-7, "rest_s": 1e-5, "faces": 20, "pack_s": 4e-6}
+                  for t in (100.0, 1e5)],
+         "alone": [{"tets": t, "first": 1e-7, "second": 1e-7, "rest_s": 1e-5, "faces": 0, "pack_s": 0} for t in (100.0, 1e5)]}
+
+
+def test_point_of_a_study(monkeypatch, capsys):
+    asked, pattern = fake_study(monkeypatch, 0.5)
+    args = types.SimpleNamespace(most=2, timeout=600)
+    row = simulate.point(args, "p", COSTS, "strong, 10 million, 16 threads", "tree", (10, 10, 10), 2)
+    network = simulate.NETWORKS["tree"]
+    network = simulate.dataclasses.replace(network, ranks_per_node=1)
+    used = simulate.model.Costs(pytest.approx(2e-7), pytest.approx(1e-7), pytest.approx(1e-7), pytest.approx(1e-5))
+    assert asked == [("p", "tree", ((10, 10, 10), 2), 2, used, network, 16)]
+    assert (row["tets"], row["ranks"], row["threads"], row["cores"], row["simulated_s"]) == (6000, 2, 16, 32, 0.5)
+    assert row["ideal_s"] == pytest.approx(6000 / 32 * 3e-7) and row["cells"] == [10, 10, 10]
+    assert row["model"] == simulate.model.step(pattern, network, simulate.costs_for(COSTS, "busy", 6000 / 32), 16)
+    assert simulate.point(args, "p", COSTS, "weak", "tree", (10, 10, 10), 3).get("simulated_s") is None  # more than --most
+    assert simulate.point(args, "p", COSTS, "weak", "tree", (10, 10, 10), 3, 0.7)["simulated_s"] == 0.7 and len(asked) == 1
+    fake_study(monkeypatch, None)
+    assert "simulated_s" not in simulate.point(args, "p", COSTS, "weak", "tree", (10, 10, 10), 2)
+    assert "the simulation took longer than 600 s" in capsys.readouterr().out
+
+
+def test_simulation_is_held_against_measured_steps(monkeypatch, capsys):
+    asked, _ = fake_study(monkeypatch, 0.9)
+    checks = {f"{name}_checks": [{"cells": [10, 10, 10], "tets": 6000 / ranks, "step_s": 1.0}] for ranks,
+              name in ((1, "alone"), (2, "busy"))}
+    rows = simulate.check(types.SimpleNamespace(), "p", {**COSTS, **checks})
+    assert [(row["ranks"], row["tets"], row["measured_s"], row["simulated_s"]) for row in rows] == [(1, 6000, 1.0, 0.9),
+                                                                                                    (2, 6000, 1.0, 0.9)]
+    assert [(call[3], call[4].first, call[6]) for call in asked] == [(1, pytest.approx(1e-7), 1), (2, pytest.approx(2e-7), 1)]
+    assert "2 ranks, 6000 tets: measured 1000.000 ms, simulated 900.000 (-10.0 %), model" in capsys.readouterr().out
+
+
+def test_simulated_networks_are_those_of_the_document():
+    """Nodes of 16 ranks; 100 Gb/s in a fat tree, four hops of 0.5 us; 10 Gb/s at one switch, two of 10 us; less headers."""
+    share = 0.97 / 1.05
+    for name, bandwidth, latency, hop in (("tree", 100e9 / 8, 2e-6, "500ns"), ("ethernet", 10e9 / 8, 20e-6, "10us")):
+        network = simulate.NETWORKS[name]
+        assert network.ranks_per_node == 16 and network.bandwidth == pytest.approx(share * bandwidth)
+        assert network.latency == pytest.approx(latency) and f'lat="{hop}"' in simulate.CLUSTER[name]
+        assert f'bw="{bandwidth / 1e9:g}GBps"' in simulate.CLUSTER[name]
