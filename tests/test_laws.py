@@ -29,7 +29,7 @@ VARIANTS = {
     "linear weibull sets": interface("linear", weibull={"modulus": 6, "area": 1e-9, "keep": "opening"},
                                      sets=[{"where": "abs(nz) > 0.9", "strength": 300e6}]),
 }
-SHORT = {"mesh.cells": [2, 2, 10], "time.end": 0.1e-6, "output.interval": 2e-8, "output.energy_limit": 1e9, "output.fields": ["crack"]}
+SHORT = {"mesh.cells": [2, 2, 24], "time.end": 0.1e-6, "output.interval": 2e-8, "output.energy_limit": 1e9, "output.fields": ["crack"]}
 
 
 @pytest.mark.parametrize("ranks, threads", LAYOUTS)
