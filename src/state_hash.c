@@ -1,5 +1,7 @@
 #include "state_hash.h"
 
+#include <string.h>
+
 #include "crack_surface.h"
 #include "hash.h"
 #include "tile.h"
@@ -54,4 +56,13 @@ uint64_t rg_state_hash(const rg_solver *s) {
     }
     MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPI_UINT64_T, MPI_SUM, s->comm);
     return sum;
+}
+
+uint64_t rg_energy_hash(const rg_energy *e) {
+    uint64_t word[sizeof *e / sizeof(uint64_t)], h = 0; /* all members have 64 bits: there are no gaps */
+    memcpy(word, e, sizeof word);
+    for (size_t i = 0; i < sizeof word / sizeof *word; i++) {
+        h = rg_hash(h, word[i]);
+    }
+    return h;
 }

@@ -32,4 +32,11 @@ rg_verify_check rg_verify_separation;
  * all ranks with any number of threads as on one rank with one thread. */
 rg_verify_check rg_verify_identity;
 
+/* Length of the change of a vector over that of what it was. */
+double rg_verify_change_of(const double from[3], const double to[3]);
+
+/* Runs checks on the first `most_ranks` ranks of `comm` and prints the table to `out` of rank 0. Returns on
+ * all ranks RG_OK, or RG_FAILURE if a row failed. Collective. */
+int rg_verify_run(rg_verify_check *const *check, size_t checks, int most_ranks, MPI_Comm comm, FILE *out);
+
 #endif

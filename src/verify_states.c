@@ -2,6 +2,7 @@
 #include <math.h>
 
 #include "element.h"
+#include "vector.h"
 #include "verify_check.h"
 
 #define MESH_AND_MATERIAL                                                                                    \
@@ -22,8 +23,9 @@ typedef struct {
     double nodal, stress;
 } worst;
 
+/* What is not a number is worst. */
 static double larger(double a, double b) {
-    return b > a || isnan(b) ? b : a;
+    return isnan(b) ? INFINITY : fmax(a, b);
 }
 
 static void see_stress(void *context, const rg_solver *s, size_t slot, const double stress[6]) {
@@ -38,7 +40,7 @@ static void see_stress(void *context, const rg_solver *s, size_t slot, const dou
 /* Both over all ranks, with `nodal` and stress relative to the given scales. */
 static void compare(const rg_trial *t, const worst *w, const double scale[2], const char *const name[2],
                     const double limit[2], rg_verify_rows *rows) {
-    double most[2] = {isnan(w->nodal) ? INFINITY : w->nodal, isnan(w->stress) ? INFINITY : w->stress};
+    double most[2] = {w->nodal, w->stress};
     MPI_Allreduce(MPI_IN_PLACE, most, 2, MPI_DOUBLE, MPI_MAX, t->solver->comm);
     for (int k = 0; k < 2; k++) {
         rg_verify_value(rows, name[k], 0, most[k] / scale[k], limit[k]);
@@ -61,34 +63,29 @@ static const double gradient[3][3] = {
 /* Cauchy stress (mu (F F^T - I) + lambda ln J I)/J of the neo-Hookean solid. */
 static void affine_stress(const rg_case *c, double stress[6]) {
     static const int row[6] = {0, 1, 2, 1, 0, 0}, column[6] = {0, 1, 2, 2, 2, 1};
-    double young = c->material.young, nu = c->material.poisson, F[3][3], J = 0;
+    double young = c->material.young, nu = c->material.poisson, F[3][3], cofactor[3];
     double mu = young / (2 * (1 + nu)), lambda = young * nu / ((1 + nu) * (1 - 2 * nu));
     for (int i = 0; i < 3; i++) {
         for (int k = 0; k < 3; k++) {
             F[i][k] = gradient[i][k] + (i == k);
         }
     }
-    for (int i = 0; i < 3; i++) {
-        int j = (i + 1) % 3, k = (i + 2) % 3;
-        J += F[0][i] * (F[1][j] * F[2][k] - F[1][k] * F[2][j]);
-    }
+    rg_cross(F[1], F[2], cofactor);
+    double J = rg_dot(F[0], cofactor);
     for (int m = 0; m < 6; m++) {
         int i = row[m], j = column[m];
-        double b = F[i][0] * F[j][0] + F[i][1] * F[j][1] + F[i][2] * F[j][2];
+        double b = rg_dot(F[i], F[j]);
         stress[m] = (mu * (b - (i == j)) + (i == j ? lambda * log(J) : 0)) / J;
     }
 }
 
-static void see_displacements(worst *w, const rg_solver *s) {
-    for (size_t slot = 0; slot < s->domain->blocks * RG_LANES; slot++) {
-        for (int n = 0; s->domain->id[slot] >= 0 && n < RG_NODES; n++) {
-            double x[3];
-            rg_node_position(s->domain->corner + 12 * slot, n, x);
-            for (int i = 0; i < 3; i++) {
-                double exact = gradient[i][0] * x[0] + gradient[i][1] * x[1] + gradient[i][2] * x[2];
-                w->nodal = larger(w->nodal, fabs(s->u[rg_node_index(slot, n, i)] - exact));
-            }
-        }
+static void see_displacement(void *context, const rg_solver *s, size_t slot, int node) {
+    worst *w = context;
+    double x[3];
+    rg_node_position(s->domain->corner + 12 * slot, node, x);
+    for (int i = 0; i < 3; i++) {
+        double exact = rg_dot(gradient[i], x);
+        w->nodal = larger(w->nodal, fabs(s->u[rg_node_index(slot, node, i)] - exact));
     }
 }
 
@@ -103,7 +100,7 @@ void rg_verify_patch(MPI_Comm comm, const rg_verify_change *change, rg_verify_ro
     affine_stress(t->theory, w.exact);
     while (rg_trial_next(t)) {
     }
-    see_displacements(&w, t->solver);
+    rg_trial_nodes(t, see_displacement, &w);
     rg_trial_stresses(t, see_stress, &w);
     double scale[2] = {1.7e-3 * t->theory->mesh.size[0], t->theory->material.young};
     compare(t, &w, scale, name, patch_limit, rows);
@@ -112,11 +109,10 @@ void rg_verify_patch(MPI_Comm comm, const rg_verify_change *change, rg_verify_ro
 
 /* ---- rotation ---- */
 
-static void see_velocities(worst *w, const rg_solver *s) {
-    for (size_t slot = 0; slot < s->domain->blocks * RG_LANES; slot++) {
-        for (int k = 0; s->domain->id[slot] >= 0 && k < 3 * RG_NODES; k++) {
-            w->nodal = larger(w->nodal, fabs(s->now[rg_node_index(slot, k / 3, k % 3)]));
-        }
+static void see_velocity(void *context, const rg_solver *s, size_t slot, int node) {
+    worst *w = context;
+    for (int i = 0; i < 3; i++) {
+        w->nodal = larger(w->nodal, fabs(s->now[rg_node_index(slot, node, i)]));
     }
 }
 
@@ -130,7 +126,7 @@ void rg_verify_rotation(MPI_Comm comm, const rg_verify_change *change, rg_verify
     worst w = {.nodal = 0};
     while (rg_trial_next(t)) {
     }
-    see_velocities(&w, t->solver);
+    rg_trial_nodes(t, see_velocity, &w);
     rg_trial_stresses(t, see_stress, &w);
     double young = t->theory->material.young, scale[2] = {sqrt(young / t->theory->material.density), young};
     compare(t, &w, scale, name, rotation_limit, rows);

@@ -69,6 +69,15 @@ void rg_trial_stresses(const rg_trial *t, rg_trial_visit *visit, void *context) 
     rg_free(cauchy);
 }
 
+void rg_trial_nodes(const rg_trial *t, rg_trial_visit_node *visit, void *context) {
+    const rg_domain *d = t->solver->domain;
+    for (size_t slot = 0; slot < d->blocks * RG_LANES; slot++) {
+        for (int n = 0; d->id[slot] >= 0 && n < RG_NODES; n++) {
+            visit(context, t->solver, slot, n);
+        }
+    }
+}
+
 void rg_trial_end(rg_trial *t) {
     rg_solver_free(t->solver);
     rg_case_free(t->input);

@@ -40,6 +40,10 @@ const rg_energy *rg_trial_ledger(rg_trial *t);
 typedef void rg_trial_visit(void *context, const rg_solver *s, size_t slot, const double stress[6]);
 void rg_trial_stresses(const rg_trial *t, rg_trial_visit *visit, void *context);
 
+/* Calls `visit` for each node of the own elements. */
+typedef void rg_trial_visit_node(void *context, const rg_solver *s, size_t slot, int node);
+void rg_trial_nodes(const rg_trial *t, rg_trial_visit_node *visit, void *context);
+
 void rg_trial_end(rg_trial *t);
 
 #endif

@@ -17,7 +17,7 @@ typedef struct {
 
 static void look(beat *b, const rg_energy *e) {
     double value = e->kinetic - e->bulk - e->penalty;
-    if ((value < 0) != (b->value < 0) && e->step > 0) {
+    if ((value < 0) != (b->value < 0)) { /* never at the start, where all energy is kinetic */
         double zero = b->time + (e->time - b->time) * b->value / (b->value - value);
         b->first = b->zeros == 0 ? zero : b->first;
         b->last = zero;
@@ -33,7 +33,7 @@ static double measure_speed(rg_trial *t) {
         look(&b, rg_trial_ledger(t));
     }
     double omega = 0.5 * PI * (b.zeros - 1) / (b.last - b.first);
-    return b.zeros > 1 ? omega * t->theory->mesh.size[2] / PI : NAN;
+    return omega * t->theory->mesh.size[2] / PI; /* not finite with fewer than two zeros */
 }
 
 static double pressure_modulus(const rg_case *c) {
