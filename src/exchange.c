@@ -13,7 +13,7 @@ static int offsets(const int *count, int *at, int ranks) {
 
 rg_exchange *rg_exchange_make(const int *to, size_t count, MPI_Comm comm) {
     rg_exchange *x = RG_NEW(rg_exchange, 1);
-    *x = (rg_exchange){.count = count, .place = RG_NEW(size_t, count + 1), .comm = comm};
+    *x = (rg_exchange){.count = count, .place = RG_NEW(size_t, count), .comm = comm};
     MPI_Comm_size(comm, &x->ranks);
     int **counts[] = {&x->send, &x->send_at, &x->receive, &x->receive_at};
     for (int k = 0; k < 4; k++) {
@@ -39,7 +39,7 @@ static MPI_Datatype record_type(size_t size) {
 }
 
 void rg_exchange_send(const rg_exchange *x, size_t size, const void *records, void *arrived) {
-    char *message = rg_alloc(x->count + 1, size);
+    char *message = rg_alloc(x->count, size);
     for (size_t i = 0; i < x->count; i++) {
         memcpy(message + x->place[i] * size, (const char *)records + i * size, size);
     }
@@ -50,7 +50,7 @@ void rg_exchange_send(const rg_exchange *x, size_t size, const void *records, vo
 }
 
 void rg_exchange_answer(const rg_exchange *x, size_t size, const void *given, void *answers) {
-    char *message = rg_alloc(x->count + 1, size);
+    char *message = rg_alloc(x->count, size);
     MPI_Datatype record = record_type(size);
     MPI_Alltoallv(given, x->receive, x->receive_at, record, message, x->send, x->send_at, record, x->comm);
     MPI_Type_free(&record);
