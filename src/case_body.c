@@ -69,7 +69,7 @@ static void check_mass(const entry *e, const rg_body_input *b) {
 
 static void check_velocity(const entry *e, const rg_body_input *b) {
     const rg_node *velocity = given(e, "velocity");
-    for (int c = 0; c < 3 && velocity != NULL && b->motion == RG_MOTION_FREE; c++) {
+    for (int c = 0; c < 3 && b->motion == RG_MOTION_FREE; c++) {
         if (b->velocity[c] != NULL && rg_expr_uses_time(b->velocity[c])) {
             char key[] = {'v', 'e', 'l', 'o', 'c', 'i', 't', 'y', '.', "xyz"[c], '\0'};
             wrong(e, key, velocity->at, rg_expr_text(b->velocity[c]),

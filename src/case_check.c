@@ -108,17 +108,15 @@ static bool missing(const scan *s, const rg_key *key, const char *path) {
     return false;
 }
 
+/* Of a choice it is the first word, which 0 stands for; of the fields see rg_fields_rule. */
 static void set_default(const rg_key *key, void *base) {
     char *value = (char *)base + key->offset;
     int64_t integer = (int64_t)key->fallback;
-    int word = (int)key->fallback;
     for (int i = 0; i < key->count && key->type == RG_KEY_REAL; i++) {
         memcpy(value + (size_t)i * sizeof(double), &key->fallback, sizeof(double));
     }
     if (key->type == RG_KEY_INTEGER) {
         memcpy(value, &integer, sizeof integer);
-    } else if (key->type != RG_KEY_REAL) {
-        memcpy(value, &word, sizeof word);
     }
 }
 
@@ -269,9 +267,9 @@ static void learn(rg_check *ck, const rg_key *key, const rg_node *node, bool goo
         rg_law_rule(ck, node, good);
     } else if (key->offset == offsetof(rg_case, interface.activation)) {
         rg_activation_rule(ck, node, good);
-    } else if (key->offset == offsetof(rg_case, interface.contact) && node != NULL && good) {
+    } else if (key->offset == offsetof(rg_case, interface.contact) && good) {
         rg_contact_rule(ck, node);
-    } else if (key->offset == offsetof(rg_case, interface.friction) && node != NULL && good) {
+    } else if (key->offset == offsetof(rg_case, interface.friction) && good) {
         rg_friction_rule(ck, node);
     } else if (key->offset == offsetof(rg_case, mass) && good && ck->form) {
         rg_mass_rule(ck, node);

@@ -141,7 +141,7 @@ static const rg_key case_keys[] = {
      .offset_count = offsetof(rg_case, output.times)},
     {.name = "output.probes", .type = RG_KEY_LIST, OPTIONAL, CASE(output.probe), .entry = &rg_probe_table,
      .offset_count = offsetof(rg_case, output.probes)},
-    {.name = "output.fields", .type = RG_KEY_FLAGS, .choice = fields, DEFAULT(RG_FIELDS_COMMON), MAY_CHANGE,
+    {.name = "output.fields", .type = RG_KEY_FLAGS, .choice = fields, DEFAULT(0), MAY_CHANGE,
      CASE(output.fields)},
     {.name = "output.fragments", CHOICE(fragments), DEFAULT(RG_FRAGMENTS_EACH), CASE(output.fragments)},
     {.name = "output.region", .type = RG_KEY_EXPR, OPTIONAL, .no_time = true, CASE(output.region)},
@@ -412,22 +412,13 @@ static size_t last_part(const char *name, size_t length) {
 
 enum { FAR = 1000 };
 
-static size_t difference(size_t a, size_t b) {
-    return a > b ? a - b : b - a;
-}
-
-/* How far `name` is from the known path known[0..m); not below `best` where that is known from the lengths
- * alone. The last part counts most: a key at the wrong place is near, and so is one that begins like a known
- * one (poisson_ratio). */
-static size_t key_distance(const char *name, const char *known, size_t m, size_t best) {
+/* How far `name` is from the known path known[0..m). The last part counts most: a key at the wrong place is
+ * near, and so is one that begins like a known one (poisson_ratio). */
+static size_t key_distance(const char *name, const char *known, size_t m) {
     size_t n = strlen(name), i = last_part(name, n), j = last_part(known, m);
     size_t shorter = n - i < m - j ? n - i : m - j;
     bool begins = shorter >= 3 && strncasecmp(name + i, known + j, shorter) == 0;
-    bool comparable = difference(n, m) < best;
-    if (!comparable && !begins && difference(n - i, m - j) >= best) {
-        return FAR;
-    }
-    size_t whole = comparable ? rg_edit_distance(name, n, known, m) : FAR;
+    size_t whole = rg_edit_distance(name, n, known, m);
     size_t last = begins && n - i != m - j ? 1 : rg_edit_distance(name + i, n - i, known + j, m - j);
     if (last >= n - i && last >= m - j) {
         return FAR; /* nothing in common */
@@ -445,7 +436,7 @@ const char *rg_key_nearest(const rg_key_table *table, const char *name, char *te
         const char *known = table->key[i].name;
         for (size_t end = 1; end <= strlen(known); end++) {
             bool whole = known[end] == '.' || known[end] == '\0';
-            size_t distance = whole ? key_distance(name, known, end, best) : best;
+            size_t distance = whole ? key_distance(name, known, end) : best;
             if (distance < best) {
                 best = distance;
                 snprintf(text, size, "%.*s", (int)end, known);

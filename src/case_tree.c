@@ -8,8 +8,8 @@
 
 char *rg_text_copy(const char *text, size_t size) {
     char *copy = RG_NEW(char, size + 1);
-    if (size > 0) {
-        memcpy(copy, text, size);
+    for (size_t i = 0; i < size; i++) { /* of no bytes, `text` may be NULL */
+        copy[i] = text[i];
     }
     return copy;
 }

@@ -126,27 +126,20 @@ static const char *not_a_text(const rg_node *node) {
     return node->plain && other ? "not a text (put it in quotes to make it one)" : NULL;
 }
 
-/* Position of the node's text among the key's choices, -1 if it is none (reported). */
-static int read_choice(rg_check *ck, const rg_key *key, const rg_node *node, const char *path) {
+/* Position of the node's text among the key's choices. */
+static bool read_choice(rg_check *ck, const rg_key *key, const rg_node *node, const char *path, int *choice) {
     if (node->kind != RG_NODE_SCALAR) {
         rg_value_wrong(ck, key, node, path, NULL, "not one of the allowed words");
-        return -1;
+        return false;
     }
     for (int i = 0; key->choice[i] != NULL; i++) {
         if (strcmp(node->text, key->choice[i]) == 0) {
-            return i;
+            *choice = i;
+            return true;
         }
     }
     rg_value_wrong(ck, key, node, path, rg_nearest(node->text, key->choice), "not one of the allowed words");
-    return -1;
-}
-
-static bool read_enum(rg_check *ck, const rg_key *key, const rg_node *node, const char *path, void *value) {
-    int choice = read_choice(ck, key, node, path);
-    if (choice >= 0) {
-        memcpy(value, &choice, sizeof choice);
-    }
-    return choice >= 0;
+    return false;
 }
 
 static bool read_flags(rg_check *ck, const rg_key *key, const rg_node *node, const char *path,
@@ -159,12 +152,14 @@ static bool read_flags(rg_check *ck, const rg_key *key, const rg_node *node, con
     bool good = true;
     for (int i = 0; i < node->children; i++) {
         char *item = rg_text_format("%s[%d]", path, i);
-        int choice = read_choice(ck, key, &node->child[i], item);
-        unsigned bit = choice < 0 ? 0 : 1U << choice;
-        if ((*flags & bit) != 0) {
+        int choice = 0;
+        bool known = read_choice(ck, key, &node->child[i], item, &choice);
+        unsigned bit = known ? 1U << choice : 0;
+        bool twice = (*flags & bit) != 0;
+        if (twice) {
             rg_value_wrong(ck, key, &node->child[i], item, NULL, "given twice");
         }
-        good = good && choice >= 0 && (*flags & bit) == 0;
+        good = good && known && !twice;
         *flags |= bit;
         rg_free(item);
     }
@@ -172,10 +167,11 @@ static bool read_flags(rg_check *ck, const rg_key *key, const rg_node *node, con
 }
 
 static bool read_text(rg_check *ck, const rg_key *key, const rg_node *node, const char *path, void *value) {
+    int choice = 0;
     rg_key any = *key;
     any.choice = NULL;
     if (key->choice != NULL && ck->usage[RG_GROUP_BOX] != RG_UNUSED) { /* the file's sets are its own */
-        if (read_choice(ck, key, node, path) < 0) {
+        if (!read_choice(ck, key, node, path, &choice)) {
             return false;
         }
     } else if (not_a_text(node) != NULL) {
@@ -290,7 +286,7 @@ bool rg_value_read(rg_check *ck, const rg_key *key, const rg_node *node, const c
     case RG_KEY_INTEGER:
         return read_numbers(ck, key, node, path, value);
     case RG_KEY_CHOICE:
-        return read_enum(ck, key, node, path, value);
+        return read_choice(ck, key, node, path, value);
     case RG_KEY_FLAGS:
         return read_flags(ck, key, node, path, value);
     case RG_KEY_TEXT:

@@ -148,6 +148,12 @@ static const mistake mistakes[] = {
     {"output:\n", "output:\n  fields: [stres, crack, crack]\n",
      ":18:12: output.fields[0]: stres: not one of the allowed words; " FIELDS "; did you mean 'stress'?\n"
      ":18:26: output.fields[2]: crack: given twice; " FIELDS "\n"},
+    {"output:\n", "output:\n  times: [5e-7, x, 1e-6]\n", /* of what is not read no order is asked */
+     ":18:17: output.times[1]: x: not a number; allowed: number >= 0 (s)\n"},
+    {"output:\n", "output:\n  fields: [displacement, damage]\n",
+     ":18:11: output.fields: damage: material.model has no such field\n"},
+    {"output:\n", "output:\n  fields: [damage, crack, crack]\n", /* such a list is not looked at further */
+     ":18:27: output.fields[2]: crack: given twice; " FIELDS "\n"},
     {"output:\n", "output:\n  fields: [crack, regime, damage]\n",
      ":18:11: output.fields: damage: material.model has no such field\n"
      ":18:11: output.fields: regime: material.model has no such field\n"},
@@ -191,11 +197,13 @@ static const mistake mistakes[] = {
      "    - {strength: 1}\n"
      "    - {between: [material, stel]}\n"
      "    - {between: [steel]}\n"
-     "    - {between: steel}\n",
+     "    - {between: steel}\n"
+     "    - {between: [stel, steel, glue]}\n",
      ":12:7: interface.sets[0]: missing where or between; allowed: where, between, or both\n"
      ":13:28: interface.sets[1].between: stel: no such material; " PAIR "; did you mean 'steel'?\n"
      ":14:17: interface.sets[2].between: [steel]: wrong number of entries; " PAIR "\n"
-     ":15:17: interface.sets[3].between: steel: not a list; allowed: list of texts\n"},
+     ":15:17: interface.sets[3].between: steel: not a list; allowed: list of texts\n"
+     ":16:17: interface.sets[4].between: [stel, steel, glue]: wrong number of entries; " PAIR "\n"},
     /* bodies */
     {"time:\n",
      "bodies:\n"
@@ -291,6 +299,8 @@ static const mistake mistakes[] = {
     {"  cells", "cells", ":3:3: not valid YAML: invalid indentation in mapping\n"},
     {"mesh:\n", "mesh: &a\n", ":2:3" SPECIAL},
     {"260e9", "*a", ":6:10" SPECIAL},
+    {"mesh:\n", "q: *a\nmesh:\n",
+     ":1:1: q: unknown key; did you mean 'interface.xu-needleman.q'?\n:1:4" SPECIAL},
     {"time:\n", "  - {set: *a, component: z, velocity: 0}\n  - {set: z-, component: z, velocity: 0}\ntime:\n",
      ":15:11" SPECIAL},
     {"260e9", "\x01", ":6:10: byte 0x01 is not text (UTF-8)\n"},

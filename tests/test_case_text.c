@@ -2,12 +2,16 @@
 #include "case_input.h"
 
 #include <errno.h>
+#include <libfyaml.h>
 #include <math.h>
 
+#include "../src/case_compare.h"
 #include "../src/case_expr.h"
 #include "../src/case_key.h"
 #include "../src/case_tree.h"
+#include "../src/error.h"
 #include "../src/mem.h"
+#include "child.h"
 #include "dice.h"
 
 /* ---- how near words are ---- */
@@ -106,6 +110,7 @@ static void test_nearest_key(void **state) {
         {&rg_case_table, "en", NULL}, /* begins like time.end, but that is too short to tell */
         {&rg_case_table, "end", "time.end"},
         {&rg_case_table, "endd", "time.end"},
+        {&rg_case_table, "end_time", "time.end"}, /* three letters are enough to begin alike */
         {&rg_case_table, "time.ent", "time.end"},
         {&rg_case_table, "output.intervall", "output.interval"},
         {&rg_case_table, "checkpoint.intervall", "output.interval"},
@@ -154,9 +159,25 @@ static void test_sections(void **state) {
     assert_false(rg_key_is_section(&rg_case_table, "mes") || rg_key_is_section(&rg_case_table, "mass"));
     assert_false(rg_key_is_section(&rg_case_table, "mesh.cells"));
     assert_false(rg_key_is_section(&rg_case_table, "eesh"));
+    static const rg_key alone[] = {{.name = "a.b"}, {.name = "c"}, {.name = "d.e"}}; /* in sections of one */
+    static const rg_key_table table = {alone, 3, 0};
+    assert_true(rg_key_is_section(&table, "a") && rg_key_is_section(&table, "d"));
+    assert_false(rg_key_is_section(&table, "c"));
     assert_true(rg_key_find(&rg_case_table, "mesh.file") == &rg_case_table.key[0]);
     assert_string_equal(rg_key_find(&rg_case_table, "checkpoint.keep")->name, "checkpoint.keep");
     assert_null(rg_key_find(&rg_case_table, "checkpoint"));
+}
+
+/* What is not given is the first word of a choice. */
+static void test_default_words(void **state) {
+    (void)state;
+    const rg_key_table *const tables[] = {&rg_case_table, &rg_material_table, &rg_boundary_table,
+                                          &rg_body_table, &rg_probe_table,    &rg_face_set_table};
+    for (size_t t = 0; t < sizeof tables / sizeof *tables; t++) {
+        for (const rg_key *key = tables[t]->key; key < tables[t]->key + tables[t]->keys; key++) {
+            assert_true(key->type != RG_KEY_CHOICE || key->fallback == 0);
+        }
+    }
 }
 
 /* ---- numbers and expressions ---- */
@@ -274,7 +295,10 @@ static void test_wrong_expressions(void **state) {
 
 static void test_texts(void **state) {
     (void)state;
-    char *copy = rg_text_copy("abcdef", 3), *empty = rg_text_copy(NULL, 0);
+    size_t before = rg_alloc_total();
+    char *copy = rg_text_copy("abcdef", 3), *empty = rg_text_copy(NULL, 0), *five = rg_text_format("%05d", 7);
+    assert_int_equal(rg_alloc_total() - before, 3 + 1 + 1 + 5 + 1); /* with room for their ends */
+    rg_free(five);
     char *made = rg_text_format("%s-%d-%.3f", "a long text to be sure", 12, 0.5), text[8] = "ab";
     assert_string_equal(copy, "abc");
     assert_string_equal(empty, "");
@@ -468,8 +492,10 @@ static void test_overrides_of_a_tree(void **state) {
                        "s 4:4 f 4:1  (text)\n"
                        "s 1:1 new 1:1 ~ of new=~\n");
     rg_node_clear(&root);
+    size_t before = rg_alloc_total();
     override(&root, "a=1", ""); /* of a file that could not be read: nobody complains about that again */
     assert_true(root.kind == RG_NODE_BAD && root.children == 0);
+    assert_int_equal(rg_alloc_total(), before);
 }
 
 /* Bytes that are UTF-8 are taken, others told, with the column in characters. */
@@ -584,6 +610,98 @@ static void test_names_of_cases(void **state) {
     rg_case_free(NULL);
 }
 
+/* ---- what libraries refuse ---- */
+
+/* Calls to them come here (-Wl,--wrap). */
+static const char *refused = ""; /* the name of the function that does not do its job */
+
+FILE *__real_open_memstream(char **text, size_t *size);
+FILE *__wrap_open_memstream(char **text, size_t *size);
+FILE *__wrap_open_memstream(char **text, size_t *size) {
+    return strcmp(refused, "open_memstream") == 0 ? NULL : __real_open_memstream(text, size);
+}
+
+int __real_fclose(FILE *file);
+int __wrap_fclose(FILE *file);
+int __wrap_fclose(FILE *file) {
+    int status = __real_fclose(file);
+    return strcmp(refused, "fclose") == 0 ? EOF : status;
+}
+
+struct fy_diag *__real_fy_diag_create(const struct fy_diag_cfg *config);
+struct fy_diag *__wrap_fy_diag_create(const struct fy_diag_cfg *config);
+struct fy_diag *__wrap_fy_diag_create(const struct fy_diag_cfg *config) {
+    return strcmp(refused, "fy_diag_create") == 0 ? NULL : __real_fy_diag_create(config);
+}
+
+struct fy_parser *__real_fy_parser_create(const struct fy_parse_cfg *config);
+struct fy_parser *__wrap_fy_parser_create(const struct fy_parse_cfg *config);
+struct fy_parser *__wrap_fy_parser_create(const struct fy_parse_cfg *config) {
+    return strcmp(refused, "fy_parser_create") == 0 ? NULL : __real_fy_parser_create(config);
+}
+
+int __real_fy_parser_set_string(struct fy_parser *parser, const char *text, size_t size);
+int __wrap_fy_parser_set_string(struct fy_parser *parser, const char *text, size_t size);
+int __wrap_fy_parser_set_string(struct fy_parser *parser, const char *text, size_t size) {
+    return strcmp(refused, "fy_parser_set_string") == 0 ? -1
+                                                        : __real_fy_parser_set_string(parser, text, size);
+}
+
+struct fy_diag_error *__real_fy_diag_errors_iterate(struct fy_diag *diag, void **iterator);
+struct fy_diag_error *__wrap_fy_diag_errors_iterate(struct fy_diag *diag, void **iterator);
+struct fy_diag_error *__wrap_fy_diag_errors_iterate(struct fy_diag *diag, void **iterator) {
+    return strcmp(refused, "fy_diag_errors_iterate") == 0 ? NULL
+                                                          : __real_fy_diag_errors_iterate(diag, iterator);
+}
+
+static void parse_none(void) {
+    rg_problems none = {.file = "f"};
+    rg_node root = {.kind = RG_NODE_BAD};
+    rg_yaml_parse(&none, "a: 1", 4, NULL, &root);
+}
+
+static void add_problem(void) {
+    rg_problems one = {.file = "f"};
+    rg_problem_add(&one, (rg_place){0}, &(rg_subject){0}, "wrong");
+}
+
+static void list_fixed(void) {
+    static rg_case none;
+    rg_case_fixed(&none);
+}
+
+static void test_refusals_of_libraries(void **state) {
+    (void)state;
+    static const struct {
+        void (*job)(void);
+        const char *refused;
+    } jobs[] = {
+        {parse_none, "fy_diag_create"},
+        {parse_none, "fy_parser_create"},
+        {parse_none, "fy_parser_set_string"},
+        {add_problem, "open_memstream"},
+        {add_problem, "fclose"},
+        {list_fixed, "open_memstream"},
+    };
+    char said[1000];
+    for (size_t i = 0; i < sizeof jobs / sizeof *jobs; i++) {
+        refused = jobs[i].refused;
+        int status = run_child(jobs[i].job, said, sizeof said);
+        refused = "";
+        assert_string_equal(said, "rhegma: out of memory\n");
+        assert_int_equal(status, RG_FAILURE);
+    }
+    /* An error of which the parser says nothing is told all the same. */
+    rg_problems all = {.file = "f"};
+    rg_node root = {.kind = RG_NODE_BAD};
+    refused = "fy_diag_errors_iterate";
+    rg_yaml_parse(&all, "a: [1", 5, NULL, &root);
+    refused = "";
+    assert_int_equal(all.count, 1);
+    assert_string_equal(all.problem[0].text, "f:1:1: not valid YAML");
+    rg_problems_flush(&all, stderr);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_edit_distance),
@@ -601,6 +719,8 @@ int main(void) {
         cmocka_unit_test(test_bytes),
         cmocka_unit_test(test_bytes_of_a_file),
         cmocka_unit_test(test_names_of_cases),
+        cmocka_unit_test(test_default_words),
+        cmocka_unit_test(test_refusals_of_libraries),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

@@ -8,6 +8,7 @@
 #include "cohesive_facts.h"
 #include "hash.h"
 #include "mem.h"
+#include "patch.h"
 #include "spectrum.h"
 #include "step_cases.h"
 #include "step_twin.h"
@@ -106,6 +107,12 @@ static void apply(twin *w, const double *q, double *out) {
         out[k] = -w->acceleration[k] / size;
 }
 
+static void hold(const twin *w, const bool *held, double *q) {
+    for (size_t k = 0; held != NULL && k < 3 * RG_NODES * w->elements; k++)
+        if (held[k / (3 * RG_NODES)])
+            q[rg_node_index(w->slot[k / (3 * RG_NODES)], (int)(k / 3) % RG_NODES, (int)k % 3)] = 0;
+}
+
 /* The largest eigenvalue of a tridiagonal matrix and its vector, by multiplication. */
 static double top_of(int n, const double *alpha, const double *beta, double *y) {
     double value = 0, shift = 0;
@@ -129,8 +136,8 @@ static double top_of(int n, const double *alpha, const double *beta, double *y) 
 }
 
 /* Lanczos with every vector kept and every new one made orthogonal to all: the largest eigenvalue and the
- * element with the most of its vector. */
-static double largest_eigenvalue(twin *w, rg_gid *element) {
+ * element with the most of its vector. Elements that are `held` (NULL: none) stay at rest. */
+static double largest_eigenvalue(twin *w, const bool *held, rg_gid *element) {
     size_t values = w->blocks * RG_NODE_BLOCK;
     double *q = RG_NEW(double, (VECTORS + 1) * values), alpha[VECTORS], beta[VECTORS], y[VECTORS], most = 0;
     int n = 0;
@@ -138,12 +145,14 @@ static double largest_eigenvalue(twin *w, rg_gid *element) {
         for (int c = 0; c < 3; c++) /* copies of a shared node alike */
             q[rg_node_index(w->slot[k / RG_NODES], (int)(k % RG_NODES), c)] =
                 rg_hash_uniform(rg_hash(rg_hash(1, w->node[k]), (uint64_t)c)) - 0.5;
+    hold(w, held, q);
     double norm = sqrt(product(w, q, q));
     for (size_t k = 0; k < values; k++)
         q[k] /= norm;
     while (n < VECTORS) {
         double *own = q + (size_t)n * values, *next = own + values;
         apply(w, own, next);
+        hold(w, held, next);
         alpha[n] = product(w, own, next);
         for (int pass = 0; pass < 2; pass++)
             for (int j = 0; j <= n; j++) {
@@ -224,7 +233,7 @@ static double worst_of(const rg_case *c, const rg_mesh *mesh, int *state, rg_gid
             w->law.shape[1] = facts.slope[1] * law.strength / law.opening * stiffest;
         }
         w->heat = NULL;
-        double value = largest_eigenvalue(w, &here);
+        double value = largest_eigenvalue(w, NULL, &here);
         if (value > worst) {
             worst = value;
             *state = k;
@@ -302,6 +311,37 @@ static void check(const variant *v) {
     rg_case_free(c);
 }
 
+/* Elements at the cut of a patch stay at rest: here that which limits the body, and one more, by the first
+ * and by the last of their faces. */
+static void check_cut(void) {
+    const variant v = {"cut", {"mass=lumped", "interface={law: none}"}};
+    rg_case *c = read_subject(&v);
+    rg_mesh *mesh = make_mesh(c);
+    rg_gid worst = -1;
+    twin *w = twin_make(c, mesh);
+    set_faces(w, INTACT, 1);
+    double whole = largest_eigenvalue(w, NULL, &worst);
+    bool *held = RG_NEW(bool, (size_t)mesh->elements);
+    rg_gid other = (worst + 24) % mesh->elements; /* in another block */
+    held[worst] = held[other] = true;
+    mesh->set[4 * worst + 3] = mesh->set[4 * other] = RG_PATCH_CUT;
+    double expected = largest_eigenvalue(w, held, &worst);
+    rg_part *part = rg_part_distribute(rank == 0 ? mesh : NULL, rank == 0 ? 16 : 0, MPI_COMM_WORLD);
+    rg_solver *s = rg_solver_make_from_part(c, part, MPI_COMM_WORLD);
+    rg_spectrum_whole(s);
+    double found = s->omega2 / expected / (1 + MARGIN);
+    report(expected < 0.99 * whole, v.name, "what is held no longer limits");
+    report(found < 1 + 2e-5 && found > 1 - SHORT, v.name, "largest frequency");
+    report(s->limiting == worst && !held[worst], v.name, "the element that limits it");
+    if (rank == 0)
+        printf("# %.6f of the largest eigenvalue, %.3f of that of the whole body\n", found, expected / whole);
+    twin_free(w);
+    rg_free(held);
+    rg_solver_free(s);
+    rg_mesh_free(mesh);
+    rg_case_free(c);
+}
+
 /* The incomplete form is not symmetric while faces hold: the frequency is between what vectors grow by in the
  * mean and at most. */
 static void check_incomplete(void) {
@@ -330,6 +370,7 @@ int main(int argc, char **argv) {
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);
     for (size_t k = 0; k < sizeof subjects / sizeof *subjects; k++)
         check(&subjects[k]);
+    check_cut();
     check_incomplete();
     return finish();
 }

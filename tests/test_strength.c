@@ -6,6 +6,7 @@
 #include <cmocka.h>
 #include <math.h>
 #include <mpi.h>
+#include <omp.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -14,6 +15,7 @@
 #include "../src/mesh_case.h"
 #include "../src/solver.h"
 #include "../src/tile.h"
+#include "child.h"
 
 enum { MOST = 4 };
 
@@ -269,6 +271,42 @@ static void test_sets(void **state) {
     free(f);
 }
 
+/* ---- Sets that are none ---- */
+
+static const char *asked;
+
+static void make(void) {
+    const char *const set[] = {"mesh.cells=[1, 1, 2]", "mesh.size=[1e-3, 1e-3, 2e-3]",
+                               "mesh.origin=[-1e-3, 0, 0]", "mesh.jitter=0", asked};
+    rg_case *c = rg_case_read(RG_SOURCE_ROOT "/bench/cases/spall.yaml", 5, set, stderr);
+    rg_solver_make(c, MPI_COMM_WORLD);
+}
+
+/* The first set, and there the lowest face, where `where` is not finite; that it is 0 elsewhere does not
+ * help. */
+static void test_not_finite(void **state) {
+    (void)state;
+    static const struct {
+        const char *sets, *words;
+    } wrong[] = {
+        {"interface.sets=[{where: 1, energy: 1}, {where: 'abs(nz) > 0.9 ? 1/(x - x) : 0', energy: 2}]",
+         "interface.sets[1].where: abs(nz) > 0.9 ? 1/(x - x) : 0 is not finite at (-0.000666667, "
+         "0.000666667, "
+         "0.001)"},
+        {"interface.sets=[{where: sqrt(-1 - z), energy: 1}, {where: 1/(x - x), energy: 1}]",
+         "interface.sets[0].where: sqrt(-1 - z) is not finite at (-0.000666667, 0.000333333, "
+         "0.000666667)"},
+    };
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+        char said[2000];
+        asked = wrong[i].sets;
+        assert_int_equal(run_child(make, said, sizeof said), 2);
+        if (strstr(said, wrong[i].words) == NULL) {
+            fail_msg("%s: said %s", asked, said);
+        }
+    }
+}
+
 /* A uniform case has no field. */
 static void test_uniform(void **state) {
     (void)state;
@@ -285,8 +323,9 @@ int main(int argc, char **argv) {
         cmocka_unit_test(test_weibull),           cmocka_unit_test(test_seed_and_keep),
         cmocka_unit_test(test_numbers),           cmocka_unit_test(test_formula),
         cmocka_unit_test(test_without_softening), cmocka_unit_test(test_sets),
-        cmocka_unit_test(test_uniform),
+        cmocka_unit_test(test_uniform),           cmocka_unit_test(test_not_finite),
     };
+    omp_set_num_threads(1); /* a child has none of its parent's threads */
     MPI_Init(&argc, &argv);
     int failed = cmocka_run_group_tests(tests, NULL, NULL);
     MPI_Finalize();

@@ -154,7 +154,7 @@ def clauses(code, word):
 
 STATEMENT = re.compile(r"(?!(?:return|case|if|for|while|else|typedef)\b)(?:[^=!<>]+ (?:[-+*/|&^]|<<|>>)?= .*;|[^=]+(?:\+\+|--);|[a-z_]\w*\(.*\);)")
 DECLARATION = re.compile(r"(?:static |const |unsigned |struct )*[A-Za-z_]\w* \*?[A-Za-z_]\w*(?:\[.*?\])*(?: = |;|,)")
-GIVES_BACK = re.compile(r"\w*(?:free|Free|close|Close|destroy|unmap)\w*\(|\(void\)")
+GIVES_BACK = re.compile(r"\w*(?:free|Free|close|Close|destroy|unmap|Release)\w*\(|\(void\)")
 
 
 def dropped_line(code, before, python):
