@@ -159,8 +159,8 @@ bool rg_expr_uses_normal(const rg_expr *e) {
 }
 
 double rg_expr_face_value(const rg_expr *e, const double x[3], const double normal[3]) {
-    if (rg_expr_uses_normal(e)) {
-        memcpy(e->variable + 4, normal, 3 * sizeof *normal);
+    for (int k = 0; k < 3 && e->variable != NULL; k++) {
+        e->variable[4 + k] = normal[k];
     }
     return rg_expr_value(e, x, 0);
 }
@@ -169,7 +169,9 @@ double rg_expr_value(const rg_expr *e, const double x[3], double t) {
     if (!uses_any(e)) {
         return e->constant;
     }
-    memcpy(e->variable, x, 3 * sizeof *x);
+    for (int k = 0; k < 3; k++) {
+        e->variable[k] = x[k];
+    }
     e->variable[3] = t;
     return mupEval(e->parser);
 }

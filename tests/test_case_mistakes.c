@@ -109,6 +109,10 @@ static const mistake mistakes[] = {
      ":13:3: interface.activation: total" BY_FORM
      ":14:14: interface.bilinear.ascent: 0.1: not used, because interface.law is polynomial\n"
      ":15:23: interface.polynomial.alpha: -1: out of range; allowed: number >= 0 and <= 100\n"},
+    /* of a form that is none nothing follows */
+    {"  law: linear\n  strength: 400e6\n  energy: 34\n", "  law: none\n  form: 3\n  activation: total\n",
+     ":11:9: interface.form: 3: not one of the allowed words; allowed: variational, incomplete, intrinsic, "
+     "continuous\n"},
     {"  law: linear\n", "  law: linear\n  form: continuous\n  beta_s: 4\n",
      ":10:8: interface.law: linear: nothing can break, because form continuous has interfaces only on the "
      "faces that interface.faces selects; allowed: with form continuous and no interface.faces: none\n"
@@ -307,6 +311,7 @@ static const mistake mistakes[] = {
     {"260e9", "\xff", ":6:10: byte 0xff is not text (UTF-8)\n"},
     {"260e9", "\"a\\0b\"", ":6:10: a text cannot hold the character NUL\n"},
     {"mesh:\n", "? [a]\n: 3\nmesh:\n", ":1:3: a key must be a single word\n"},
+    {NULL, "@a\n", ":1:1: not valid YAML: plain scalar cannot start with '@'\n"}, /* and not empty either */
     {NULL, "", ":1:1: the file is empty\n"},
     {NULL, "# nothing\n", ":1:1: the file is empty\n"},
     {NULL, "- 1\n", ":1:1: [1]: a case is a mapping of keys\n"},

@@ -107,6 +107,7 @@ static void test_nearest_key(void **state) {
         {&rg_case_table, "veloc", "initial.velocity"},
         {&rg_case_table, "material.poisson_ratio", "material.poisson"},
         {&rg_case_table, "pois", "material.poisson"},
+        {&rg_case_table, "material.pois", "material.poisson"},
         {&rg_case_table, "en", NULL}, /* begins like time.end, but that is too short to tell */
         {&rg_case_table, "end", "time.end"},
         {&rg_case_table, "endd", "time.end"},

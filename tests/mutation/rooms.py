@@ -28,7 +28,7 @@ ROOMS = {
                test_ledger.py test_spall.py test_parallel.py"""),
     "solver": (["src/solver.*", "src/tile.*", "src/constraint.*", "src/body*", "src/law.*", "src/strength.*", "src/pace.*",
                 "src/phases.*", "src/spectrum.*", "src/balance.*", "src/state.*"],
-               """step spectrum body checkpoint pace strength patch material verify case checkpoint_file ledger
+               """step spectrum body checkpoint pace strength patch material verify case checkpoint_file ledger snapshot
                test_invariance.py test_contact.py
                test_friction.py test_viscosity.py test_bodies.py test_output.py test_continuous.py test_ceramic.py
                test_laws.py test_ledger.py test_spall.py test_solids.py test_waves.py test_bimaterials.py
