@@ -203,10 +203,12 @@ static void reserve(rg_h5_file *f, size_t bytes, const char *what) {
 hid_t rg_h5_begin(rg_h5_file *f, hid_t place, const rg_h5_slab *s, const char *unit) {
     hid_t dataset = create_dataset(place, s);
     rg_h5_note(f, dataset >= 0, "create", s->name);
-    bool ok = unit == NULL || rg_h5_put_text(dataset, "unit", unit);
-    ok =
-        (s->columns != 6 || unit == NULL || rg_h5_put_text(dataset, "components", "xx xy xz yy yz zz")) && ok;
-    rg_h5_note(f, ok, "describe", s->name);
+    if (unit != NULL) {
+        rg_h5_note(f, rg_h5_put_text(dataset, "unit", unit), "describe", s->name);
+    }
+    if (unit != NULL && s->columns == 6) {
+        rg_h5_note(f, rg_h5_put_text(dataset, "components", "xx xy xz yy yz zz"), "describe", s->name);
+    }
     if (s->rows > 0) {
         size_t bytes = (size_t)s->rows * (size_t)s->columns * H5Tget_size(s->type);
         reserve(f, bytes + bytes / 64, s->name); /* what does not compress grows a little */
@@ -268,11 +270,18 @@ static hid_t parallel_access(MPI_Comm comm) {
     return access;
 }
 
+/* The texts one after the other; the caller frees it. */
+static char *join(const char *begin, const char *end) {
+    size_t size = strlen(begin) + strlen(end) + 1;
+    char *both = rg_realloc(NULL, size, 1);
+    snprintf(both, size, "%s%s", begin, end);
+    return both;
+}
+
 static void prepare(rg_h5_file *f, const char *path, MPI_Comm comm) {
     *f = (rg_h5_file){.comm = comm, .file = -1, .disk = -1};
     MPI_Comm_rank(comm, &f->rank);
-    f->path = rg_realloc(NULL, strlen(path) + 1, 1);
-    strcpy(f->path, path);
+    f->path = join(path, "");
     f->shown = f->path;
     H5dont_atexit(); /* a rank that ends the run must not wait for others to close the file */
     rg_h5_listen(f->reason);
@@ -284,16 +293,13 @@ static void prepare(rg_h5_file *f, const char *path, MPI_Comm comm) {
 static char *mpi_name(const char *path) {
     const char *io = getenv("OMPI_MCA_io");
     bool romio = io == NULL || strcmp(io, "ompio") != 0;
-    size_t size = strlen(path) + sizeof "ufs:";
-    char *name = rg_realloc(NULL, size, 1);
-    snprintf(name, size, "%s%s", romio && strchr(path, ':') != NULL ? "ufs:" : "", path);
-    return name;
+    return join(romio && strchr(path, ':') != NULL ? "ufs:" : "", path);
 }
 
 /* Why the file could not be created, in the system's words, which MPI-IO keeps to itself. */
 static void tell_reason(rg_h5_file *f) {
     int disk = open(f->part, O_RDWR | O_CREAT, 0666);
-    if (disk < 0) {
+    if (disk == -1) {
         snprintf(f->reason, sizeof f->reason, "%s", strerror(errno));
     } else {
         close(disk);
@@ -302,8 +308,7 @@ static void tell_reason(rg_h5_file *f) {
 
 void rg_h5_create(rg_h5_file *f, const char *path, hsize_t room, MPI_Comm comm) {
     prepare(f, path, comm);
-    f->part = rg_realloc(NULL, strlen(path) + 6, 1);
-    sprintf(f->part, "%s.part", path);
+    f->part = join(path, ".part");
     hid_t access = parallel_access(comm), plan = H5Pcreate(H5P_FILE_CREATE);
     H5Pset_obj_track_times(plan, false);
     if (room > 0) {
@@ -319,7 +324,7 @@ void rg_h5_create(rg_h5_file *f, const char *path, hsize_t room, MPI_Comm comm) 
     }
     rg_h5_agree_on(f, f->file >= 0, f->shown, "create the file", f->reason);
     f->disk = open(f->part, O_RDWR);
-    rg_h5_agree_on(f, f->disk >= 0, f->shown, "open the file", strerror(errno));
+    rg_h5_agree_on(f, f->disk != -1, f->shown, "open the file", strerror(errno));
 }
 
 bool rg_h5_open(rg_h5_file *f, const char *path, MPI_Comm comm) {
@@ -340,7 +345,7 @@ bool rg_h5_all(MPI_Comm comm, bool ok) {
 
 static void release(rg_h5_file *f) {
     rg_h5_deafen();
-    if (f->disk >= 0) {
+    if (f->disk != -1) {
         close(f->disk);
     }
     rg_free(f->path);

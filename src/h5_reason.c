@@ -15,8 +15,9 @@ static herr_t copy_description(unsigned n, const H5E_error2_t *error, void *reas
 }
 
 static herr_t record(hid_t stack, void *reason) {
+    (void)stack; /* the default one */
     if (*(char *)reason == '\0') {
-        H5Ewalk2(stack, H5E_WALK_UPWARD, copy_description, reason);
+        H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, copy_description, reason);
     }
     return 0;
 }

@@ -92,6 +92,31 @@ int MPI_File_write_at(MPI_File file, MPI_Offset offset, const void *data, int co
     return result;
 }
 
+static int64_t largest_read; /* bytes */
+int MPI_File_read_at(MPI_File file, MPI_Offset offset, void *data, int count, MPI_Datatype type,
+                     MPI_Status *status) {
+    int size;
+    MPI_Type_size(type, &size);
+    largest_read = (int64_t)count * size > largest_read ? (int64_t)count * size : largest_read;
+    return PMPI_File_read_at(file, offset, data, count, type, status);
+}
+
+static int together; /* collective writes */
+static bool fail_together;
+int MPI_File_write_at_all(MPI_File file, MPI_Offset offset, const void *data, int count, MPI_Datatype type,
+                          MPI_Status *status) {
+    together++;
+    return fail_together ? MPI_ERR_IO : PMPI_File_write_at_all(file, offset, data, count, type, status);
+}
+
+static bool fail_close;
+herr_t __real_H5Fclose(hid_t file);
+herr_t __wrap_H5Fclose(hid_t file);
+herr_t __wrap_H5Fclose(hid_t file) {
+    herr_t result = __real_H5Fclose(file);
+    return fail_close ? -1 : result;
+}
+
 /* ---- content ---- */
 
 enum { LONG = 100003, COLUMNS = 3 };
@@ -214,8 +239,16 @@ static void test_layout(void) {
     put(&f, f.file, slab_of("tensor", 6, 7, 0), "Pa");
     put(&f, f.file, slab_of("six", 6, 7, 0), NULL);
     hid_t group = rg_h5_group(&f, "group");
+    largest_read = 0;
     report(strcmp(f.group, "/group") == 0, "group", "is the current one");
     put(&f, group, slab_of("plain", 2, LONG, 0), "Pa");
+    int64_t own = slab_of("plain", 2, LONG, 0).count * 16, most = (1 << 20) + 16;
+    report(largest_read == (own < most ? own : most - (1 << 20) % 16), "reading", "goes by pieces");
+    report(!rg_h5_put_attribute(group, "no value", H5T_NATIVE_INT, NULL) &&
+               rg_h5_put_attribute(group, "a", H5T_NATIVE_INT, &(int){7}) &&
+               !rg_h5_put_attribute(group, "a", H5T_NATIVE_INT, &(int){7}) &&
+               rg_h5_put_text(group, "b", "text") && !rg_h5_put_text(group, "b", "text"),
+           "attributes", "that cannot be written are told");
     rg_h5_start_sync(&f);
     H5Gclose(group);
     rg_h5_close(&f);
@@ -247,8 +280,14 @@ static void test_reading(void) {
     report(good, "reading", "gives each rank its rows, or none of another dataset");
     rg_h5_close_read(&f);
     good = !rg_h5_open(&f, in_dir("none.h5"), MPI_COMM_WORLD) && f.reason[0] != '\0' && f.file < 0;
-    report(good, "reading", "tells why it cannot");
     rg_h5_close_read(&f);
+    char *reason = strchr(f.reason, '\0');
+    f.reason[0] = '\0';
+    H5Dopen2(-1, "x", H5P_DEFAULT);
+    report(good && reason > f.reason && f.reason[0] == '\0', "reading", "tells why it cannot, until it ends");
+    char *path = rg_join_path("a/b", "c.h5");
+    report(strcmp(path, "a/b/c.h5") == 0, "path", "is joined");
+    rg_free(path);
     report(rg_h5_all(MPI_COMM_WORLD, true) && !rg_h5_all(MPI_COMM_WORLD, rank != ranks - 1) &&
                !rg_h5_all(MPI_COMM_WORLD, rank != 0),
            "ranks", "agree only if all do");
@@ -280,11 +319,25 @@ static void create(const char *name) {
     rg_h5_create(&broken, in_dir(name), 0, MPI_COMM_SELF);
 }
 
-/* A failure said as "path: cannot words", and the unfinished file gone. */
+/* What a run that ended left open, which HDF5 would not close well. */
+static void close_all(void) {
+    hid_t left[16];
+    ssize_t n = H5Fget_obj_ids(H5F_OBJ_ALL, H5F_OBJ_DATASET | H5F_OBJ_GROUP, 16, left);
+    for (ssize_t i = 0; i < n; i++) {
+        H5Oclose(left[i]);
+    }
+    n = H5Fget_obj_ids(H5F_OBJ_ALL, H5F_OBJ_FILE, 16, left);
+    for (ssize_t i = 0; i < n; i++) {
+        H5Fclose(left[i]);
+    }
+}
+
+/* A failure said as "path: cannot words" (of HDF5's own, which differ, the beginning), and the unfinished
+ * file gone. */
 static void end_said(const char *path, const char *words) {
     char expected[600];
     snprintf(expected, sizeof expected, "%s: cannot %s", in_dir(path), words);
-    bool good = strcmp(said, expected) == 0;
+    bool good = strncmp(said, expected, strlen(expected)) == 0;
     if (!good) {
         printf("# %s\n# %s\n", said, expected);
     }
@@ -292,6 +345,8 @@ static void end_said(const char *path, const char *words) {
     good = good && access(in_dir(expected), F_OK) != 0;
     remove(in_dir(expected));
     spoil = -1;
+    fail_together = fail_close = false;
+    close_all();
     sync_error = 0;
     room = 1e12;
     memset(&reserving, 0, sizeof reserving);
@@ -338,17 +393,33 @@ static void test_failures(void) {
          put_and_close(10));
     ENDS("f", "write /g/b: No space left on device", create("f"); reserving.error[1] = EINTR;
          reserving.error[2] = EINTR; reserving.error[3] = ENOSPC; put_and_close(10));
+    static hid_t z;
+    static double zero[10 * COLUMNS];
+    static rg_h5_slab s;
+    s = rows_of("z", 10, 4);
     ENDS("f", "write /z: No space left on device", create("f"); reserving.error[0] = ENOSPC;
-         put(&broken, broken.file, rows_of("z", 10, 4), NULL));
+         z = rg_h5_begin(&broken, broken.file, &s, NULL); together = 0; rg_h5_put(&broken, z, &s, zero));
+    bool stopped = together == 0;
+    ENDS("f", "write /z: ", create("f"); z = rg_h5_begin(&broken, broken.file, &s, NULL); largest_read = 0;
+         fail_together = true; rg_h5_put(&broken, z, &s, zero));
+    stopped = stopped && together > 0 && largest_read == 0;
+    failures += !stopped;
+    printf("%s %d - failure: nothing is done together after one\n", stopped ? "ok" : "not ok", ++number);
+    ENDS("f", "create /g/a: ", create("f"); hid_t g = rg_h5_group(&broken, "g");
+         put(&broken, g, rows_of("a", 9, 0), "m"); put(&broken, g, rows_of("a", 9, 0), "m");
+         rg_h5_agree(&broken));
+    ENDS("f", "create /g: ", create("f"); rg_h5_group(&broken, "g"); rg_h5_group(&broken, "g");
+         rg_h5_agree(&broken));
+    ENDS("f", "close the file: ", create("f"); fail_close = true; put_and_close(1));
     ENDS("f", "bring the file to the disk: Input/output error", create("f"); put_and_close(1);
          sync_error = EIO; rg_h5_finish(&broken, true));
     mkdir(in_dir("d"), 0777);
     ENDS("d", "name the file: Is a directory", create("d"); put_and_close(1); rg_h5_finish(&broken, true));
     rmdir(in_dir("d"));
     ENDS("no/f", "create the file: No such file or directory", create("no/f"));
-    ENDS("name", "do: reason", create("f"); broken.shown = in_dir("name");
+    ENDS("name", "d: reason", create("f"); broken.shown = in_dir("name");
          rg_h5_note(&broken, true, "pass", "x"); rg_h5_note(&broken, false, "do", NULL);
-         broken.failure[2] = '\0'; rg_h5_note(&broken, false, "redo", "y");
+         broken.failure[1] = '\0'; rg_h5_note(&broken, false, "redo", "y");
          snprintf(broken.reason, sizeof broken.reason, "reason"); rg_h5_agree(&broken));
     rg_h5_file none = {.comm = MPI_COMM_SELF};
     ENDS("x", "verb: why", room = 0; rg_h5_agree_on(&none, true, "", "", "");

@@ -200,6 +200,7 @@ static void test_steps_as_interval(void **state) {
         assert_true(close_to(t.time[i], (double)step[i] * dt) && close_to(time[i], t.time[i]));
     }
     assert_true(summary("steps") == 10 && summary("dt_last") == dt && close_to(summary("time_end"), 10 * dt));
+    assert_non_null(strstr(read_all("out/case.yaml"), "steps: 10\n"));
     assert_true(summary("restarted_from_step") == 0 && summary("partitions") == 1 &&
                 summary("checkpoints") == 0);
     assert_true(summary("wall_s") > 0 && summary("output_s") > 0 && summary("output_s") < summary("wall_s"));
@@ -367,6 +368,7 @@ static void test_restart(void **state) {
         }
     }
     assert_true(summary("steps") == 11 && summary("restarted_from_step") == 7);
+    assert_non_null(strstr(read_all("out/case.yaml"), "steps: 11\n"));
     assert_true(summary("energy_error_rel") == worst);
     restart(RG_OK); /* again: nothing is left */
     assert_non_null(
