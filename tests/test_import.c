@@ -12,6 +12,7 @@
 
 #include "../src/error.h"
 #include "../src/import.h"
+#include "../src/mem.h"
 #include "mesh_text.h"
 
 static char *const names[] = {(char[]){"top"}, (char[]){"side"}};
@@ -189,12 +190,28 @@ static void test_faces(void **state) {
         "rhegma: pair: 7 and 9 are the same face, in surface sets 'top' and 'side'; it can be in one only\n");
 }
 
+/* A mesh takes as much memory as its arrays have items, and gives all of it back. */
+static void test_memory(void **state) {
+    (void)state;
+    size_t before = rg_alloc_total();
+    rg_import m = make_pair();
+    rg_import_add_face(&m, 7, (const size_t[]){40, 10, 20}, 1);
+    rg_mesh *mesh = rg_import_finish(&m, names);
+    enum { VERTICES = 5, ELEMENTS = 2, FACES = 1 };
+    assert_int_equal(rg_alloc_total() - before,
+                     sizeof *mesh + 3 * VERTICES * sizeof *mesh->x +
+                         ELEMENTS * (4 * (sizeof *mesh->corner + sizeof *mesh->neighbour +
+                                          sizeof *mesh->face + sizeof *mesh->set) +
+                                     sizeof *mesh->region + sizeof *mesh->original) +
+                         (3 * FACES + 1) * sizeof *mesh->inner);
+    rg_mesh_free(mesh);
+    assert_int_equal(rg_alloc_total(), before);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_turns),
-        cmocka_unit_test(test_nothing),
-        cmocka_unit_test(test_middles),
-        cmocka_unit_test(test_faces),
+        cmocka_unit_test(test_turns), cmocka_unit_test(test_nothing), cmocka_unit_test(test_middles),
+        cmocka_unit_test(test_faces), cmocka_unit_test(test_memory),
     };
     return cmocka_run_group_tests_name("import", tests, NULL, NULL);
 }
