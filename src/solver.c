@@ -46,23 +46,26 @@ static void allocate_fields(rg_solver *s) {
 }
 
 static void place_tile(rg_solver *s, const rg_tile *t) {
-    size_t at = t->begin * RG_NODE_BLOCK, bytes = rg_tile_eblocks(t) * RG_NODE_BLOCK * sizeof *s->u;
-    size_t seams = rg_tile_seams(t) * RG_LANES * sizeof *s->tractions;
-    size_t history = s->history_stride;
-    memset(s->u + at, 0, bytes);
-    memset(s->velocity + at, 0, bytes);
-    if (s->acceleration != NULL) {
-        memset(s->acceleration + at, 0, bytes);
-    }
-    if (s->heat != NULL) {
-        memset(s->heat + t->begin * RG_LANES, 0, rg_tile_eblocks(t) * RG_LANES * sizeof *s->heat);
-    }
-    if (history > 0) {
-        memset(s->history + t->begin * history, 0, rg_tile_eblocks(t) * history * sizeof *s->history);
-    }
-    memset(s->tractions + t->row * RG_SEAM_ROW, 0, seams * RG_SEAM_ROW);
-    for (int k = 0; k < 2; k++) {
-        memset(s->rows[k] + t->row * RG_TRACE_ROW, 0, seams * RG_TRACE_ROW);
+    const size_t nodal = sizeof(rg_real[RG_NODE_BLOCK]), trace = sizeof(rg_real[RG_TRACE_ROW]);
+    const size_t end = t->row + rg_tile_seams(t) * RG_LANES;
+    const struct {
+        void *array;              /* NULL: there is no such */
+        size_t bytes, begin, end; /* of an item; the tile's items */
+    } part[] = {
+        {s->u, nodal, t->begin, t->end},
+        {s->velocity, nodal, t->begin, t->end},
+        {s->acceleration, nodal, t->begin, t->end},
+        {s->heat, sizeof(double[RG_LANES]), t->begin, t->end},
+        {s->history, s->history_stride * sizeof *s->history, t->begin, t->end},
+        {s->tractions, sizeof(rg_real[RG_SEAM_ROW]), t->row, end},
+        {s->rows[0], trace, t->row, end},
+        {s->rows[1], trace, t->row, end},
+    };
+    for (size_t i = 0; i < sizeof part / sizeof *part; i++) {
+        if (part[i].array != NULL) {
+            memset((char *)part[i].array + part[i].begin * part[i].bytes, 0,
+                   (part[i].end - part[i].begin) * part[i].bytes);
+        }
     }
 }
 

@@ -71,6 +71,7 @@ typedef struct {
     double error[KINDS], scale[KINDS];
     bool warned;        /* of nodes that are not where they are placed, and only of them */
     bool accounted;     /* the ledger's error, and its worst */
+    bool resumed;       /* what follows from the broken points is found again */
     int masks;          /* interfaces whose bits differ */
     int displaced;      /* nodes that are not quite where they are to be */
     int bits, energies; /* steps after which the state is not that of the lone solver, or its energies */
@@ -447,6 +448,21 @@ static void note_step(record *r, rg_solver *s, const twin *w) {
     compare_bodies(r, s, w);
 }
 
+/* Whether which faces have broken points, and which elements lie beside them, is made anew of these points.
+ */
+static bool resumes(rg_solver *s) {
+    size_t faces = s->domain->iblocks, elements = s->domain->blocks;
+    uint8_t *was = RG_NEW(uint8_t, faces + elements);
+    memcpy(was, s->active, faces);
+    memcpy(was + faces, s->cracked, elements);
+    memset(s->active, 1, faces);
+    memset(s->cracked, 1, elements);
+    rg_solver_resume(s);
+    bool good = memcmp(was, s->active, faces) == 0 && memcmp(was + faces, s->cracked, elements) == 0;
+    rg_free(was);
+    return good;
+}
+
 static record follow(const rg_case *c, const rg_mesh *mesh, bool suddenly) {
     record r = {.masks = 0};
     rg_solver *s = make_solver(c, mesh, MPI_COMM_WORLD);
@@ -483,6 +499,7 @@ static record follow(const rg_case *c, const rg_mesh *mesh, bool suddenly) {
         compare_places(&r, s, w);
     }
     r.accounted = account_of.good;
+    r.resumed = resumes(s);
     double first = twin_first_fracture(w), found = rg_first_fracture(s);
     if (isfinite(first) || isfinite(found))
         note(&r, FIRST, found, first);
@@ -518,6 +535,7 @@ static void judge(const variant *v, const record *r) {
     report(r->displaced == 0, v->name, "prescribed places");
     report(r->warned, v->name, "what is said of them");
     report(r->accounted, v->name, "error of the ledger");
+    report(r->resumed, v->name, "what is made anew of broken points");
     report(r->bits == 0, v->name, "the same bits on one rank with three threads");
     report(r->energies == 0, v->name, "the same energies there");
     bool none = v->override[0] != NULL && strstr(v->override[0], "law: none") != NULL;
