@@ -156,12 +156,12 @@ static void fill_elements(const rg_import *m, const rg_gid *vertex, rg_mesh *mes
     mesh->set = RG_NEW(int8_t, 4 * count);
     mesh->region = RG_NEW(int8_t, count);
     mesh->original = RG_NEW(rg_gid, count);
-    memset(mesh->set, -1, 4 * count);
     memcpy(mesh->region, m->region, count * sizeof *m->region);
     memcpy(mesh->original, m->name, count * sizeof *m->name);
     for (size_t e = 0; e < count; e++) {
         for (size_t i = 0; i < 4; i++) {
             mesh->corner[4 * e + i] = vertex[m->corner[4 * e + i]];
+            mesh->set[4 * e + i] = -1;
         }
         qsort(mesh->corner + 4 * e, 4, sizeof *mesh->corner, ascending);
     }
@@ -232,7 +232,8 @@ struct tally {
 /* One group of equal triangles: the named ones come first, then the unnamed ones, then the faces. */
 static void mark_group(const rg_import *m, const struct triangle *t, size_t count, char *const set_name[],
                        rg_mesh *mesh, struct tally *tally) {
-    size_t names = 0, triangles = 0;
+    bool named = t[0].set >= 0;
+    size_t triangles = 0;
     for (size_t i = 0; i < count; i++) {
         if (t[i].set >= 0 && t[i].set != t[0].set) {
             rg_fatal(RG_USAGE,
@@ -240,13 +241,12 @@ static void mark_group(const rg_import *m, const struct triangle *t, size_t coun
                      " are the same face, in surface sets '%s' and '%s'; it can be in one only",
                      m->path, t[0].name, t[i].name, set_name[t[0].set], set_name[t[i].set]);
         }
-        names += t[i].set >= 0;
         triangles += t[i].set != FACE;
     }
     size_t faces = count - triangles;
-    tally->inside += names > 0 && faces > 1;
-    tally->nowhere += names > 0 && faces == 0;
-    if (names > 0 && faces == 1) {
+    tally->inside += named && faces > 1;
+    tally->nowhere += named && faces == 0;
+    if (named && faces == 1) {
         mesh->set[t[triangles].name] = (int8_t)t[0].set;
     }
     if (triangles > 0 && faces > 1) {
@@ -319,9 +319,11 @@ rg_mesh *rg_import_finish(rg_import *m, char *const set_name[]) {
     rg_free(vertex);
     rg_free(order);
     rg_gid_map_free(&m->row);
-    void *blocks[] = {m->x, m->number, m->corner, m->name, m->region, m->face};
-    for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) {
-        rg_free(blocks[i]);
-    }
+    rg_free(m->x);
+    rg_free(m->number);
+    rg_free(m->corner);
+    rg_free(m->name);
+    rg_free(m->region);
+    rg_free(m->face);
     return mesh;
 }

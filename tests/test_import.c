@@ -183,11 +183,11 @@ static void test_faces(void **state) {
         2, two, RG_USAGE,
         LEFT
         "rhegma: pair: 7 and 9 are the same face, in surface sets 'top' and 'side'; it can be in one only\n");
-    const rg_import_face inside[] = {{{40, 30, 20}, 9, 1}, {{20, 30, 40}, 7, 0}};
+    const rg_import_face inside[] = {{{40, 30, 20}, 7, 1}, {{20, 30, 40}, 9, 0}};
     expect_faces(
         2, inside, RG_USAGE,
         LEFT
-        "rhegma: pair: 7 and 9 are the same face, in surface sets 'top' and 'side'; it can be in one only\n");
+        "rhegma: pair: 7 and 9 are the same face, in surface sets 'side' and 'top'; it can be in one only\n");
 }
 
 /* A mesh takes as much memory as its arrays have items, and gives all of it back. */

@@ -120,6 +120,8 @@ static void test_line_mistakes(void **state) {
         {"*INSTANCE, NAME=a\n1, 0, 0\n", ":2: *INSTANCE that is moved: give the part in its own coordinates"},
         {"*NODE\n*INCLUDE, INPUT=b.inp\n", ":2: *INCLUDE: put everything into one file"},
         {NODES SOLIDS ONE "*SOLID SECTION, ELSET=a\n*HEADING\n", ":9: no set of elements 'a' so far"},
+        {NODES SOLIDS ONE "*ELSET, ELSET=b\n1\n*SOLID SECTION, ELSET=a\n*HEADING\n",
+         ":11: no set of elements 'a' so far"},
         {NODES SOLIDS ONE "*SURFACE, NAME=s\n2, S1\n",
          ": *SURFACE, NAME=s: element 2 is not there or has no such face"},
         {NODES SOLIDS ONE "*SURFACE, NAME=s\n1, SPOS\n",
@@ -247,6 +249,9 @@ static void test_volume_sets(void **state) {
          NULL},
         {"*ELEMENT, TYPE=C3D4, ELSET=L\n" ONE TWO "*ELSET, ELSET=s\n1\n*SOLID SECTION, MATERIAL=s\n1.\n", "s",
          "L"},
+        /* the same name in parts, and of both kinds, behind other sets */
+        {"*ELEMENT, TYPE=C3D4, ELSET=L\n" ONE TWO "*ELSET, ELSET=s\n1\n*ELSET, ELSET=s\n1, 2\n", "s", "s"},
+        {"*ELEMENT, TYPE=C3D4, ELSET=L\n" ONE TWO "*ELSET, ELSET=s\n1\n*ELSET, ELSET=L\n2\n", "s", "L"},
         {"*ELEMENT, TYPE=C3D4, ELSET = \"L M\"\n" ONE TWO, "L M", "L M"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
@@ -278,6 +283,15 @@ static void test_surface_sets(void **state) {
     expect(NODES "*ELEMENT, TYPE=C3D4, ELSET=p\n" ONE "*ELEMENT, TYPE=C3D4, ELSET=q\n" TWO
                  "*SURFACE, NAME=a\np, S1\n*SURFACE, NAME=b\nq, S4\nP, S2\n",
            X5 "e 1: 0 1 2 3 in p, b at 2, a at 3\ne 2: 1 2 3 4 in q, b at 1\n");
+    expect(NODES "*ELEMENT, TYPE=C3D4, ELSET=p\n" ONE TWO "*SURFACE, NAME=a\np, S2\n",
+           X5 "e 1: 0 1 2 3 in p, a at 2\ne 2: 1 2 3 4 in p, a at 2\n");
+    /* A name is one set, however often it comes. */
+    write_input(NODES SOLIDS ONE TWO
+                "*SURFACE, NAME=a\n1, S1\n*SURFACE, NAME=b\n1, S2\n*SURFACE, NAME=b\n2, S2\n"
+                "*SURFACE, NAME=a\n2, S3\n");
+    rg_mesh *mesh = rg_inp_read("a.inp", 1);
+    assert_int_equal(mesh->sets, 2);
+    rg_mesh_free(mesh);
     expect_refused(NODES SOLIDS ONE TWO "*SURFACE, NAME=a\n1, S1\nnix, S1\n*HEADING\n",
                    ":12: no set of elements 'nix' so far");
     expect(NODES SOLIDS ONE TWO "*SURFACE, NAME=a, TYPE=NODE\n1, x\n*SURFACE, NAME=b\n1, S1\n",
