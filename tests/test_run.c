@@ -20,6 +20,8 @@
 
 #include "child.h"
 #include "error.h"
+#include "files.h"
+#include "fragment_table.h"
 #include "interrupt.h"
 #include "run.h"
 
@@ -40,12 +42,42 @@ static int set_up(void **state) {
 
 static int clear(void **state) {
     (void)state;
-    return system("rm -rf out") != 0;
+    return system("rm -rf out held looks") != 0;
 }
 
 static int tear_down(void **state) {
     (void)state;
     return system("rm -rf stdout") != 0 || chdir("/") != 0 || rmdir(directory) != 0;
+}
+
+/* ---- calls that leave a mark: "held" once the results are, "looks" a byte for each look at fragments ----
+ */
+
+static void mark(const char *name, char byte) {
+    FILE *f = fopen(name, "a");
+    fputc(byte, f);
+    fclose(f);
+}
+
+void __real_rg_csv_hold(const rg_csv *t);
+void __wrap_rg_csv_hold(const rg_csv *t);
+void __wrap_rg_csv_hold(const rg_csv *t) {
+    __real_rg_csv_hold(t);
+    mark("held", '+');
+}
+
+static bool blind; /* nobody looks */
+bool __wrap_rg_fragment_table_looks(const rg_fragment_table *t);
+bool __wrap_rg_fragment_table_looks(const rg_fragment_table *t) {
+    (void)t;
+    return !blind;
+}
+
+void __wrap_rg_fragment_table_look(rg_fragment_table *t, const rg_solver *s, const rg_fragment_parts *p);
+void __wrap_rg_fragment_table_look(rg_fragment_table *t, const rg_solver *s, const rg_fragment_parts *p) {
+    (void)t;
+    (void)s;
+    mark("looks", p != NULL ? '+' : '-');
 }
 
 /* ---- a run ---- */
@@ -77,8 +109,12 @@ static void go(void) {
     _exit(status);
 }
 
+static double elapsed; /* in the last run (s) */
+
 static void expect_status(int status) {
+    double begin = MPI_Wtime();
     int found = run_child(go, said, sizeof said);
+    elapsed = MPI_Wtime() - begin;
     if (found != status) {
         fail_msg("status %d, not %d: %s", found, status, said);
     }
@@ -112,15 +148,15 @@ static table read_energy(void) {
     assert_non_null(f);
     assert_non_null(fgets(line, sizeof line, f));
     while (fgets(line, sizeof line, f) != NULL && t.rows < MOST) {
-        double column[14];
+        double column[15];
         char *at = line;
-        for (int k = 0; k < 14; k++) {
+        for (int k = 0; k < 15; k++) {
             column[k] = strtod(at, &at);
             at++;
         }
         t.step[t.rows] = (int64_t)column[0];
         t.time[t.rows] = column[1];
-        t.total[t.rows] = column[13];
+        t.total[t.rows] = column[14];
         t.rows++;
     }
     fclose(f);
@@ -206,6 +242,9 @@ static void test_steps_as_interval(void **state) {
     assert_true(summary("wall_s") > 0 && summary("output_s") > 0 && summary("output_s") < summary("wall_s"));
     assert_true(summary("setup_s") > 0 && summary("setup_s") < 60 && summary("wall_s") < 60);
     assert_int_equal(count_in("out/checkpoints", ".h5"), 0);
+    assert_string_equal(read_all("held"), "+");
+    assert_string_equal(read_all("looks"), "++++");
+    assert_true(summary("setup_s") + summary("wall_s") < elapsed); /* each moment counts once */
     /* half the critical step, as time.safety says */
     assert_true(fabs(dt / summary("dt_critical") - 0.5) < 1e-12);
 }
@@ -303,21 +342,44 @@ static void test_energy_limit(void **state) {
     assert_string_equal(printed, "");
 }
 
+/* The state that no step leaves has its outputs, whole, whether or not one was due: its energy is that of the
+ * start. From half the step on elements may turn inside out, and each step is looked at before the next. */
 static void test_collapse(void **state) {
     (void)state;
-    RUN(RG_FAILURE, "time.steps=200", "interface={law: none}", "initial.velocity.z=-20000*z/2e-3",
-        "time.collapse=0.8", "output.energy_limit=1e9", "output.interval=1000");
-    assert_non_null(strstr(said, "rhegma: stopped: the time step collapsed: "));
-    assert_non_null(strstr(said, " s, below 0.8 (time.collapse) of the "));
-    double next = strtod(strstr(said, "collapsed: ") + strlen("collapsed: "), NULL);
-    double rest = strtod(strstr(said, "of the ") + strlen("of the "), NULL);
-    assert_true(fabs(rest / summary("dt_first") - 1) < 5e-3 && next < 0.8 * rest && next > 0.6 * rest);
-    table t = read_energy();
-    double time[MOST];
-    assert_true(t.rows == 2 && t.step[0] == 0 && t.step[1] > 2 && t.step[1] < 200);
-    assert_int_equal(frames(time), 2);
-    assert_true(close_to(time[1], t.time[1]));
-    assert_true(summary("steps") == (double)t.step[1]);
+    static const struct {
+        double least;
+        const char *interval, *collapse;
+        double energy; /* change of it, relative, at 2 to 3 times what is found */
+    } known[] = {{0.8, "output.interval=1000", "time.collapse=0.8", 2.5e-5},
+                 {0.8, "output.interval=1", "time.collapse=0.8", 9e-5},
+                 {0.4, "output.interval=1000", "time.collapse=0.4", 2.5e-4},
+                 {0.4, "output.interval=1", "time.collapse=0.4", 2.5e-4}};
+    for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
+        double least = known[i].least;
+        bool each = i % 2 == 1;
+        char words[64];
+        RUN(RG_FAILURE, "time.steps=200", "interface={law: none}", "initial.velocity.z=-20000*z/2e-3",
+            known[i].collapse, "output.energy_limit=1e9", known[i].interval);
+        assert_non_null(strstr(said, "rhegma: stopped: the time step collapsed: "));
+        snprintf(words, sizeof words, " s, below %g (time.collapse) of the ", least);
+        assert_non_null(strstr(said, words));
+        double next = strtod(strstr(said, "collapsed: ") + strlen("collapsed: "), NULL);
+        double rest = strtod(strstr(said, "of the ") + strlen("of the "), NULL);
+        assert_true(fabs(rest / summary("dt_first") - 1) < 5e-3 && next < least * rest &&
+                    next > (least - 0.2) * rest);
+        table t = read_energy();
+        double time[MOST];
+        int last = t.rows - 1;
+        assert_true(t.step[0] == 0 && t.step[last] > 2 && t.step[last] < 200);
+        assert_true(each ? t.step[last] == last : last == 1);
+        assert_int_equal(frames(time), t.rows);
+        assert_true(close_to(time[last], t.time[last]));
+        assert_true(summary("steps") == (double)t.step[last]);
+        assert_true(fabs(t.total[last] / t.total[0] - 1) < known[i].energy);
+        snprintf(words, sizeof words, "; last good output at %.6g s\n", t.time[last - 1]);
+        assert_non_null(strstr(said, words));
+        clear(NULL);
+    }
 }
 
 static void test_not_finite(void **state) {
@@ -358,6 +420,7 @@ static void test_restart(void **state) {
     job.options.quiet = false;
     restart(RG_OK);
     assert_non_null(strstr(printed, "goes on from step 7, time "));
+    assert_string_equal(read_all("held"), "++");
     /* the run that stopped at step 7 had a row for that */
     const char *found = read_all("out/energy.csv");
     for (const char *line = whole; *line != '\0'; line = strchr(line, '\n') + 1) {
@@ -457,8 +520,13 @@ static void test_fragments(void **state) {
             fclose(f);
         }
         assert_int_equal(found, lines[i]);
+        assert_string_equal(read_all("looks"), "+++"); /* for which they are found, table or not */
         clear(NULL);
     }
+    blind = true; /* a field of fragments finds them, too */
+    RUN(RG_OK, "time.steps=6", "output.interval=3", "output.fragments=none", "output.fields=[fragment]");
+    blind = false;
+    assert_int_not_equal(access("looks", F_OK), 0);
 }
 
 /* A new interval on a restart: outputs are due at its multiples. (The row of the last state goes.) */
