@@ -125,15 +125,11 @@ static hid_t create_dataset(hid_t place, const rg_h5_slab *s) {
     return dataset;
 }
 
-/* Rows [first, first + count) of the dataset. The caller closes the result. */
+/* Rows [first, first + count) of the dataset, or none of it. The caller closes the result. */
 static hid_t select_rows(hid_t dataset, int columns, int64_t first, int64_t count) {
     hid_t space = H5Dget_space(dataset);
-    if (count == 0) {
-        H5Sselect_none(space);
-    } else {
-        H5Sselect_hyperslab(space, H5S_SELECT_SET, (hsize_t[]){(hsize_t)first, 0}, NULL,
-                            (hsize_t[]){(hsize_t)count, (hsize_t)columns}, NULL);
-    }
+    H5Sselect_hyperslab(space, H5S_SELECT_SET, (hsize_t[]){(hsize_t)first, 0}, NULL,
+                        (hsize_t[]){(hsize_t)count, (hsize_t)columns}, NULL);
     return space;
 }
 

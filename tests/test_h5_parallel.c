@@ -348,7 +348,7 @@ static void end_said(const char *path, const char *words) {
     fail_together = fail_close = false;
     close_all();
     sync_error = 0;
-    room = 1e12;
+    room = 2e6;
     memset(&reserving, 0, sizeof reserving);
     if (!good) {
         failures++;
@@ -423,7 +423,7 @@ static void test_failures(void) {
          snprintf(broken.reason, sizeof broken.reason, "reason"); rg_h5_agree(&broken));
     rg_h5_file none = {.comm = MPI_COMM_SELF};
     ENDS("x", "verb: why", room = 0; rg_h5_agree_on(&none, true, "", "", "");
-         snprintf(said, sizeof said, "%s", "went on"); room = 1e12;
+         snprintf(said, sizeof said, "%s", "went on"); room = 2e6;
          rg_h5_agree_on(&none, false, in_dir("x"), "verb", "why"));
     /* the folder is asked how full it is, of a name alone the current one */
     ENDS("x", "verb: why", rg_h5_agree_on(&none, false, in_dir("x"), "verb", "why"));
@@ -481,7 +481,7 @@ int main(int argc, char **argv) {
     }
     MPI_Bcast(dir, sizeof dir, MPI_CHAR, 0, MPI_COMM_WORLD);
     spoil = -1;
-    room = 1e12;
+    room = 2e6;
     test_layout();
     test_reading();
     test_who_tells();
