@@ -206,6 +206,36 @@ static void test_velocity(void **state) {
            NULL, "block: bodies: velocity.z of a: 1/t is not finite at t = 0 s");
 }
 
+/* A mesh in which the side "x+" has another name. */
+static void make_without_side(void) {
+    rg_case *c = rg_case_read_text("block", block, sizeof block - 1, 1, asked, stderr);
+    rg_mesh *mesh = rg_mesh_of_case(c);
+    for (int s = 0; s < mesh->sets; s++) {
+        mesh->set_name[s][0] = strcmp(mesh->set_name[s], "x+") == 0 ? 'q' : mesh->set_name[s][0];
+    }
+    rg_solver_make_from_part(c, rg_part_distribute(mesh, 8, MPI_COMM_WORLD), MPI_COMM_WORLD);
+}
+
+static void test_unknown_sides(void **state) {
+    (void)state;
+    static const char *const cases[][2] = {
+        {"bodies=[{name: a, shape: plane, motion: free, at: [0, 0, -1], normal: [0, 0, 1], mass: 1, faces: "
+         "[x-, x+]}]",
+         "rhegma: block: bodies[0].faces[1]: the mesh has no set named 'x+'\n"},
+        {"boundary=[{set: y+, component: x, velocity: 0}, {set: x+, component: x, velocity: 0}]",
+         "rhegma: boundary: the mesh has no set named 'x+'\n"},
+        {"boundary=[{set: x-, component: x, velocity: 0}]", ""},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char said[2000];
+        asked[0] = cases[i][0];
+        assert_int_equal(run_child(make_without_side, said, sizeof said), cases[i][1][0] != '\0' ? 2 : 0);
+        if (strncmp(said, cases[i][1], strlen(cases[i][1])) != 0) {
+            fail_msg("%s: said %s", asked[0], said);
+        }
+    }
+}
+
 int main(int argc, char **argv) {
     omp_set_num_threads(1); /* a child has none of its parent's threads */
     MPI_Init(&argc, &argv);
@@ -213,6 +243,7 @@ int main(int argc, char **argv) {
         cmocka_unit_test(test_omega2),
         cmocka_unit_test(test_overlap),
         cmocka_unit_test(test_velocity),
+        cmocka_unit_test(test_unknown_sides),
     };
     int failed = cmocka_run_group_tests(tests, NULL, NULL);
     MPI_Finalize();
