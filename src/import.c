@@ -178,9 +178,10 @@ static void tell_orientation(const rg_import *m) {
 
 static void tell_nodes(const rg_import *m, const struct numbered *order, const rg_gid *vertex) {
     int64_t unused = 0;
-    size_t first = 0;
+    size_t first = 0, last = SIZE_MAX; /* a number that no node has */
     for (size_t n = 0; n < m->nodes; n++) {
-        bool again = n > 0 && order[n].number == order[n - 1].number;
+        bool again = order[n].number == last;
+        last = order[n].number;
         if (!again && vertex[order[n].row] < 0) {
             first = unused++ == 0 ? order[n].row : first;
         }

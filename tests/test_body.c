@@ -17,6 +17,7 @@
 #include "child.h"
 #include "mesh_case.h"
 #include "solver.h"
+#include "state.h"
 
 /* Two materials, of which the stiffer is the lighter, and faces of different size. */
 static const char block[] = "mesh: {cells: [2, 2, 3], size: [2e-3, 3e-3, 6e-3], jitter: 0.2}\n"
@@ -206,6 +207,18 @@ static void test_velocity(void **state) {
            NULL, "block: bodies: velocity.z of a: 1/t is not finite at t = 0 s");
 }
 
+/* Without bodies a checkpoint has no place for them. */
+static void test_no_bodies(void **state) {
+    (void)state;
+    rg_case *c = read_with("bodies=[]", true);
+    rg_solver *s = rg_solver_make(c, MPI_COMM_WORLD);
+    rg_state st = {0};
+    rg_bodies_register(s->bodies, &st);
+    assert_int_equal(st.arrays, 0);
+    rg_solver_free(s);
+    rg_case_free(c);
+}
+
 /* A mesh in which the side "x+" has another name. */
 static void make_without_side(void) {
     rg_case *c = rg_case_read_text("block", block, sizeof block - 1, 1, asked, stderr);
@@ -240,10 +253,9 @@ int main(int argc, char **argv) {
     omp_set_num_threads(1); /* a child has none of its parent's threads */
     MPI_Init(&argc, &argv);
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_omega2),
-        cmocka_unit_test(test_overlap),
-        cmocka_unit_test(test_velocity),
-        cmocka_unit_test(test_unknown_sides),
+        cmocka_unit_test(test_omega2),    cmocka_unit_test(test_overlap),
+        cmocka_unit_test(test_velocity),  cmocka_unit_test(test_unknown_sides),
+        cmocka_unit_test(test_no_bodies),
     };
     int failed = cmocka_run_group_tests(tests, NULL, NULL);
     MPI_Finalize();

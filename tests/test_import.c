@@ -170,14 +170,16 @@ static void test_faces(void **state) {
                                    {{40, 20, 30}, 10, 1}};
     expect_faces(4, both, RG_OK,
                  LEFT WARNING "1 " BETWEEN X5 "e 1: 0 1 2 3, top at 2\ne 2: 1 2 3 4\ninner 1 2 3\n");
-    /* with node 60, 99 and 5, of which the second is not there and the others are no corners */
+    /* with node 60, 99 and 5, of which the second is not there and the others are no corners; and behind all
+     * faces */
     const rg_import_face nowhere[] = {{{10, 20, 50}, 7, 0},
                                       {{10, 20, 60}, 8, 0},
                                       {{99, 20, 10}, 9, 1},
                                       {{10, 5, 50}, 10, RG_IMPORT_UNNAMED},
                                       {{10, 30, 50}, 11, RG_IMPORT_UNNAMED},
-                                      {{20, 10, 30}, 12, 1}};
-    expect_faces(6, nowhere, RG_OK, LEFT WARNING "3 " NOWHERE X5 "e 1: 0 1 2 3, side at 3\ne 2: 1 2 3 4\n");
+                                      {{20, 10, 30}, 12, 1},
+                                      {{40, 50, 50}, 13, 1}};
+    expect_faces(7, nowhere, RG_OK, LEFT WARNING "4 " NOWHERE X5 "e 1: 0 1 2 3, side at 3\ne 2: 1 2 3 4\n");
     const rg_import_face two[] = {{{40, 10, 20}, 9, 1}, {{20, 10, 40}, 7, 0}};
     expect_faces(
         2, two, RG_USAGE,
@@ -196,8 +198,9 @@ static void test_memory(void **state) {
     size_t before = rg_alloc_total();
     rg_import m = make_pair();
     rg_import_add_face(&m, 7, (const size_t[]){40, 10, 20}, 1);
+    rg_import_add_face(&m, 8, (const size_t[]){40, 10, 30}, 1);
     rg_mesh *mesh = rg_import_finish(&m, names);
-    enum { VERTICES = 5, ELEMENTS = 2, FACES = 1 };
+    enum { VERTICES = 5, ELEMENTS = 2, FACES = 2 };
     assert_int_equal(rg_alloc_total() - before,
                      sizeof *mesh + 3 * VERTICES * sizeof *mesh->x +
                          ELEMENTS * (4 * (sizeof *mesh->corner + sizeof *mesh->neighbour +

@@ -77,6 +77,7 @@ static void test_lines(void **state) {
            "0\n30, "
            "15e-1, 7, 3\n40, 1, 2.5, 9\n*Element ,type= C3D4\n 1, 10,\n20, 30,\n\t40\n*ENDING\n7, 7, 7, x",
            X "e 1: 0 1 2 3\n");
+    expect("\xef\xbb\xbf" NODES SOLIDS ONE TWO, X5 "e 1: 0 1 2 3\ne 2: 1 2 3 4\n");
     expect("*HEADING\n1, 2, x\n*NODE OUTPUT\n1, x\n*NSET, NSET=a\n1, x\n" NODES
            "*ELEMENT, TYPE=B31\n9, x\n" SOLIDS ONE TWO,
            X5 "e 1: 0 1 2 3\ne 2: 1 2 3 4\n");
@@ -106,6 +107,7 @@ static void test_line_mistakes(void **state) {
         {NODES SOLIDS "1\n*NODE\n", ":9: element 1 has 0 of 4 nodes"},
         {NODES SOLIDS ONE "2\n", ":9: the file ends within an element, or cannot be read"},
         {NODES SOLIDS ONE ONE, ": element 1 is defined twice"},
+        {NODES SOLIDS ONE TWO TWO, ": element 2 is defined twice"},
         {NODES SOLIDS "1, 10, 20, 30, 60\n", ": element 1 has node 60, which is not there"},
         {NODES, ": no tetrahedra"},
         {"*ELSET\n1\n", ":1: *ELSET without a name"},
@@ -120,6 +122,8 @@ static void test_line_mistakes(void **state) {
         {"*INSTANCE, NAME=a\n1, 0, 0\n", ":2: *INSTANCE that is moved: give the part in its own coordinates"},
         {"*NODE\n*INCLUDE, INPUT=b.inp\n", ":2: *INCLUDE: put everything into one file"},
         {NODES SOLIDS ONE "*SOLID SECTION, ELSET=a\n*HEADING\n", ":9: no set of elements 'a' so far"},
+        {NODES SOLIDS ONE "*SOLID SECTION, ELSET=b\n*ELSET, ELSET=a\nb\n",
+         ":11: no set of elements 'b' so far"},
         {NODES SOLIDS ONE "*ELSET, ELSET=b\n1\n*SOLID SECTION, ELSET=a\n*HEADING\n",
          ":11: no set of elements 'a' so far"},
         {NODES SOLIDS ONE "*SURFACE, NAME=s\n2, S1\n",
