@@ -98,6 +98,26 @@ int rg_case_find_material(const rg_case *c, const char *name) {
     return -1;
 }
 
+/* Of all materials. */
+static unsigned internal_fields(const rg_case *c) {
+    unsigned inside = 0;
+    for (int i = 0; i <= c->others; i++) {
+        inside |= rg_material_inside(rg_case_material(c, i)->model);
+    }
+    return (inside & RG_HAS_DAMAGE ? RG_FIELD_DAMAGE : 0U) | (inside & RG_HAS_REGIME ? RG_FIELD_REGIME : 0U) |
+           (inside & RG_HAS_PLASTIC ? RG_FIELD_PLASTIC : 0U);
+}
+
+unsigned rg_case_default_fields(const rg_case *c) {
+    unsigned internal = internal_fields(c);
+    return RG_FIELDS_COMMON | internal | (internal != 0 ? RG_FIELD_TRIAXIALITY : 0U) |
+           (c->others > 0 ? RG_FIELD_MATERIAL : 0U);
+}
+
+unsigned rg_case_possible_fields(const rg_case *c) {
+    return RG_FIELDS_COMMON | RG_FIELD_RANK | RG_FIELD_TRIAXIALITY | RG_FIELD_MATERIAL | internal_fields(c);
+}
+
 rg_case *rg_case_read(const char *path, int overrides, const char *const override[], FILE *errors) {
     size_t size = 0;
     char *text = rg_case_file(path, &size);

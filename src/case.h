@@ -6,11 +6,9 @@
 #include <stdint.h>
 #include <stdio.h>
 
+#include "case_expr.h"
 #include "kernels.h"
 #include "materials.h"
-
-/* A value that may be a number or an expression in x, y, z (reference position, m) and t (s). */
-typedef struct rg_expr rg_expr;
 
 typedef enum { RG_INTERACTION_THESIS, RG_INTERACTION_DERIVED } rg_interaction;
 typedef enum { RG_FORM_VARIATIONAL, RG_FORM_INCOMPLETE, RG_FORM_INTRINSIC, RG_FORM_CONTINUOUS } rg_form;
@@ -196,25 +194,19 @@ const char *rg_case_material_name(const rg_case *c, int i);
 /* Number of the material of that name; -1 if there is none. */
 int rg_case_find_material(const rg_case *c, const char *name);
 
+/* Fields that a run puts out where the case asks for none in particular, and all that its materials let it
+ * put out. */
+unsigned rg_case_default_fields(const rg_case *c);
+unsigned rg_case_possible_fields(const rg_case *c);
+
 /* Writes the full set of values used, defaults included, as a YAML case file that reads back to the same
  * case. */
 void rg_case_echo(const rg_case *c, FILE *out);
 
+/* The same as case.yaml in the output directory, which keeps an older one until the new one is whole; rank 0.
+ * Ends the run with a message on failure. */
+void rg_case_write(const rg_case *c, int rank);
+
 void rg_case_free(rg_case *c);
-
-/* Expression as its source text, whether it depends on position or on time, and its value. Not thread-safe.
- */
-const char *rg_expr_text(const rg_expr *e);
-bool rg_expr_uses_position(const rg_expr *e);
-bool rg_expr_uses_time(const rg_expr *e);
-double rg_expr_value(const rg_expr *e, const double x[3], double t);
-
-/* Another one of the same text, for another thread; NULL for NULL. Free with rg_expr_free. */
-rg_expr *rg_expr_copy(const rg_expr *e);
-void rg_expr_free(rg_expr *e);
-
-/* The same of an expression of faces, which may also use the unit normal nx, ny, nz, of either sign. */
-bool rg_expr_uses_normal(const rg_expr *e);
-double rg_expr_face_value(const rg_expr *e, const double x[3], const double normal[3]);
 
 #endif

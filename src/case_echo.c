@@ -4,6 +4,7 @@
 #include "case.h"
 #include "case_expr.h"
 #include "case_key.h"
+#include "files.h"
 
 /* Double quotes, because only they can hold any text. */
 static void write_text(FILE *out, const char *text) {
@@ -207,4 +208,12 @@ static void write_table(FILE *out, const rg_key_table *table, const void *base, 
 
 void rg_case_echo(const rg_case *c, FILE *out) {
     write_table(out, &rg_case_table, c, 0, false);
+}
+
+void rg_case_write(const rg_case *c, int rank) {
+    if (rank == 0) { /* whole or not at all: a restart may come from it */
+        FILE *file = rg_replace_in(c->output.dir, "case.yaml");
+        rg_case_echo(c, file);
+        rg_replaced_in(file, c->output.dir, "case.yaml");
+    }
 }

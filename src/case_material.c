@@ -3,7 +3,6 @@
 #include <string.h>
 
 #include "case_check.h"
-#include "material.h"
 #include "mem.h"
 
 static const char name_letters[] = "letters, digits, _ and -; unique among materials";

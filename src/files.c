@@ -182,17 +182,18 @@ FILE *rg_open_in(const char *dir, const char *name) {
     return f;
 }
 
-void rg_echo_case(const rg_case *c, int rank) {
-    if (rank != 0) {
-        return;
-    }
-    char part[PATH_BYTES], path[PATH_BYTES];
-    join(part, sizeof part, c->output.dir, "case.yaml.part"); /* a restart may come from it */
-    join(path, sizeof path, c->output.dir, "case.yaml");
-    FILE *f = rg_open_in(c->output.dir, "case.yaml.part");
-    rg_case_echo(c, f);
-    rg_settle(f, path);
-    if (fclose(f) != 0 || rename(part, path) != 0) {
+FILE *rg_replace_in(const char *dir, const char *name) {
+    char part[PATH_BYTES];
+    snprintf(part, sizeof part, "%s.part", name);
+    return rg_open_in(dir, part);
+}
+
+void rg_replaced_in(FILE *file, const char *dir, const char *name) {
+    char part[PATH_BYTES + 8], path[PATH_BYTES];
+    join(path, sizeof path, dir, name);
+    snprintf(part, sizeof part, "%s.part", path);
+    rg_settle(file, path);
+    if (fclose(file) != 0 || rename(part, path) != 0) {
         rg_fatal(RG_FAILURE, "%s: cannot be written: %s", path, strerror(errno));
     }
 }
@@ -262,41 +263,6 @@ void rg_csv_row(rg_csv *t, const int64_t *number, size_t numbers, const double *
         fprintf(t->file, ",%.17g", value[i]);
     }
     finish_row(t);
-}
-
-void rg_csv_energy_header(rg_csv *t) {
-    rg_csv_header(
-        t, "step,time,kinetic,bodies,bulk,penalty,cohesive,contact,dissipated,plastic,damage,viscous,"
-           "friction,external_work,total,error_rel,broken_area,failed_area,momentum_x,momentum_y,momentum_z,"
-           "angular_x,angular_y,"
-           "angular_z");
-}
-
-void rg_csv_energy(rg_csv *t, const rg_energy *e) {
-    const double row[] = {e->time,
-                          e->kinetic,
-                          e->bodies,
-                          e->bulk,
-                          e->penalty,
-                          e->cohesive,
-                          e->contact,
-                          e->dissipated,
-                          e->plastic,
-                          e->damage,
-                          e->viscous,
-                          e->friction,
-                          e->external,
-                          e->total,
-                          e->error,
-                          e->broken_area,
-                          e->failed_area,
-                          e->momentum[0],
-                          e->momentum[1],
-                          e->momentum[2],
-                          e->angular_momentum[0],
-                          e->angular_momentum[1],
-                          e->angular_momentum[2]};
-    rg_csv_row(t, &e->step, 1, row, sizeof row / sizeof *row);
 }
 
 void rg_csv_close(rg_csv *t) {

@@ -1,10 +1,11 @@
-/* Small output files: the directory, the echo of the case, tables. Written by rank 0. */
+/* Small output files: the directory, text, tables. Written by rank 0. */
 #ifndef RG_FILES_H
 #define RG_FILES_H
 
+#include <mpi.h>
+#include <stdbool.h>
+#include <stdint.h>
 #include <stdio.h>
-
-#include "ledger.h"
 
 /* Creates `path` and its parents where they do not exist. Ends the run with a message on failure. Collective.
  */
@@ -46,8 +47,10 @@ void rg_close_in(FILE *file, const char *dir, const char *name);
  * with a message if it is not that long. */
 FILE *rg_reopen_in(const char *dir, const char *name, int64_t length);
 
-/* Writes the full set of values used to case.yaml in the output directory; rank 0. */
-void rg_echo_case(const rg_case *c, int rank);
+/* Opens a new dir/name, which takes the place of an older one only when rg_replaced_in has closed it. Both
+ * end the run with a message on failure. */
+FILE *rg_replace_in(const char *dir, const char *name);
+void rg_replaced_in(FILE *file, const char *dir, const char *name);
 
 typedef struct rg_csv rg_csv;
 
@@ -69,8 +72,6 @@ void rg_csv_header(rg_csv *t, const char *columns);
 /* A row of whole numbers, then of others in all their digits. */
 void rg_csv_row(rg_csv *t, const int64_t *number, size_t numbers, const double *value, size_t values);
 
-void rg_csv_energy_header(rg_csv *t);
-void rg_csv_energy(rg_csv *t, const rg_energy *e);
 void rg_csv_close(rg_csv *t);
 
 #endif

@@ -220,3 +220,38 @@ double rg_first_fracture(const rg_solver *s) {
     MPI_Allreduce(MPI_IN_PLACE, &first, 1, MPI_DOUBLE, MPI_MIN, s->comm);
     return first;
 }
+
+void rg_energy_header(rg_csv *t) {
+    rg_csv_header(
+        t, "step,time,kinetic,bodies,bulk,penalty,cohesive,contact,dissipated,plastic,damage,viscous,"
+           "friction,external_work,total,error_rel,broken_area,failed_area,momentum_x,momentum_y,momentum_z,"
+           "angular_x,angular_y,"
+           "angular_z");
+}
+
+void rg_energy_row(rg_csv *t, const rg_energy *e) {
+    const double row[] = {e->time,
+                          e->kinetic,
+                          e->bodies,
+                          e->bulk,
+                          e->penalty,
+                          e->cohesive,
+                          e->contact,
+                          e->dissipated,
+                          e->plastic,
+                          e->damage,
+                          e->viscous,
+                          e->friction,
+                          e->external,
+                          e->total,
+                          e->error,
+                          e->broken_area,
+                          e->failed_area,
+                          e->momentum[0],
+                          e->momentum[1],
+                          e->momentum[2],
+                          e->angular_momentum[0],
+                          e->angular_momentum[1],
+                          e->angular_momentum[2]};
+    rg_csv_row(t, &e->step, 1, row, sizeof row / sizeof *row);
+}

@@ -3,6 +3,7 @@
 #ifndef RG_LEDGER_H
 #define RG_LEDGER_H
 
+#include "files.h"
 #include "solver.h"
 
 typedef struct {
@@ -38,5 +39,9 @@ const rg_energy *rg_ledger_take(rg_ledger *l, rg_solver *s);
 
 /* Time at which the first point switched (s); infinite if none has. Collective. */
 double rg_first_fracture(const rg_solver *s);
+
+/* Columns of energy.csv, and a row of it. */
+void rg_energy_header(rg_csv *t);
+void rg_energy_row(rg_csv *t, const rg_energy *e);
 
 #endif

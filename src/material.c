@@ -61,23 +61,3 @@ bool rg_material_plastic_wave(const rg_material *m, double *limit, double *speed
     *speed = sqrt((bulk + 4 * tangent / 3) / m->density);
     return true;
 }
-
-/* Of all materials. */
-static unsigned internal_fields(const rg_case *c) {
-    unsigned inside = 0;
-    for (int i = 0; i <= c->others; i++) {
-        inside |= rg_material_inside(rg_case_material(c, i)->model);
-    }
-    return (inside & RG_HAS_DAMAGE ? RG_FIELD_DAMAGE : 0U) | (inside & RG_HAS_REGIME ? RG_FIELD_REGIME : 0U) |
-           (inside & RG_HAS_PLASTIC ? RG_FIELD_PLASTIC : 0U);
-}
-
-unsigned rg_case_default_fields(const rg_case *c) {
-    unsigned internal = internal_fields(c);
-    return RG_FIELDS_COMMON | internal | (internal != 0 ? RG_FIELD_TRIAXIALITY : 0U) |
-           (c->others > 0 ? RG_FIELD_MATERIAL : 0U);
-}
-
-unsigned rg_case_possible_fields(const rg_case *c) {
-    return RG_FIELDS_COMMON | RG_FIELD_RANK | RG_FIELD_TRIAXIALITY | RG_FIELD_MATERIAL | internal_fields(c);
-}

@@ -20,9 +20,4 @@ double rg_material_shear(const rg_material *m);
  * of the yield curve at its start. False, and nothing set, of a model without such a limit. */
 bool rg_material_plastic_wave(const rg_material *m, double *limit, double *speed);
 
-/* Fields (case.h) that a run puts out where the case asks for none in particular, and all that its materials
- * let it put out. */
-unsigned rg_case_default_fields(const rg_case *c);
-unsigned rg_case_possible_fields(const rg_case *c);
-
 #endif

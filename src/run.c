@@ -130,7 +130,7 @@ static void write_fields(run *r, bool fields) {
 /* Ledger, fields and progress of the current state. */
 static void output(run *r, bool fields) {
     const rg_energy *e = rg_ledger_take(&r->ledger, r->solver);
-    rg_csv_energy(r->energy, e);
+    rg_energy_row(r->energy, e);
     if (r->failure[0] == '\0' && !(r->ledger.worst <= r->input->output.energy_limit)) {
         snprintf(r->failure, sizeof r->failure,
                  "the energy error %.3g passed the limit %.3g (output.energy_limit)", e->error,
@@ -301,8 +301,8 @@ static void open_outputs(run *r) {
     rg_remove_results(c->output.dir, r->solver->rank);
     r->energy = rg_csv_open(c->output.dir, "energy.csv", r->solver->rank);
     rg_csv_hold(r->energy);
-    rg_csv_energy_header(r->energy);
-    rg_echo_case(c, r->solver->rank);
+    rg_energy_header(r->energy);
+    rg_case_write(c, r->solver->rank);
     rg_probes_open(r->probes, r->solver);
     r->snapshots = rg_snapshots_open(r->solver, &r->slab);
     r->fragments = rg_fragment_table_open(r->solver);
@@ -326,7 +326,7 @@ static void reopen_outputs(run *r) {
         rg_checkpoints_remove(c->output.dir, false);
         rg_remove_endings(c->output.dir);
     }
-    rg_echo_case(c, rank);
+    rg_case_write(c, rank);
 }
 
 static void close_outputs(run *r) {

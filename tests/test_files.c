@@ -19,7 +19,9 @@
 #include "child.h"
 #include "error.h"
 #include "faults.h"
+#include "case.h"
 #include "files.h"
+#include "ledger.h"
 #include "mem.h"
 
 static char dir[] = "/tmp/test_files.XXXXXX"; /* the working directory of the tests; empty between them */
@@ -438,7 +440,7 @@ static rg_case *some_case(void) {
 }
 
 static void echo_onto_a_directory(void) {
-    rg_echo_case(some_case(), 0);
+    rg_case_write(some_case(), 0);
 }
 
 static void test_echo(void **state) {
@@ -450,10 +452,10 @@ static void test_echo(void **state) {
     rg_case_echo(c, f);
     fclose(f);
     mkdir("out", 0777);
-    rg_echo_case(c, 1);
+    rg_case_write(c, 1);
     assert_false(there("out/case.yaml"));
     put("out/case.yaml", "old");
-    rg_echo_case(c, 0);
+    rg_case_write(c, 0);
     expect_file("out/case.yaml", text);
     assert_false(there("out/case.yaml.part"));
     remove("out/case.yaml");
@@ -518,8 +520,8 @@ static void test_energy_table(void **state) {
                          .failed_area = 17,
                          .momentum = {18, 19, 20},
                          .angular_momentum = {21, 22, 23}};
-    rg_csv_energy_header(t);
-    rg_csv_energy(t, &e);
+    rg_energy_header(t);
+    rg_energy_row(t, &e);
     rg_csv_close(t);
     expect_file("e.csv",
                 "step,time,kinetic,bodies,bulk,penalty,cohesive,contact,dissipated,plastic,damage,viscous,"
