@@ -139,9 +139,6 @@ static double largest_eigenvalue(const double *alpha, const double *beta, int n)
             below = d < 0;
         }
         *(below ? &high : &low) = x;
-        if (x <= low && x >= high) {
-            break;
-        }
     }
     return high;
 }

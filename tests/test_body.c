@@ -219,6 +219,23 @@ static void test_no_bodies(void **state) {
     rg_case_free(c);
 }
 
+static void add_too_many(void) {
+    static rg_state st;
+    for (int i = 0; i <= RG_MAX_STATE; i++) {
+        fputc('.', stderr);
+        rg_state_add(&st, "one", RG_OF_RUN, RG_STATE_DOUBLE, 1, NULL);
+    }
+}
+
+static void test_full_state(void **state) {
+    (void)state;
+    char said[200], expected[200];
+    assert_int_equal(run_child(add_too_many, said, sizeof said), 1);
+    memset(expected, '.', RG_MAX_STATE + 1);
+    strcpy(expected + RG_MAX_STATE + 1, "rhegma: state one: RG_MAX_STATE is too small\n");
+    assert_string_equal(said, expected);
+}
+
 /* A mesh in which the side "x+" has another name. */
 static void make_without_side(void) {
     rg_case *c = rg_case_read_text("block", block, sizeof block - 1, 1, asked, stderr);
@@ -255,7 +272,7 @@ int main(int argc, char **argv) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_omega2),    cmocka_unit_test(test_overlap),
         cmocka_unit_test(test_velocity),  cmocka_unit_test(test_unknown_sides),
-        cmocka_unit_test(test_no_bodies),
+        cmocka_unit_test(test_no_bodies), cmocka_unit_test(test_full_state),
     };
     int failed = cmocka_run_group_tests(tests, NULL, NULL);
     MPI_Finalize();

@@ -304,6 +304,12 @@ static void check(const variant *v) {
     report(s->limiting == element, v->name, "the element that limits it");
     report(fabs(s->damping / damping_of(c, mesh, s->omega2) - 1) < 1e-12, v->name, "damping");
     report(at_rest(s, &law, stride), v->name, "all is as before");
+    if (s->scale != NULL) { /* also where the whole mesh, not a patch of it, is looked at */
+        rg_real *scale = s->scale, *crack = s->crack;
+        rg_spectrum_whole(s);
+        report(at_rest(s, &law, stride) && s->scale == scale && s->crack == crack, v->name,
+               "all is as before, of the whole mesh");
+    }
     if (rank == 0)
         printf("# %.6f of the largest eigenvalue, %g 1/s^2; element %lld\n", part, worst, (long long)element);
     rg_solver_free(s);
