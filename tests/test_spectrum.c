@@ -33,6 +33,7 @@ static const char cube[] =
 
 static const variant subjects[] = {
     {"default", {NULL}},
+    {"large and heavy", {"mesh.size=[2, 2, 2]"}}, /* 3e4 kg in place of 3e-8 */
     {"lumped", {"mass=lumped"}},
     {"lumped, no law", {"mass=lumped", "interface={law: none}"}},
     {"stiff penalty", {"interface.beta_s=12", "interface.penalty=isotropic"}},
@@ -99,7 +100,8 @@ static void apply(twin *w, const double *q, double *out) {
     double largest = 0;
     for (size_t k = 0; k < values; k++)
         largest = fmax(largest, fabs(q[k]));
-    double size = 1e-11 / largest; /* a ten-millionth of an edge: linear, and clear of rounding */
+    double size = 5e-8 * w->input->mesh.size[0] /
+                  largest; /* a ten-millionth of an edge: linear, and clear of rounding */
     for (size_t k = 0; k < values; k++)
         w->u[k] = (rg_real)(size * q[k]);
     twin_accelerate(w);
