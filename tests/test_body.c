@@ -1,5 +1,5 @@
 /* What rigid bodies do to the time step, against sums over the faces of the mesh, and what is refused of
- * them. How they move and press is in test_step.c. */
+ * them, and of other conditions, at the start. How they move and press is in test_step.c. */
 #include <math.h>
 #include <mpi.h>
 #include <omp.h>
@@ -207,6 +207,34 @@ static void test_velocity(void **state) {
            NULL, "block: bodies: velocity.z of a: 1/t is not finite at t = 0 s");
 }
 
+static void make_and_start(void) {
+    rg_case *c = rg_case_read_text("block", block, sizeof block - 1, 1, asked, stderr);
+    rg_solver_start(rg_solver_make(c, MPI_COMM_WORLD));
+}
+
+/* What is not finite at the start is told with its lowest place. */
+static void test_start(void **state) {
+    (void)state;
+    static const char *const cases[][2] = {
+        {"boundary=[{set: x-, component: x, velocity: 0}, {set: z+, component: y, displacement: 'log(t)'}]",
+         "rhegma: block: boundary[1].displacement: log(t) is not finite at (0, 0, 0.006), t = 0 s\n"},
+        {"initial={displacement: {y: 'z > 5e-3 ? 1/(x - x) : 0'}, velocity: {x: '1/(x - x)'}}",
+         "rhegma: block: initial.displacement.y: z > 5e-3 ? 1/(x - x) : 0 is not finite at (0, 0, 0.006)\n"},
+        {"initial={velocity: {x: '1/(x - x)'}}",
+         "rhegma: block: initial.velocity.x: 1/(x - x) is not finite at (0, 0, 0)\n"},
+        {"initial={velocity: {x: x, z: 'sqrt(-y)'}}",
+         "rhegma: block: initial.velocity.z: sqrt(-y) is not finite at ("},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char said[2000];
+        asked[0] = cases[i][0];
+        assert_int_equal(run_child(make_and_start, said, sizeof said), 2);
+        if (strncmp(said, cases[i][1], strlen(cases[i][1])) != 0) {
+            fail_msg("%s: said %s", asked[0], said);
+        }
+    }
+}
+
 /* Without bodies a checkpoint has no place for them. */
 static void test_no_bodies(void **state) {
     (void)state;
@@ -270,9 +298,10 @@ int main(int argc, char **argv) {
     omp_set_num_threads(1); /* a child has none of its parent's threads */
     MPI_Init(&argc, &argv);
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_omega2),    cmocka_unit_test(test_overlap),
-        cmocka_unit_test(test_velocity),  cmocka_unit_test(test_unknown_sides),
-        cmocka_unit_test(test_no_bodies), cmocka_unit_test(test_full_state),
+        cmocka_unit_test(test_omega2),     cmocka_unit_test(test_overlap),
+        cmocka_unit_test(test_velocity),   cmocka_unit_test(test_unknown_sides),
+        cmocka_unit_test(test_no_bodies),  cmocka_unit_test(test_start),
+        cmocka_unit_test(test_full_state),
     };
     int failed = cmocka_run_group_tests(tests, NULL, NULL);
     MPI_Finalize();
