@@ -46,10 +46,10 @@ typedef struct {
     rg_real *stiffening; /* out: [block][lane], largest ratio of the acoustic tensor to its value at F = I */
 } rg_bulk_args;
 
-/* Cohesive laws (cohesive_laws.h); none: a point never breaks. */
+/* Cohesive laws (laws.h); none: a point never breaks. */
 typedef enum {
 #define RG_LAW(NAME, ...) RG_LAW_##NAME,
-#include "cohesive_laws.h"
+#include "laws.h"
 #undef RG_LAW
     RG_LAWS,
     RG_LAW_NONE = RG_LAWS
@@ -60,12 +60,12 @@ enum {
     RG_LAW_MEMORY = 4, /* values that a point may remember besides its crack state */
 };
 
-/* Of a law whose opening the time step follows (RG_PACED, src/pace.h): its parameter N, steps to climb to the
- * strength; and of a point's memory the last effective opening (m) and the pace (1/s). */
+/* Of a law whose opening the time step follows (RG_PACED, src/solver/pace.h): its parameter N, steps to climb
+ * to the strength; and of a point's memory the last effective opening (m) and the pace (1/s). */
 enum { RG_PACE_STEPS = 1, RG_PACE_LAST = 0, RG_PACE_RATE = 1, RG_PACED_MEMORY = 2 };
 
-/* Bulk viscosity (viscosity.c), after the bulk: adds to its forces, and to its stiffening what damping takes
- * from the step. */
+/* Bulk viscosity (element/viscosity.c), after the bulk: adds to its forces, and to its stiffening what
+ * damping takes from the step. */
 typedef struct {
     const rg_bulk_args *bulk; /* force and stiffening in/out */
     const rg_real *velocity;  /* in the middle of the step before (m/s) */
@@ -96,7 +96,7 @@ typedef struct {
     double shape[RG_LAW_SHAPE]; /* the law's own parameters */
     double separation;          /* effective opening of full separation (m) */
     double slope;    /* contact is at least so stiff (Pa/m): the law's own slope where it starts with one */
-    double friction; /* coefficient mu of closed points (friction.h); 0: none, and no state of it */
+    double friction; /* coefficient mu of closed points (cohesive/friction.h); 0: none, and no state of it */
     bool stick; /* with friction: points stick without limit or memory (the linear part, for the time step) */
 } rg_cohesive;
 

@@ -85,7 +85,7 @@ enum { /* crack state of one interface point; meaningful only where the point's 
        RG_CRACK = 5,
 };
 
-enum {                          /* friction at one interface point (friction.h) */
+enum {                          /* friction at one interface point (cohesive/friction.h) */
        RG_FRICTION_ANCHOR = 0,  /* slip at which its spring is relaxed, 2 components (m) */
        RG_FRICTION_STRETCH = 2, /* of the spring, 2 components (m) */
        RG_FRICTION_HEAT = 4,    /* dissipated at this point of the face so far (J) */

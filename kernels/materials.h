@@ -1,13 +1,13 @@
 /* The registry of materials: everything that is told apart by the model of the bulk derives from this list.
  *
- * A material is a source bulk_NAME.c, which gives the pointwise functions of material_point.h their vector
- * form and includes bulk.h, the kernel around them; a source reference_NAME.c, the same as a scalar
- * (reference_material.h); its line here, and one for each parameter of its own. Case keys, dispatch, fields,
- * checkpoints and tests follow from these. */
+ * A material is a source bulk_NAME.c, which gives the pointwise functions of element/material_point.h their
+ * vector form and includes element/bulk.h, the kernel around them; a source reference_NAME.c, the same as a
+ * scalar (reference/material.h); its line here, and one for each parameter of its own. Case keys, dispatch,
+ * fields, checkpoints and tests follow from these. */
 #ifndef RG_MATERIALS_H
 #define RG_MATERIALS_H
 
-#include "deshpande_evans_model.h"
+#include "material/deshpande_evans_model.h"
 
 /* What a material has inside, and how its elastic constants are given, as bits. */
 enum {
@@ -17,7 +17,7 @@ enum {
     RG_TAKES_YOUNG = 8, /* by Young's modulus and Poisson's ratio */
 };
 
-/* History of a point of j2.h. Zero is the virgin material. */
+/* History of a point of material/j2.h. Zero is the virgin material. */
 enum {
     RG_J2_STRAIN = 0, /* ep, accumulated equivalent plastic strain */
     RG_J2_FLOW = 1,   /* Fp^-1 Fp^-T - I, six components xx yy zz yz xz xy */

@@ -2,9 +2,9 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "error.h"
-#include "gmsh_read.h"
-#include "mem.h"
+#include "base/error.h"
+#include "base/mem.h"
+#include "mesh/import/gmsh_read.h"
 #include "mesh_command.h"
 #include "revision.h"
 

@@ -7,16 +7,17 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "denormals.h"
-#include "error.h"
-#include "h5_parallel.h"
-#include "interrupt.h"
+#include "base/denormals.h"
+#include "base/error.h"
+#include "base/h5_parallel.h"
+#include "base/interrupt.h"
+#include "base/mem.h"
+#include "case/read.h"
 #include "layout.h"
-#include "mem.h"
 #include "mesh_command.h"
 #include "revision.h"
 #include "run.h"
-#include "verify.h"
+#include "verify/verify.h"
 
 static const char usage[] =
     "usage: rhegma run CASE.yaml [options]     run a case\n"

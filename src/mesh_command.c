@@ -9,16 +9,17 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "case.h"
-#include "error.h"
-#include "improve.h"
-#include "inp_read.h"
-#include "material.h"
-#include "mem.h"
-#include "mesh_case.h"
-#include "mesh_check.h"
-#include "mesh_file.h"
-#include "mesh_info.h"
+#include "base/error.h"
+#include "base/mem.h"
+#include "case/case.h"
+#include "case/read.h"
+#include "mesh/check.h"
+#include "mesh/file.h"
+#include "mesh/import/inp_read.h"
+#include "mesh/improve/improve.h"
+#include "mesh/info.h"
+#include "partition/material.h"
+#include "partition/mesh_case.h"
 
 static const char usage[] =
     "usage: rhegma mesh IN -o OUT.h5 [--scale S] [--improve]   a mesh file from Abaqus (.inp), or from what\n"

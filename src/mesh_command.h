@@ -4,7 +4,7 @@
 
 #include <stdbool.h>
 
-#include "mesh.h"
+#include "mesh/mesh.h"
 
 typedef struct {
     const char *input, *output;

@@ -1,3 +1,4 @@
+#include "case/echo.h"
 #include "run.h"
 
 #include <inttypes.h>
@@ -5,19 +6,21 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "affinity.h"
-#include "autopsy.h"
-#include "balance.h"
-#include "error.h"
-#include "fragment_table.h"
-#include "interrupt.h"
-#include "mem.h"
-#include "mesh_case.h"
-#include "pace.h"
-#include "progress.h"
-#include "restart.h"
-#include "schedule.h"
-#include "spectrum.h"
+#include "base/affinity.h"
+#include "base/error.h"
+#include "base/interrupt.h"
+#include "base/mem.h"
+#include "diagnostics/autopsy.h"
+#include "output/fragment_table.h"
+#include "output/progress.h"
+#include "partition/mesh_case.h"
+#include "restart/restart.h"
+#include "restart/schedule.h"
+#include "solver/balance.h"
+#include "solver/pace.h"
+#include "solver/setup.h"
+#include "solver/step.h"
+#include "solver/spectrum.h"
 
 enum { EXCHANGES = 6 };
 

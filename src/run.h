@@ -6,14 +6,14 @@
 #include <mpi.h>
 #include <stdbool.h>
 
-#include "case.h"
+#include "case/case.h"
 
 typedef struct {
-    bool quiet;     /* no progress and summary on the terminal */
-    bool restart;   /* go on from the newest good checkpoint in the output directory */
-    bool overwrite; /* start anew even where an unfinished run left checkpoints */
-    double
-        walltime; /* stop with a checkpoint before so many seconds have passed; 0: no limit (interrupt.h) */
+    bool quiet;      /* no progress and summary on the terminal */
+    bool restart;    /* go on from the newest good checkpoint in the output directory */
+    bool overwrite;  /* start anew even where an unfinished run left checkpoints */
+    double walltime; /* stop with a checkpoint before so many seconds have passed; 0: no limit
+                        (base/interrupt.h) */
 } rg_run_options;
 
 /* Runs the case. Returns the exit status: RG_OK; RG_FAILURE when the run stopped early because its energy,

@@ -4,7 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../../src/case.h"
+#include "case/case.h"
+#include "case/read.h"
+#include "case/echo.h"
 #include "host.h"
 
 enum { MOST = 8 };

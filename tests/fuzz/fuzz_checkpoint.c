@@ -13,13 +13,16 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "../../src/checkpoint.h"
-#include "../../src/mem.h"
-#include "../../src/restart.h"
-#include "../../src/seal.h"
-#include "../../src/state_hash.h"
+#include "base/mem.h"
+#include "case/read.h"
+#include "diagnostics/state_hash.h"
 #include "h5_changes.h"
 #include "host.h"
+#include "restart/checkpoint.h"
+#include "restart/restart.h"
+#include "restart/seal.h"
+#include "solver/setup.h"
+#include "solver/step.h"
 
 enum { MOST_FIELDS = 96, NAME = 64, ATTRIBUTES = 7, CHANGE = 5, MOST_CHANGES = 16, STEP = 7 };
 

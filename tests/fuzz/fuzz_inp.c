@@ -1,10 +1,10 @@
 /* Meshes from Abaqus input: any bytes as the file; then all that `rhegma mesh` does but writing. */
 #include <stdio.h>
 
-#include "../../src/inp_read.h"
-#include "../../src/mesh_check.h"
-#include "../../src/mesh_info.h"
 #include "host.h"
+#include "mesh/check.h"
+#include "mesh/import/inp_read.h"
+#include "mesh/info.h"
 
 static void body(const uint8_t *data, size_t size) {
     const char *path = rg_fuzz_scratch();

@@ -10,12 +10,12 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "../../src/mem.h"
-#include "../../src/mesh_file.h"
-#include "../../src/mesh_info.h"
-#include "../../src/mesh_rows.h"
+#include "base/mem.h"
 #include "h5_changes.h"
 #include "host.h"
+#include "mesh/file.h"
+#include "mesh/info.h"
+#include "mesh/rows.h"
 
 enum { MESHES = 2, FIELDS = 14, ATTRIBUTES = 8, CHANGE = 5, MOST_CHANGES = 16, IMAGE = 1 << 20 };
 

@@ -9,8 +9,8 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "../../src/error.h"
-#include "../../src/mem.h"
+#include "base/error.h"
+#include "base/mem.h"
 
 enum { ALIGN = 64, LARGEST = 256 << 20 };
 

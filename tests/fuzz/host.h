@@ -1,5 +1,5 @@
-/* What fuzzed code runs on in place of src/error.c and src/mem.c: a fatal end comes back to the fuzzer, and
- * what it left behind is given back, so that one process tries inputs without end. */
+/* What fuzzed code runs on in place of src/base/error.c and src/base/mem.c: a fatal end comes back to the
+ * fuzzer, and what it left behind is given back, so that one process tries inputs without end. */
 #ifndef RG_FUZZ_HOST_H
 #define RG_FUZZ_HOST_H
 

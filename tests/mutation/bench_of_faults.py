@@ -74,7 +74,7 @@ class Bench:
         self.objects = self.codes()
         listed = command(["meson", "introspect", "--tests", "build"], self.tree, 60)[1]
         self.programs = {t["name"]: t for t in json.loads(listed)}
-        self.files = sorted(p.name for p in (self.tree / "tests").glob("test_*.py"))
+        self.files = {p.name: p for p in sorted((self.tree / "tests").rglob("test_*.py"))}
 
     def ninja(self, *targets):
         return command(["ninja", "-C", "build", "-j", "1", *targets], self.tree, 1200)
@@ -82,7 +82,7 @@ class Bench:
     def compiles(self):
         """Compiles the tree as it is, without linking the programs: None where that fails, else whether it holds other
         machine code than that of the tree without a fault."""
-        for targets in (["rhegma", "libkernels-reference.a"], []):
+        for targets in (["rhegma", "kernels/libkernels-reference.a"], []):
             if self.ninja(*targets)[0] != 0:
                 return None
             if self.changed():
@@ -128,7 +128,7 @@ class Bench:
             passed = status == 0 and not (tap and (re.search(r"^not ok", output, re.M) or not re.search(r"^ok", output, re.M)))
             words = re.search(r"^not ok.*", output, re.M)
         else:
-            status, output = command([PYTHON, "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider", "--no-header", f"tests/{name}"],
+            status, output = command([PYTHON, "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider", "--no-header", str(self.files[name])],
                                      self.tree, limit, TMPDIR=str(self.scratch))
             passed = status == 0
             words = re.search(r"^(?:FAILED|ERROR) .*", output, re.M)

@@ -10,43 +10,39 @@ ROOMS = {
                 """kernels interface seams reference laws friction viscosity elastic j2 bulk_history deshpande_evans
                 deshpande_evans_kernel cost_model material step test_invariance.py test_contact.py test_friction.py test_viscosity.py
                 test_laws.py test_ceramic.py test_solids.py test_ledger.py test_spall.py"""),
-    "mesh/import": (["src/import.*", "src/inp_read.*", "src/gmsh_*"],
+    "mesh/import": (["src/mesh/import/*"],
                     "mesh mesh_file inp import mesh_command fuzz-inp test_gmsh.py test_mesh_faults.py test_meshes.py"),
-    "mesh/improve": (["src/improve*"], "improve test_meshes.py"),
-    "mesh": (["src/mesh.*", "src/mesh_[fhiocr]*", "src/box.*", "src/gid_map.*", "src/tile_graph.*"],
+    "mesh/improve": (["src/mesh/improve/*"], "improve test_meshes.py"),
+    "mesh": (["src/mesh/*"],
              """mesh mesh_check mesh_command mesh_damage mesh_info mesh_file tiles part part_read domain
              fuzz-mesh test_mesh_faults.py test_meshes.py test_invariance.py
              test_partition.py test_cli.py"""),
-    "partition": (["src/partition.*", "src/tile_weight.*", "src/deal.*", "src/part.*", "src/part_*", "src/mesh_case.*",
-                   "src/material.*", "src/material_map.*", "src/patch.*"],
+    "partition": (["src/partition/*"],
                   """tiles part part_read patch material materials material_map spectrum step verify test_mesh_faults.py test_bimaterials.py test_partition.py test_meshes.py
                   test_cli.py test_continuous.py test_parallel.py"""),
-    "domain": (["src/domain.*", "src/interfaces.*", "src/element.*", "src/halo.*", "src/joint.*", "src/assembly*", "src/slab.*",
-                "src/sparse.*"],
+    "domain": (["src/domain/*"],
                """domain assembly slab patch step spectrum fragment verify fragment_twin ledger snapshot test_invariance.py
                test_contact.py test_bodies.py test_continuous.py test_fragments.py test_solids.py test_bimaterials.py
                test_ledger.py test_spall.py test_parallel.py"""),
-    "solver": (["src/solver.*", "src/tile.*", "src/constraint.*", "src/body*", "src/law.*", "src/strength.*", "src/pace.*",
-                "src/phases.*", "src/spectrum.*", "src/balance.*", "src/state.*"],
+    "solver": (["src/solver/*"],
                """step spectrum body checkpoint pace strength patch material verify case checkpoint_file ledger snapshot
                test_invariance.py test_contact.py
                test_friction.py test_viscosity.py test_bodies.py test_output.py test_continuous.py test_ceramic.py
                test_laws.py test_ledger.py test_spall.py test_solids.py test_waves.py test_bimaterials.py
                test_fragments.py test_impact.py test_partition.py test_parallel.py test_restart.py"""),
-    "diagnostics": (["src/ledger.*", "src/fragment*", "src/overlap.*", "src/crack_surface.*", "src/state_hash.*", "src/probe.*",
-                     "src/autopsy.*"],
+    "diagnostics": (["src/diagnostics/*"],
                     """step fragment fragment_table fragment_twin ledger probe verify test_output.py test_invariance.py
                     test_friction.py test_viscosity.py test_bodies.py test_ceramic.py test_fragments.py test_ledger.py
                     test_spall.py test_faults.py test_bimaterials.py test_cli.py test_impact.py test_parallel.py
                     test_restart.py"""),
-    "output": (["src/snapshot.*", "src/writer.*", "src/xdmf.*", "src/progress.*", "src/summary.*", "src/estimate.*"],
+    "output": (["src/output/*"],
                """writer slab estimate progress snapshot summary xdmf test_output.py test_invariance.py test_spall.py
                test_cli.py test_bimaterials.py test_fragments.py test_faults.py test_parallel.py test_restart.py"""),
-    "restart": (["src/checkpoint*", "src/state_table.*", "src/seal.*", "src/restart.*", "src/schedule.*"],
+    "restart": (["src/restart/*"],
                 """seal slab schedule restart checkpoint checkpoint_file fuzz-checkpoint test_output.py test_faults.py
                 test_cli.py test_restart.py test_partition.py"""),
-    "verify": (["src/verify*"], "verify test_verify.py"),
-    "case": (["src/case*", "src/expr.*"],
+    "verify": (["src/verify/*"], "verify test_verify.py"),
+    "case": (["src/case/*"],
              """case case_text case_echo case_ranges case_rules case_values case_mistakes numbers strength fuzz-case test_output.py test_laws.py test_bodies.py test_cli.py
              test_bimaterials.py test_continuous.py test_restart.py"""),
     "base": (["src/*"],

@@ -1,0 +1,161 @@
+/* The tet10 kernel: internal force, face tractions, energy and stress at the lifted gradient F + R.
+ *
+ * Included by one source per material (element/material_point.h), whose functions are compiled into the
+ * loops. */
+#ifndef RG_BULK_H
+#define RG_BULK_H
+
+#include "element/material_point.h"
+#include "element/tet10_gradient.h"
+#include "isa.h"
+
+enum { HISTORY_VALUES = RG_HISTORY == 0 ? 1 : RG_HISTORY };
+
+#ifndef RG_TOGETHER
+#define RG_TOGETHER 1
+RG_INLINE void material_steps(const rg_bulk_args *args, rg_vec H[][3][3], rg_vec history[][HISTORY_VALUES],
+                              rg_vec P[][3][3], rg_point out[]) {
+    material_step(args, H[0], history[0], P[0], out);
+}
+#endif
+
+/* Area-weighted corner tractions sum_g e_ig P_g (area_f N_f), e_ig = (delta_ig - a)/(b - a). */
+RG_INLINE void store_traction(vec3 q[4][RG_GAUSS], vec3 Q[4], rg_real *traction) {
+    rg_vec row[RG_TRACTION_ROW];
+    for (int f = 0; f < RG_FACES; f++) {
+        for (int i = 0; i < RG_FCORNERS; i++) {
+            for (int c = 0; c < 3; c++) {
+                row[(f * RG_FCORNERS + i) * 3 + c] =
+                    rg_splat(12 / RG_GAUSS_BA) *
+                    (rg_splat(RG_GAUSS_A) * Q[f][c] - q[f][rg_face_node[f][i]][c]);
+            }
+        }
+    }
+    rg_store_rows(traction, RG_TRACTION_ROW, RG_TRACTION_ROW, row);
+}
+
+enum { HISTORY_ROWS = RG_HISTORY == 0 ? 0 : RG_GAUSS * RG_HISTORY + RG_RELEASED };
+
+RG_INLINE rg_real *history_of(const rg_bulk_args *args, size_t block, int lane) {
+    return HISTORY_ROWS == 0 ? NULL : args->history + block * args->history_stride + lane;
+}
+
+RG_INLINE void load_history(const rg_real *from, int g, rg_vec history[]) {
+    for (int k = 0; k < RG_HISTORY; k++) {
+        history[k] = rg_load(from + (g * RG_HISTORY + k) * RG_LANES);
+    }
+}
+
+RG_INLINE void store_history(rg_real *to, int g, const rg_vec history[]) {
+    for (int k = 0; k < RG_HISTORY; k++) {
+        rg_store(to + (g * RG_HISTORY + k) * RG_LANES, history[k]);
+    }
+}
+
+/* Adds to what the element has set free. */
+RG_INLINE void store_released(rg_real *to, const rg_vec released[RG_RELEASED]) {
+    for (int k = 0; k < RG_RELEASED; k++) {
+        rg_real *at = to + (RG_GAUSS * RG_HISTORY + k) * RG_LANES;
+        rg_store(at, rg_load(at) + released[k]);
+    }
+}
+
+RG_INLINE void bulk_vector(const rg_bulk_args *args, size_t block, int lane, bool lift) {
+    element e;
+    load_element(&e, args, block, lane, lift);
+    vec3 common[4], q[4][RG_GAUSS], Q[4] = {{{0}}};
+    common_derivatives(&e, lift, common);
+    rg_real *past = history_of(args, block, lane);
+    rg_vec stiffening = {0}, bad = {0}, weight = 0.25 * e.volume, released[RG_RELEASED] = {{0}};
+    for (int first = 0; first < RG_GAUSS; first += RG_TOGETHER) {
+        rg_vec H[RG_TOGETHER][3][3], P[RG_TOGETHER][3][3], history[RG_TOGETHER][HISTORY_VALUES];
+        rg_point point[RG_TOGETHER];
+        for (int i = 0; i < RG_TOGETHER; i++) {
+            displacement_gradient(&e, lift, common, first + i, H[i]);
+            load_history(past, first + i, history[i]);
+        }
+        material_steps(args, H, history, P, point);
+        for (int i = 0; i < RG_TOGETHER; i++) {
+            stiffening = rg_max(stiffening, point[i].stiffening);
+            bad += 0.0 * point[i].stiffening; /* a maximum forgets what is not a number */
+            if (RG_HISTORY > 0 && args->advance) {
+                store_history(past, first + i, history[i]);
+                for (int k = 0; k < RG_RELEASED; k++) {
+                    released[k] += weight * point[i].released[k];
+                }
+            }
+            project_stress(&e, weight, P[i], first + i, q, Q);
+        }
+    }
+    if (RG_HISTORY > 0 && args->advance) {
+        store_released(past, released);
+    }
+    store_force(q, Q, args->force + block * RG_NODE_BLOCK + lane, false);
+    store_traction(q, Q, args->traction + (block * RG_LANES + (size_t)lane) * RG_TRACTION_ROW);
+    rg_store(args->stiffening + block * RG_LANES + lane, stiffening + bad);
+}
+
+#define BULK_KERNEL(kernel) RG_ISA_NAME(RG_PASTE(kernel, RG_MATERIAL))
+
+void BULK_KERNEL(rg_bulk)(const rg_bulk_args *args, size_t begin, size_t end) {
+    for (size_t b = begin; b < end; b++) {
+        for (int lane = 0; lane < RG_LANES; lane += RG_VLEN) {
+            if (args->lift) {
+                bulk_vector(args, b, lane, true);
+            } else {
+                bulk_vector(args, b, lane, false);
+            }
+        }
+    }
+}
+
+/* Cauchy stress P F^T/J of one point. */
+RG_INLINE void store_cauchy(double *out, rg_vec H[3][3], rg_point_state *s) {
+    static const int first[6] = {0, 1, 2, 1, 0, 0}, second[6] = {0, 1, 2, 2, 2, 1};
+    rg_vec F[3][3];
+    rg_plus_identity(H, F);
+    for (int k = 0; k < 6; k++) {
+        rg_store_wide(out + k * RG_LANES, rg_dot(s->P[first[k]], F[second[k]]) / s->J);
+    }
+}
+
+RG_INLINE void state_vector(const rg_bulk_state_args *args, size_t block, size_t row, int lane, bool lift) {
+    element e;
+    load_element(&e, args->bulk, block, lane, lift);
+    vec3 common[4];
+    common_derivatives(&e, lift, common);
+    const rg_real *past = history_of(args->bulk, block, lane);
+    rg_vec energy = {0};
+    for (int g = 0; g < RG_GAUSS; g++) {
+        rg_vec H[3][3], history[RG_HISTORY + 1];
+        rg_point_state s;
+        size_t at = row * RG_GAUSS + (size_t)g;
+        displacement_gradient(&e, lift, common, g, H);
+        load_history(past, g, history);
+        material_state(&args->bulk->material, H, history, args->cauchy != NULL, &s);
+        energy += 0.25 * e.volume * s.energy;
+        if (args->cauchy != NULL) {
+            store_cauchy(args->cauchy + at * 6 * RG_LANES + lane, H, &s);
+        }
+        for (int k = 0; RG_HISTORY > 0 && args->internal != NULL && k < RG_INTERNAL; k++) {
+            rg_store_wide(args->internal + (at * RG_INTERNAL + (size_t)k) * RG_LANES + lane, s.internal[k]);
+        }
+    }
+    if (args->energy != NULL) {
+        rg_store_wide(args->energy + row * RG_LANES + lane, energy);
+    }
+}
+
+void BULK_KERNEL(rg_bulk_state)(const rg_bulk_state_args *args, size_t begin, size_t end) {
+    for (size_t b = begin; b < end; b++) {
+        for (int lane = 0; lane < RG_LANES; lane += RG_VLEN) {
+            if (args->bulk->lift) {
+                state_vector(args, b, b - begin, lane, true);
+            } else {
+                state_vector(args, b, b - begin, lane, false);
+            }
+        }
+    }
+}
+
+#endif

@@ -1,0 +1,423 @@
+/* Reference interface: DG terms where a point holds, the cohesive law and contact where it broke. */
+#include <math.h>
+#include "cohesive/facts.h"
+#include "reference/cohesive.h"
+#include "reference/reference.h"
+
+/* One quadrature point, gathered. */
+typedef struct {
+    double strength, opening, contact; /* of the law here; stiffness of closed points, area-weighted */
+    double weight, shape[RG_FNODES];
+    double area, iso, norm; /* reference area and the two penalty factors, area-weighted */
+    double jump[3];
+    double traction[3]; /* average of both sides, area-weighted */
+    double dg[3];       /* traction plus penalty, area-weighted */
+    double normal[3];   /* unit normal of the deformed mid-surface; zero in padding */
+    double current;     /* deformed area */
+    double tangent[2][3], by_xi[RG_FNODES],
+        by_eta[RG_FNODES]; /* of the mid-surface; of the shape functions */
+} point;
+
+/* Opening of a broken point. */
+typedef struct {
+    double normal, shear[3]; /* normal opening (signed) and sliding */
+    double effective;
+} opening;
+
+/* Crack state of a point, the memory of its law, and its friction. */
+typedef struct {
+    rg_real *state[RG_CRACK], *memory[RG_LAW_MEMORY], *friction[RG_FRICTION];
+} crack;
+
+/* Whether side k of interface i is what `side[0]` names: the minus side, or the own one of a seam. */
+static bool is_first(const rg_interface_args *args, size_t i, int k) {
+    bool plus_is_own = i / RG_LANES >= args->first_seam && args->side[1][i] % 2 == 1;
+    return (k == 0) != plus_is_own;
+}
+
+static double element_value(const rg_interface_args *args, int32_t link, int a, int c) {
+    return args->u[rg_node_index((size_t)link / 4, rg_face_node[link % 4][a], c)];
+}
+
+static double side_value(const rg_interface_args *args, size_t i, int side, int a, int c) {
+    if (is_first(args, i, side))
+        return element_value(args, args->side[0][i], a, c);
+    if (i / RG_LANES >= args->first_seam)
+        return args->ghost[rg_iforce_index(i - args->first_seam * RG_LANES, a, c)];
+    return element_value(args, args->side[1][i], a, c);
+}
+
+static double side_traction(const rg_interface_args *args, size_t i, int side, int corner, int c) {
+    size_t place = (size_t)(3 * corner + c);
+    bool first = is_first(args, i, side);
+    if (i / RG_LANES < args->first_seam)
+        return args->traction[(size_t)args->side[first ? 0 : 1][i] * RG_SEAM_ROW + place];
+    if (first)
+        return args->own_tractions[(i - args->first_seam * RG_LANES) * RG_SEAM_ROW + place];
+    return args->tractions[(size_t)(args->side[1][i] / 2) * RG_SEAM_ROW + place];
+}
+
+/* Derivatives of the shape functions by xi and eta, l = (1 - xi - eta, xi, eta). */
+static void shape_derivatives(const double l[3], double dxi[RG_FNODES], double deta[RG_FNODES]) {
+    const double by_l[RG_FNODES][3] = {
+        {4 * l[0] - 1, 0, 0},    {0, 4 * l[1] - 1, 0},    {0, 0, 4 * l[2] - 1},
+        {4 * l[1], 4 * l[0], 0}, {0, 4 * l[2], 4 * l[1]}, {4 * l[2], 0, 4 * l[0]},
+    };
+    for (int a = 0; a < RG_FNODES; a++) {
+        dxi[a] = by_l[a][1] - by_l[a][0];
+        deta[a] = by_l[a][2] - by_l[a][0];
+    }
+}
+
+static double edge(const rg_interface_args *args, size_t i, int k, int c) {
+    return args->geom[rg_igeom_index(i, RG_IGEOM_EDGE + 3 * k + c)];
+}
+
+/* Normal and area of the deformed mid-surface. */
+static void sample_surface(const rg_interface_args *args, size_t i, const double l[3], point *p) {
+    shape_derivatives(l, p->by_xi, p->by_eta);
+    for (int c = 0; c < 3; c++) {
+        for (int k = 0; k < 2; k++)
+            p->tangent[k][c] = edge(args, i, k, c);
+        for (int a = 0; a < RG_FNODES; a++) {
+            double mean = (side_value(args, i, 0, a, c) + side_value(args, i, 1, a, c)) / 2;
+            p->tangent[0][c] += p->by_xi[a] * mean;
+            p->tangent[1][c] += p->by_eta[a] * mean;
+        }
+    }
+    rg_reference_cross(p->tangent[0], p->tangent[1], p->normal);
+    double length = sqrt(rg_reference_dot(p->normal, p->normal));
+    for (int c = 0; c < 3; c++)
+        p->normal[c] = length > 0 ? p->normal[c] / length : 0;
+    p->current = length / 2;
+}
+
+/* Parameters of the law on interface i. */
+static void sample_law(const rg_interface_args *args, size_t i, point *p) {
+    const rg_real *scale =
+        args->scale == NULL ? NULL : args->scale + i / RG_LANES * 2 * RG_LANES + i % RG_LANES;
+    p->strength = args->law.strength * (scale == NULL ? 1 : scale[0]);
+    p->opening = args->law.opening * (scale == NULL ? 1 : scale[RG_LANES]);
+    double slope = args->law.slope * (scale == NULL ? 1 : scale[0] / scale[RG_LANES]);
+    p->contact = fmax(p->iso + p->norm, slope * p->area);
+}
+
+static void sample(const rg_interface_args *args, size_t i, int q, point *p) {
+    double l[3], edges[2][3], cross[3];
+    *p = (point){.weight = rg_reference_face_point(q, l)};
+    for (int k = 0; k < 2; k++)
+        for (int c = 0; c < 3; c++)
+            edges[k][c] = edge(args, i, k, c);
+    rg_reference_cross(edges[0], edges[1], cross);
+    p->area = sqrt(rg_reference_dot(cross, cross)) / 2;
+    p->iso = args->geom[rg_igeom_index(i, RG_IGEOM_PEN_ISO)];
+    p->norm = args->geom[rg_igeom_index(i, RG_IGEOM_PEN_NORM)] * p->area * p->area;
+    rg_reference_face_shape(l, p->shape);
+    sample_law(args, i, p);
+    for (int c = 0; c < 3; c++)
+        for (int a = 0; a < RG_FNODES; a++)
+            p->jump[c] += p->shape[a] * (side_value(args, i, 1, a, c) - side_value(args, i, 0, a, c));
+    for (int c = 0; c < 3; c++) {
+        double unit = p->area > 0 ? cross[c] / (2 * p->area) : 0;
+        double across = p->area > 0 ? rg_reference_dot(cross, p->jump) / (2 * p->area) : 0;
+        p->dg[c] = p->iso * p->jump[c] + p->norm * across * unit;
+    }
+    sample_surface(args, i, l, p);
+}
+
+/* Completes a point by the average traction. */
+static void sample_traction(const rg_interface_args *args, size_t i, int q, point *p) {
+    double l[3];
+    rg_reference_face_point(q, l);
+    for (int c = 0; c < 3; c++) {
+        for (int k = 0; k < RG_FCORNERS; k++)
+            p->traction[c] += l[k] * (side_traction(args, i, 0, k, c) - side_traction(args, i, 1, k, c)) / 2;
+        p->dg[c] += p->traction[c];
+    }
+}
+
+/* Whether an unbroken point breaks now; if so, `direction` is that of its first opening. */
+static bool breaks(const rg_cohesive *law, const point *p, double direction[3]) {
+    double beta2 = law->beta * law->beta, shear[3];
+    double weight = law->beta > 0 ? fmax(1, 1 / beta2) : 1;
+    double limit = p->strength * p->area;
+    if (p->area == 0 || !isfinite(law->strength))
+        return false;
+    if (!(rg_reference_dot(p->traction, p->traction) * weight > 0.25 * limit * limit))
+        return false;
+    double across = rg_reference_dot(p->traction, p->normal) / p->current;
+    double pull = fmax(0, across);
+    for (int c = 0; c < 3; c++)
+        shear[c] = p->traction[c] / p->current - across * p->normal[c];
+    double effective = pull;
+    if (law->beta > 0)
+        effective = sqrt(pull * pull + rg_reference_dot(shear, shear) / beta2);
+    for (int c = 0; c < 3; c++)
+        direction[c] = law->beta > 0 ? (shear[c] / beta2 + pull * p->normal[c]) / effective : p->normal[c];
+    return effective > p->strength;
+}
+
+/* Opening from which a point that switches starts (m). */
+static double onset(const rg_cohesive *law, const point *p) {
+    double share = law->total ? 0 : law->onset > 0 ? law->onset : RG_ONSET;
+    return share * p->strength * p->area / (p->iso + p->norm);
+}
+
+/* What lift and penalty give back to a point that switches, over its strength (m). In the law's own terms the
+ * traction it takes over is beta^2 d_t + d_n n. */
+static double given_back(const rg_cohesive *law, const point *p, const double direction[3]) {
+    double across = rg_reference_dot(direction, p->normal), work = 0, penalty = 0;
+    for (int c = 0; c < 3; c++) {
+        double along = direction[c] - across * p->normal[c];
+        work += (law->beta * law->beta * along + across * p->normal[c]) * p->jump[c];
+        penalty += (p->dg[c] - p->traction[c]) * p->jump[c] / p->area;
+    }
+    return work + fmax(0, 1 - 1.5 / law->beta_s) * penalty / 2 / p->strength;
+}
+
+/* First crack state of a point. */
+static void activate(const rg_interface_args *args, const point *p, const double direction[3],
+                     const crack *k) {
+    double start = onset(&args->law, p), first = start;
+    if (args->law.onset > 0) {
+        double given = given_back(&args->law, p, direction);
+        double left = sqrt(fmax(0, 1 - 2 * fmax(0, given) / p->opening)); /* of the strength */
+        first = fmax(RG_REFERENCE_NOTHING, p->opening * (1 - left));
+        start = given > 0 ? start + first : start * sqrt(fmax(0, 1 + 2 * given / start));
+    }
+    *k->state[RG_CRACK_OPENING] = (rg_real)first;
+    for (int c = 0; c < 3; c++)
+        *k->state[RG_CRACK_ORIGIN + c] = args->law.total ? 0 : (rg_real)(p->jump[c] - start * direction[c]);
+    *k->state[RG_CRACK_TIME] = (rg_real)args->time;
+}
+
+static opening measure(const rg_cohesive *law, const point *p, const crack *k) {
+    opening o = {0};
+    double w[3];
+    for (int c = 0; c < 3; c++)
+        w[c] = p->jump[c] - *k->state[RG_CRACK_ORIGIN + c];
+    o.normal = rg_reference_dot(w, p->normal);
+    for (int c = 0; c < 3; c++)
+        o.shear[c] = w[c] - o.normal * p->normal[c];
+    double open = fmax(0, o.normal);
+    o.effective = sqrt(law->beta * law->beta * rg_reference_dot(o.shear, o.shear) + open * open);
+    return o;
+}
+
+/* Asks the law; `before` is the largest opening before this state, `advance` whether its memory moves on. */
+static rg_law_answer ask(const rg_interface_args *args, const point *p, const opening *o, const crack *k,
+                         double before, bool advance) {
+    const rg_cohesive *law = &args->law;
+    rg_law_query query = {p->strength,
+                          p->opening,
+                          law->shape,
+                          law->beta,
+                          args->step,
+                          o->normal,
+                          sqrt(rg_reference_dot(o->shear, o->shear)),
+                          o->effective,
+                          before};
+    int memory = rg_law_facts_of(law->law, law->shape, law->beta).memory;
+    double state[1 + RG_LAW_MEMORY] = {*k->state[RG_CRACK_OPENING]};
+    for (int m = 0; m < memory; m++)
+        state[1 + m] = *k->memory[m];
+    rg_law_answer answer = law->onset > 0 ? rg_reference_conserving(law->law, &query, onset(law, p), state)
+                                          : rg_reference_law(law->law, &query, state);
+    for (int m = 0; m < memory && advance; m++)
+        *k->memory[m] = (rg_real)state[1 + m];
+    return answer;
+}
+
+/* How much of a face lies over the other one. */
+static double overlap(const point *p, const opening *o) {
+    double apart = rg_reference_dot(o->shear, o->shear) + 16 * o->normal * o->normal;
+    double left = fmax(0, 1 - apart / p->area);
+    return left * left;
+}
+
+/* Adds -dE/dx/2 of the mid-surface's nodes x for a potential whose gradient is t with respect to the opening
+ * w: E depends on the normal n too, by dE/dn = (t . n - T w_n) w_t, where t = ... n + T w_t, and n = g/|g|
+ * with g = g1 x g2 turns by dn = (I - n n)(dg1 x g2 + g1 x dg2)/|g|. */
+static void turn(const point *p, const opening *o, double across, double sliding, double f[RG_FNODES][3]) {
+    double factor = p->weight * (across - sliding * o->normal) / (2 * p->current);
+    for (int a = 0; a < RG_FNODES; a++)
+        for (int c = 0; c < 3; c++) {
+            double unit[3] = {c == 0, c == 1, c == 2}, first[3], second[3];
+            rg_reference_cross(unit, p->tangent[1], first);
+            rg_reference_cross(p->tangent[0], unit, second);
+            f[a][c] -= factor / 2 *
+                       (p->by_xi[a] * rg_reference_dot(o->shear, first) +
+                        p->by_eta[a] * rg_reference_dot(o->shear, second));
+        }
+}
+
+/* Cohesive traction and contact, area-weighted; keeps the largest opening. */
+static void cohesive(const rg_interface_args *args, const point *p, const opening *o, const crack *k,
+                     double t[3], double turning[RG_FNODES][3]) {
+    const rg_cohesive *law = &args->law;
+    double start = law->onset > 0 ? onset(law, p) : 0; /* counts as no damage */
+    double before = *k->state[RG_CRACK_OPENING], largest = fmax(before, o->effective - start);
+    double parts = p->opening * (law->separation / law->opening);
+    *k->state[RG_CRACK_OPENING] = (rg_real)largest;
+    if (law->intrinsic && before < parts && largest >= parts)
+        *k->state[RG_CRACK_TIME] = (rg_real)args->time;
+    rg_law_answer a = ask(args, p, o, k, before, true);
+    double sliding = sqrt(rg_reference_dot(o->shear, o->shear));
+    bool touches = !law->flux && o->normal < law->contact_below;
+    double pressed = touches ? p->contact * o->normal * (law->potential ? overlap(p, o) : 1) : 0;
+    double apart = touches && law->potential
+                       ? -2 * p->contact * o->normal * o->normal * sqrt(overlap(p, o)) / p->area
+                       : 0;
+    double across = p->area * a.normal + pressed + 16 * apart * o->normal;
+    double secant = (sliding > 0 ? p->area * a.sliding / sliding : 0) + apart;
+    for (int c = 0; c < 3; c++)
+        t[c] = secant * o->shear[c] + across * p->normal[c];
+    if (law->potential)
+        turn(p, o, across, secant, turning);
+}
+
+static crack crack_of(const rg_interface_args *args, size_t i, int q) {
+    rg_real *block = args->crack + i / RG_LANES * args->crack_stride;
+    int memory = rg_law_facts_of(args->law.law, args->law.shape, args->law.beta).memory;
+    crack found = {{NULL}, {NULL}, {NULL}};
+    for (int k = 0; k < RG_CRACK; k++)
+        found.state[k] = block + rg_crack_index(i % RG_LANES, q, k);
+    for (int m = 0; m < memory; m++)
+        found.memory[m] = block + RG_CRACK_BLOCK + (size_t)(q * memory + m) * RG_LANES + i % RG_LANES;
+    for (int k = 0; k < RG_FRICTION && args->law.friction > 0; k++)
+        found.friction[k] = args->crack + rg_friction_index(i, q, k, args->crack_stride);
+    return found;
+}
+
+/* Unit tangents of the deformed mid-surface: along the edge from corner 0 to 1, and across it. */
+static void sample_tangents(const rg_interface_args *args, size_t i, const point *p, double tangent[2][3]) {
+    double chord[3];
+    for (int c = 0; c < 3; c++) {
+        double first = (side_value(args, i, 0, 0, c) + side_value(args, i, 1, 0, c)) / 2;
+        double second = (side_value(args, i, 0, 1, c) + side_value(args, i, 1, 1, c)) / 2;
+        chord[c] = edge(args, i, 0, c) + second - first;
+    }
+    rg_reference_cross(p->normal, chord, tangent[1]);
+    double length = sqrt(rg_reference_dot(tangent[1], tangent[1]));
+    for (int c = 0; c < 3; c++)
+        tangent[1][c] = length > 0 ? tangent[1][c] / length : 0;
+    rg_reference_cross(tangent[1], p->normal, tangent[0]);
+}
+
+/* Adds friction: a spring of the tangential penalty from an anchor, which slips where the spring would pull
+ * with more than mu times damage times pressure. */
+static void rub(const rg_interface_args *args, size_t i, const point *p, const opening *o, const crack *k,
+                bool fresh, double t[3]) {
+    const rg_cohesive *law = &args->law;
+    double tangent[2][3], slip[2], spring[2], slid = 0;
+    if (law->stick) {
+        for (int c = 0; c < 3; c++)
+            t[c] += p->iso * o->shear[c];
+        return;
+    }
+    sample_tangents(args, i, p, tangent);
+    double parts = p->opening * (law->separation / law->opening);
+    double damage = parts > 0 ? fmin(1, *k->state[RG_CRACK_OPENING] / parts) : 1;
+    double limit = fresh || o->normal >= 0 ? 0 : law->friction * damage * p->contact * -o->normal;
+    for (int d = 0; d < 2; d++) {
+        slip[d] = rg_reference_dot(o->shear, tangent[d]);
+        spring[d] = p->iso * (slip[d] - *k->friction[RG_FRICTION_ANCHOR + d]);
+    }
+    double force = hypot(spring[0], spring[1]), part = force > limit ? limit / force : 1;
+    for (int d = 0; d < 2; d++) {
+        double before = p->iso * *k->friction[RG_FRICTION_STRETCH + d], now = part * spring[d];
+        double stretch = p->iso > 0 ? now / p->iso : 0, moved = (spring[d] - now) / (p->iso > 0 ? p->iso : 1);
+        slid += (before + now) / 2 * moved;
+        *k->friction[RG_FRICTION_STRETCH + d] = (rg_real)stretch;
+        *k->friction[RG_FRICTION_ANCHOR + d] = (rg_real)(slip[d] - stretch);
+        for (int c = 0; c < 3; c++)
+            t[c] += now * tangent[d][c];
+    }
+    *k->friction[RG_FRICTION_HEAT] += (rg_real)(p->weight * fmax(0, slid));
+}
+
+static void set_bit(uint8_t *mask, int q, bool on) {
+    *mask = (uint8_t)(on ? *mask | 1 << q : *mask & ~(1 << q));
+}
+
+/* Traction of point q, area-weighted; advances its state. */
+static void point_traction(const rg_interface_args *args, size_t i, int q, const point *p, double t[3],
+                           double turning[RG_FNODES][3]) {
+    double direction[3] = {0, 0, 0};
+    bool broken = args->broken[i] >> q & 1;
+    for (int c = 0; c < 3; c++)
+        t[c] = p->dg[c];
+    if (!broken && !breaks(&args->law, p, direction))
+        return;
+    crack k = crack_of(args, i, q);
+    if (!broken) {
+        activate(args, p, direction, &k);
+        set_bit(&args->broken[i], q, true);
+        args->active[i / RG_LANES] = 1;
+    }
+    opening o = measure(&args->law, p, &k);
+    bool closed = args->law.flux && o.normal < 0;
+    if (!closed)
+        cohesive(args, p, &o, &k, t, turning);
+    if (args->law.friction > 0)
+        rub(args, i, p, &o, &k, !broken, t);
+    set_bit(&args->unlinked[i], q, !closed);
+}
+
+void rg_reference_interface(const rg_interface_args *args, size_t begin, size_t end) {
+    for (size_t i = begin * RG_LANES; i < end * RG_LANES; i++) {
+        double g[RG_FNODES][3] = {{0}}, turning[RG_FNODES][3] = {{0}};
+        for (int q = 0; q < RG_POINTS; q++) {
+            point p;
+            double t[3];
+            sample(args, i, q, &p);
+            sample_traction(args, i, q, &p);
+            point_traction(args, i, q, &p, t, turning);
+            for (int a = 0; a < RG_FNODES; a++)
+                for (int c = 0; c < 3; c++)
+                    g[a][c] += p.weight * p.shape[a] * t[c];
+        }
+        for (int a = 0; a < RG_FNODES; a++)
+            for (int c = 0; c < 3; c++) {
+                args->force[rg_iforce_index(i, a, c)] = (rg_real)g[a][c];
+                if (args->law.potential && args->broken[i] != 0)
+                    args->turn[rg_iforce_index(i, a, c)] = (rg_real)turning[a][c];
+            }
+    }
+}
+
+/* Adds the energies of point q. */
+static void point_energy(const rg_interface_args *args, size_t i, int q, double energy[RG_E_INTERFACE]) {
+    const rg_cohesive *law = &args->law;
+    bool broken = args->broken[i] >> q & 1, unlinked = args->unlinked[i] >> q & 1;
+    point p;
+    sample(args, i, q, &p); /* without the traction dg is the penalty alone */
+    if (!unlinked)
+        energy[RG_E_PENALTY] += p.weight * rg_reference_dot(p.dg, p.jump) / 2;
+    if (!broken)
+        return;
+    crack k = crack_of(args, i, q);
+    opening o = measure(law, &p, &k);
+    rg_law_answer a = ask(args, &p, &o, &k, *k.state[RG_CRACK_OPENING], false);
+    if (unlinked)
+        energy[RG_E_COHESIVE] += p.weight * p.area * a.stored;
+    if (!law->flux && o.normal < law->contact_below)
+        energy[RG_E_CONTACT] +=
+            p.weight * p.contact * o.normal * o.normal / 2 * (law->potential ? overlap(&p, &o) : 1);
+    for (int d = 0; d < 2 && law->friction > 0; d++) {
+        double stretch = *k.friction[RG_FRICTION_STRETCH + d];
+        energy[RG_E_CONTACT] += p.weight * p.iso * stretch * stretch / 2;
+    }
+    energy[RG_E_DISSIPATED] += p.weight * p.area * a.dissipated;
+}
+
+void rg_reference_interface_state(const rg_interface_state_args *args, size_t begin, size_t end) {
+    for (size_t i = begin * RG_LANES; i < end * RG_LANES; i++) {
+        double energy[RG_E_INTERFACE] = {0};
+        size_t row = i / RG_LANES - begin;
+        for (int q = 0; q < RG_POINTS; q++)
+            point_energy(args->interface, i, q, energy);
+        for (size_t k = 0; k < RG_E_INTERFACE; k++)
+            args->energy[(row * RG_E_INTERFACE + k) * RG_LANES + i % RG_LANES] = energy[k];
+    }
+}

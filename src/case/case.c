@@ -1,0 +1,42 @@
+/* What follows from the values of a case. */
+#include "case/case.h"
+
+#include <string.h>
+
+const rg_material_input *rg_case_material(const rg_case *c, int i) {
+    return i == 0 ? &c->material : &c->other[i - 1].is;
+}
+
+const char *rg_case_material_name(const rg_case *c, int i) {
+    const char *name = rg_case_material(c, i)->name;
+    return name != NULL ? name : "material";
+}
+
+int rg_case_find_material(const rg_case *c, const char *name) {
+    for (int i = 0; i <= c->others; i++) {
+        if (strcmp(rg_case_material_name(c, i), name) == 0) {
+            return i;
+        }
+    }
+    return -1;
+}
+
+/* Of all materials. */
+static unsigned internal_fields(const rg_case *c) {
+    unsigned inside = 0;
+    for (int i = 0; i <= c->others; i++) {
+        inside |= rg_material_inside(rg_case_material(c, i)->model);
+    }
+    return (inside & RG_HAS_DAMAGE ? RG_FIELD_DAMAGE : 0U) | (inside & RG_HAS_REGIME ? RG_FIELD_REGIME : 0U) |
+           (inside & RG_HAS_PLASTIC ? RG_FIELD_PLASTIC : 0U);
+}
+
+unsigned rg_case_default_fields(const rg_case *c) {
+    unsigned internal = internal_fields(c);
+    return RG_FIELDS_COMMON | internal | (internal != 0 ? RG_FIELD_TRIAXIALITY : 0U) |
+           (c->others > 0 ? RG_FIELD_MATERIAL : 0U);
+}
+
+unsigned rg_case_possible_fields(const rg_case *c) {
+    return RG_FIELDS_COMMON | RG_FIELD_RANK | RG_FIELD_TRIAXIALITY | RG_FIELD_MATERIAL | internal_fields(c);
+}

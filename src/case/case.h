@@ -1,0 +1,185 @@
+/* The case file: what a run computes. Strict YAML; every problem is reported at once with its place. */
+#ifndef RG_CASE_H
+#define RG_CASE_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "case/expr.h"
+#include "kernels.h"
+#include "materials.h"
+
+typedef enum { RG_INTERACTION_THESIS, RG_INTERACTION_DERIVED } rg_interaction;
+typedef enum { RG_FORM_VARIATIONAL, RG_FORM_INCOMPLETE, RG_FORM_INTRINSIC, RG_FORM_CONTINUOUS } rg_form;
+typedef enum { RG_PENALTY_ELASTIC, RG_PENALTY_ISOTROPIC } rg_penalty;
+typedef enum { RG_ACTIVATION_CONTINUOUS, RG_ACTIVATION_TOTAL, RG_ACTIVATION_CONSERVING } rg_activation;
+typedef enum { RG_CONTACT_PENALTY, RG_CONTACT_FLUX, RG_CONTACT_POTENTIAL } rg_contact;
+typedef enum { RG_OUTPUT_DOUBLE, RG_OUTPUT_SINGLE } rg_output_precision;
+typedef enum { RG_FRAGMENTS_EACH, RG_FRAGMENTS_LAST, RG_FRAGMENTS_NONE } rg_fragments_when;
+typedef enum { RG_KEEP_ENERGY, RG_KEEP_OPENING } rg_keep;
+typedef enum { RG_MASS_CONSISTENT, RG_MASS_LUMPED } rg_mass;
+typedef enum { RG_SHAPE_SPHERE, RG_SHAPE_PLANE, RG_SHAPE_CYLINDER } rg_shape_kind;
+typedef enum { RG_MOTION_FREE, RG_MOTION_PRESCRIBED } rg_motion;
+
+/* output.fields, as bits */
+enum {
+    RG_FIELD_DISPLACEMENT = 1,
+    RG_FIELD_VELOCITY = 2,
+    RG_FIELD_STRESS = 4,        /* Cauchy stress, mean per element */
+    RG_FIELD_MEAN = 8,          /* mean stress */
+    RG_FIELD_PRINCIPAL = 16,    /* principal stresses, largest first */
+    RG_FIELD_CRACK = 32,        /* crack surface */
+    RG_FIELD_DAMAGE = 64,       /* of the material: mean per element */
+    RG_FIELD_REGIME = 128,      /* largest of the element's points */
+    RG_FIELD_PLASTIC = 256,     /* equivalent plastic strain: mean per element */
+    RG_FIELD_TRIAXIALITY = 512, /* mean over von Mises stress, of the mean Cauchy stress */
+    RG_FIELD_RANK = 1024,       /* rank that owns the element, and that speaks for the cracked face */
+    RG_FIELD_FRAGMENT = 2048,   /* id of the fragment */
+    RG_FIELD_MATERIAL = 4096,   /* number of the material: 0 that of `material`, then those of `materials` */
+    RG_FIELDS_COMMON = 63 | RG_FIELD_FRAGMENT, /* what every run puts out by default */
+};
+
+typedef struct {
+    char *set;            /* named set of faces */
+    int component;        /* 0, 1, 2 for x, y, z */
+    bool is_displacement; /* prescribed displacement (m), else velocity (m/s) */
+    rg_expr *value;
+} rg_boundary;
+
+typedef struct {
+    rg_material_model model;
+    double young, poisson, density;
+    double parameter[RG_PARAMETERS];    /* materials.h */
+    rg_deshpande_evans deshpande_evans; /* but for poisson, density, yield_stress and single_pi */
+    rg_interaction interaction;         /* c3 of the ceramic: as printed, or as one derives it */
+    char *name;                         /* NULL: "material", of the one without which no case is */
+} rg_material_input;
+
+/* A material besides `material`, and where it is: one of `set` and `where`. */
+typedef struct {
+    rg_material_input is;
+    char *set;      /* volume set of the mesh file */
+    rg_expr *where; /* elements at whose centroid this is not 0 (m) */
+} rg_other_material;
+
+/* Most materials in a case, `material` included. */
+enum { RG_MAX_MATERIALS = 32 };
+
+/* Faces with properties of their own: those that `where` and `between` (NULL: no such condition) select. */
+typedef struct {
+    rg_expr *where; /* not 0: by their middle x, y, z (m), unit normal nx, ny, nz */
+    int names;
+    char **between;          /* names of the materials on both sides */
+    double strength, energy; /* of these (Pa, J/m^2); 0: the interface's */
+} rg_face_set;
+
+typedef struct {
+    char *name;   /* column prefix in history.csv */
+    double at[3]; /* reference position (m) */
+} rg_probe;
+
+/* A rigid body that the solid's surface touches; it moves without turning. Values that the shape or the
+ * motion has no use for are 0. */
+typedef struct {
+    char *name; /* column prefix in history.csv */
+    rg_shape_kind shape;
+    rg_motion motion;
+    double at[3];         /* centre of the sphere, a point of the plane or of the axis, at the start (m) */
+    double normal[3];     /* of the plane, away from the body; of any length */
+    double axis[3];       /* of the cylinder, which has no ends; of any length */
+    double radius;        /* m */
+    double density, mass; /* kg/m^3, kg: one of them, of a free body */
+    rg_expr *velocity[3]; /* m/s: at the start, or prescribed in time; NULL: zero */
+    int sets;             /* of faces that may touch it; 0: all on the surface */
+    char **set;
+    double penalty; /* contact stiffness times h/(lambda + 2 mu), h the height of an element over its face */
+} rg_body_input;
+
+typedef struct {
+    char *path; /* as given on the command line */
+    char *name; /* its file name without directory and extension */
+    struct {
+        int64_t cells[3];
+        double size[3], origin[3];
+        double jitter; /* fraction of the smallest cell edge */
+        int64_t seed;
+        char *file;       /* a mesh file (mesh/file.h), as an absolute path; NULL: built-in box */
+        rg_expr *weight;  /* cost of an element at x, y, z over that of others; NULL: all the same */
+        double rebalance; /* most over mean work of ranks from which tiles are dealt anew; 0: never */
+    } mesh;
+    rg_material_input material; /* of all elements that no other one claims */
+    int others;
+    rg_other_material *other; /* the last one that claims an element has it */
+    struct {
+        rg_form form;
+        rg_expr *faces; /* form continuous: those that carry an interface, as in rg_face_set; NULL: none */
+        double beta_s;
+        rg_penalty penalty;
+        rg_law law;
+        double strength, energy, beta;
+        rg_activation activation;
+        double onset; /* of a conserving activation (kernels.h: RG_ONSET) */
+        rg_contact contact;
+        double friction;                     /* coefficient of closed faces */
+        double shape[RG_LAWS][RG_LAW_SHAPE]; /* parameters of its own of each law */
+        int sets;
+        rg_face_set *set; /* faces with properties of their own */
+        struct {
+            double modulus, area; /* m; A_0 (m^2); modulus 0: strengths are not random */
+            int64_t seed;
+            rg_keep keep;
+        } weibull;
+    } interface;
+    rg_mass mass;
+    struct {
+        double linear, quadratic; /* b1, b2 */
+    } viscosity;
+    struct {
+        rg_expr *displacement[3], *velocity[3]; /* NULL: zero */
+    } initial;
+    int boundaries;
+    rg_boundary *boundary;
+    int bodies;
+    rg_body_input *body;
+    struct {
+        double end;      /* s */
+        double safety;   /* fraction of the critical time step */
+        int64_t steps;   /* limit on the number of steps; 0: none */
+        double collapse; /* the run stops when the step falls below this fraction of the one at rest */
+    } time;
+    struct {
+        char *dir;
+        double interval_time;   /* s; 0 if given in steps */
+        int64_t interval_steps; /* 0 if given in time */
+        int times;              /* moments of field output; 0: at every interval */
+        double *time;           /* s, ascending */
+        int probes;
+        rg_probe *probe;
+        unsigned fields;
+        rg_expr *region; /* fields of the elements at whose centroid this is not 0; NULL: of all */
+        rg_output_precision precision; /* of the fields on the disk */
+        int64_t compression;           /* of the fields on the disk; 0: none */
+        rg_fragments_when fragments; /* output.fragments: rows for each output, for the last one, for none */
+        double energy_limit;         /* the run stops when energy_error_rel passes this */
+    } output;
+    struct { /* when to write checkpoints; 0: not for that reason */
+        int64_t steps;
+        double time;      /* simulated (s) */
+        double wall_time; /* s */
+        int64_t keep;     /* of them, the last ones */
+    } checkpoint;
+} rg_case;
+
+/* Input of material i (0: `material`, then the others), and its name. */
+const rg_material_input *rg_case_material(const rg_case *c, int i);
+const char *rg_case_material_name(const rg_case *c, int i);
+
+/* Number of the material of that name; -1 if there is none. */
+int rg_case_find_material(const rg_case *c, const char *name);
+
+/* Fields that a run puts out where the case asks for none in particular, and all that its materials let it
+ * put out. */
+unsigned rg_case_default_fields(const rg_case *c);
+unsigned rg_case_possible_fields(const rg_case *c);
+
+#endif

@@ -1,0 +1,323 @@
+/* Walks the tree: finds each key of a table, reports unknown, missing and repeated ones, reads the others. */
+#include "case/check.h"
+
+#include <string.h>
+
+#include "base/mem.h"
+
+/* One mapping being checked against one table. */
+typedef struct {
+    rg_check *ck;
+    const rg_key_table *table;
+    const rg_node *top;                /* the mapping */
+    const char *path;                  /* its own path with a dot behind it, or "" */
+    const rg_node *found[RG_MAX_KEYS]; /* by key; NULL: absent */
+} scan;
+
+static bool check_table(rg_check *ck, const rg_key_table *table, const rg_node *node, const char *path,
+                        void *base);
+
+/* ---- which keys are there ---- */
+
+static void report_key(const scan *s, const rg_node *node, const char *name, const char *nearest,
+                       const char *what) {
+    char *path = rg_text_format("%s%s", s->path, name);
+    rg_subject subject = {.key = path, .nearest = nearest};
+    rg_problem_add(s->ck->problems, node->key_at, &subject, "%s", what);
+    rg_free(path);
+}
+
+static void report_unknown(const scan *s, const rg_node *node, const char *name) {
+    char nearest[64];
+    report_key(s, node, name, rg_key_nearest(s->table, name, nearest, sizeof nearest), "unknown key");
+}
+
+static void report_repeated(const scan *s, const rg_node *node, const char *name, rg_place first) {
+    char *what = rg_text_format("given twice, first at line %d column %d", first.line, first.column);
+    report_key(s, node, name, NULL, what);
+    rg_free(what);
+}
+
+static void collect(scan *s, const rg_node *mapping, const char *prefix);
+
+static void collect_one(scan *s, const rg_node *mapping, const rg_node *node, const char *name) {
+    const rg_node *first = rg_node_find(mapping, node->key, strlen(node->key));
+    const rg_key *key = rg_key_find(s->table, name);
+    if (strchr(node->key, '.') != NULL) {
+        report_key(s, node, name, NULL, "unknown key: the parts of a dotted key stand on lines of their own");
+    } else if (first != node) {
+        report_repeated(s, node, name, first->key_at);
+    } else if (key != NULL) {
+        s->found[key - s->table->key] = node;
+    } else if (!rg_key_is_section(s->table, name)) {
+        report_unknown(s, node, name);
+    } else if (node->kind == RG_NODE_MAPPING) {
+        char *prefix = rg_text_format("%s.", name);
+        collect(s, node, prefix);
+        rg_free(prefix);
+    } else if (node->kind != RG_NODE_BAD) {
+        char value[64];
+        char *path = rg_text_format("%s%s", s->path, name);
+        rg_subject subject = {
+            .key = path, .value = rg_node_is_null(node) ? NULL : rg_node_line(node, value, sizeof value)};
+        rg_problem_add(s->ck->problems, node->at, &subject, "%s",
+                       rg_node_is_null(node) ? "no value" : "not a mapping of keys");
+        rg_free(path);
+    }
+}
+
+static void collect(scan *s, const rg_node *mapping, const char *prefix) {
+    for (int i = 0; i < mapping->children; i++) {
+        const rg_node *node = &mapping->child[i];
+        bool bad_key = node->key[0] == '\0' && node->kind == RG_NODE_BAD;
+        if (!bad_key) {
+            char *name = rg_text_format("%s%s", prefix, node->key);
+            collect_one(s, mapping, node, name);
+            rg_free(name);
+        }
+    }
+}
+
+/* The innermost mapping (maybe empty) that exists on the way to `name`; NULL if something else stands there,
+ * which is reported already. */
+static const rg_node *parent_of(const rg_node *top, const char *name) {
+    const rg_node *parent = top;
+    for (const char *dot = strchr(name, '.'); dot != NULL; dot = strchr(name, '.')) {
+        const rg_node *next = rg_node_find(parent, name, (size_t)(dot - name));
+        if (next == NULL) {
+            return parent;
+        }
+        if (next->kind != RG_NODE_MAPPING) {
+            return rg_node_is_null(next) ? next : NULL;
+        }
+        parent = next;
+        name = dot + 1;
+    }
+    return parent;
+}
+
+/* ---- values ---- */
+
+static bool missing(const scan *s, const rg_key *key, const char *path) {
+    const rg_node *parent = parent_of(s->top, key->name);
+    if (parent != NULL) {
+        char allowed[160];
+        rg_subject subject = {.key = path, .allowed = rg_key_allowed(key, allowed, sizeof allowed)};
+        rg_problem_add(s->ck->problems, parent->at, &subject, "missing");
+    }
+    return false;
+}
+
+/* Of a choice it is the first word, which 0 stands for; of the fields see rg_fields_rule. */
+static void set_default(const rg_key *key, void *base) {
+    char *value = (char *)base + key->offset;
+    int64_t integer = (int64_t)key->fallback;
+    for (int i = 0; i < key->count && key->type == RG_KEY_REAL; i++) {
+        memcpy(value + (size_t)i * sizeof(double), &key->fallback, sizeof(double));
+    }
+    if (key->type == RG_KEY_INTEGER) {
+        memcpy(value, &integer, sizeof integer);
+    }
+}
+
+static void check_entry(rg_check *ck, const rg_key *key, const rg_node *list, const char *path, int i,
+                        char *entries) {
+    char *item = rg_text_format("%s[%d]", path, i);
+    char *dotted = rg_text_format("%s.", item);
+    const rg_node *node = &list->child[i];
+    bool good = false;
+    if (key->entry == &rg_material_table) {
+        ck->material = (rg_material_check){.path = dotted, .of = &ck->c->other[i].is, .flaws = true};
+    }
+    if (node->kind == RG_NODE_MAPPING) {
+        good = check_table(ck, key->entry, node, dotted, entries + (size_t)i * key->entry->size);
+    } else {
+        rg_value_wrong(ck, key, node, item, NULL, "not a mapping of keys");
+    }
+    if (key->entry == &rg_boundary_table) {
+        rg_boundary_rule(ck, list, i, item, good);
+    } else if (key->entry == &rg_body_table) {
+        rg_body_rule(ck, list, i, item, good);
+    } else if (key->entry == &rg_probe_table) {
+        rg_probe_rule(ck, list, i, item, good);
+    } else if (key->entry == &rg_material_table) {
+        rg_material_rule(ck, list, i, item);
+    } else if (key->entry == &rg_face_set_table) {
+        rg_face_set_rule(ck, list, i, item, good);
+    }
+    rg_free(dotted);
+    rg_free(item);
+}
+
+static bool check_list(rg_check *ck, const rg_key *key, const rg_node *list, const char *path, char *base) {
+    if (list->kind != RG_NODE_LIST) {
+        rg_value_wrong(ck, key, list, path, NULL, "not a list");
+        return false;
+    }
+    int before = ck->problems->count;
+    char *entries = rg_alloc((size_t)list->children, key->entry->size);
+    rg_pointer_set(base + key->offset, entries);
+    memcpy(base + key->offset_count, &list->children, sizeof list->children);
+    for (int i = 0; i < list->children; i++) {
+        check_entry(ck, key, list, path, i, entries);
+    }
+    return ck->problems->count == before;
+}
+
+static const char *why_unused(const scan *s, const rg_key *key, char *text, size_t size) {
+    if (key->group == RG_GROUP_BOX) {
+        return "cannot be given together with mesh.file";
+    }
+    if (key->group == RG_GROUP_WEIBULL) {
+        return "not used without interface.weibull.modulus";
+    }
+    if (key->models == 0) {
+        snprintf(text, size, "not used, because interface.%s", rg_why_unused(key->group, s->ck->c));
+        return text;
+    }
+    char words[160];
+    const rg_material_check *m = &s->ck->material;
+    rg_models_words(key, words, sizeof words);
+    snprintf(text, size, "not used, because %smodel is %s; it belongs to %s", m->path,
+             rg_material_word(m->of->model), words);
+    return text;
+}
+
+static bool refuse_unused(const scan *s, const rg_key *key, const rg_node *node, const char *path) {
+    char value[64], why[256];
+    rg_subject subject = {.key = path, .value = rg_node_line(node, value, sizeof value)};
+    rg_problem_add(s->ck->problems, node->key_at, &subject, "%s", why_unused(s, key, why, sizeof why));
+    return false;
+}
+
+static rg_usage usage_of(const rg_check *ck, const rg_key *key) {
+    if (key->models == 0) {
+        return ck->usage[key->group];
+    }
+    if (!ck->material.model) {
+        return RG_UNSURE;
+    }
+    return (key->models >> ck->material.of->model & 1U) != 0 ? RG_USED : RG_UNUSED;
+}
+
+static bool check_key(const scan *s, const rg_key *key, const rg_node *node, const char *path, void *base) {
+    rg_usage usage = usage_of(s->ck, key);
+    if (key->group == RG_GROUP_LAW && usage == RG_USED && !rg_key_used(key, base)) {
+        usage = RG_UNUSED;
+    }
+    if (node == NULL) {
+        if (key->need == RG_NEED_REQUIRED && usage == RG_USED) {
+            return missing(s, key, path);
+        }
+        if (key->need == RG_NEED_DEFAULT) {
+            set_default(key, base);
+        }
+        return key->need != RG_NEED_REQUIRED;
+    }
+    if (usage == RG_UNUSED) {
+        return refuse_unused(s, key, node, path);
+    }
+    return key->type == RG_KEY_LIST ? check_list(s->ck, key, node, path, base)
+                                    : rg_value_read(s->ck, key, node, path, base);
+}
+
+/* What the value of a key of a material says about others. */
+static void learn_material(rg_check *ck, const rg_key *key, const rg_node *node, bool good) {
+    size_t at = key->offset - key->input;
+    rg_material_check *m = &ck->material;
+    if (at == offsetof(rg_material_input, model)) {
+        m->model = good;
+        ck->models = ck->models && good;
+        if (good) {
+            rg_model_rule(ck, node);
+        }
+    } else if (at == offsetof(rg_material_input, parameter[RG_PARAMETER_SATURATION_STRESS])) {
+        m->saturation = good ? node : NULL;
+        m->saturates = good;
+    } else if (at == offsetof(rg_material_input, parameter[RG_PARAMETER_SATURATION_RATE]) && good) {
+        rg_saturation_rule(ck, node);
+    } else if (at == offsetof(rg_material_input, deshpande_evans.flaw_density)) {
+        m->flaws = m->flaws && good;
+        m->density = node;
+    } else if (at == offsetof(rg_material_input, deshpande_evans.flaw_radius) ||
+               at == offsetof(rg_material_input, deshpande_evans.alpha)) {
+        m->flaws = m->flaws && good;
+    } else if (at == offsetof(rg_material_input, deshpande_evans.damage_max) && m->flaws && good) {
+        rg_flaw_rule(ck);
+    }
+}
+
+/* Whether a group is used, where what decides on it is `good`. */
+static rg_usage usage_if(bool good, rg_key_group group, const rg_case *c) {
+    return !good ? RG_UNSURE : rg_group_used(group, c) ? RG_USED : RG_UNUSED;
+}
+
+/* What the value of a key of the case says about others. */
+static void learn(rg_check *ck, const rg_key *key, const rg_node *node, bool good) {
+    if (key->offset == offsetof(rg_case, material.name) && node != NULL && good) {
+        rg_material_name_rule(ck, node);
+    } else if (key->offset == offsetof(rg_case, interface.form)) {
+        ck->form = good;
+        ck->usage[RG_GROUP_FACES] = usage_if(good, RG_GROUP_FACES, ck->c);
+    } else if (key->offset == offsetof(rg_case, interface.faces)) {
+        ck->form = ck->form && good;
+        ck->usage[RG_GROUP_INTERFACE] = usage_if(ck->form, RG_GROUP_INTERFACE, ck->c);
+        ck->usage[RG_GROUP_DG] = usage_if(ck->form, RG_GROUP_DG, ck->c);
+    } else if (key->offset == offsetof(rg_case, interface.law)) {
+        rg_law_rule(ck, node, good);
+    } else if (key->offset == offsetof(rg_case, interface.activation)) {
+        rg_activation_rule(ck, node, good);
+    } else if (key->offset == offsetof(rg_case, interface.contact) && good) {
+        rg_contact_rule(ck, node);
+    } else if (key->offset == offsetof(rg_case, interface.friction) && good) {
+        rg_friction_rule(ck, node);
+    } else if (key->offset == offsetof(rg_case, mass) && good && ck->form) {
+        rg_mass_rule(ck, node);
+    } else if (key->offset == offsetof(rg_case, interface.weibull.modulus)) {
+        ck->usage[RG_GROUP_WEIBULL] = node == NULL ? RG_UNUSED : good ? RG_USED : RG_UNSURE;
+    } else if (key->offset == offsetof(rg_case, mesh.file) && node != NULL) {
+        ck->usage[RG_GROUP_BOX] = RG_UNUSED;
+        ck->box = false;
+        if (good) {
+            rg_mesh_file_rule(ck, node);
+        }
+    } else if (key->offset == offsetof(rg_case, output.time) && node != NULL && good) {
+        rg_times_rule(ck, node);
+    } else if (key->offset == offsetof(rg_case, mesh.size) || key->offset == offsetof(rg_case, mesh.origin)) {
+        ck->box = ck->box && good;
+    } else if (key->offset == offsetof(rg_case, output.fields) && good && ck->models) {
+        rg_fields_rule(ck, key, node);
+    }
+}
+
+static bool check_table(rg_check *ck, const rg_key_table *table, const rg_node *node, const char *path,
+                        void *base) {
+    scan s = {.ck = ck, .table = table, .top = node, .path = path};
+    int before = ck->problems->count;
+    collect(&s, node, "");
+    bool all = ck->problems->count == before;
+    for (int i = 0; i < table->keys; i++) {
+        char *name = rg_text_format("%s%s", path, table->key[i].name);
+        bool good = check_key(&s, &table->key[i], s.found[i], name, base);
+        all = all && good;
+        if (table->key[i].of_material) {
+            learn_material(ck, &table->key[i], s.found[i], good);
+        } else if (table == &rg_case_table) {
+            learn(ck, &table->key[i], s.found[i], good);
+        }
+        rg_free(name);
+    }
+    return all;
+}
+
+void rg_case_check(rg_check *ck, const rg_node *root) {
+    ck->box = ck->models = true;
+    ck->material = (rg_material_check){.path = "material.", .of = &ck->c->material, .flaws = true};
+    if (root->kind == RG_NODE_MAPPING) {
+        check_table(ck, &rg_case_table, root, "", ck->c);
+    } else if (root->kind != RG_NODE_BAD) {
+        char value[64];
+        rg_subject subject = {.value = rg_node_line(root, value, sizeof value)};
+        rg_problem_add(ck->problems, root->at, &subject, "a case is a mapping of keys");
+    }
+}

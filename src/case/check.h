@@ -1,0 +1,95 @@
+/* Checking the tree of a case file against the registry of keys, and filling the case. */
+#ifndef RG_CASE_CHECK_H
+#define RG_CASE_CHECK_H
+
+#include "case/key.h"
+#include "case/tree.h"
+
+typedef enum { RG_USED, RG_UNUSED, RG_UNSURE /* what decides is itself wrong */ } rg_usage;
+
+/* The block of a material that is being checked. */
+typedef struct {
+    const char *path; /* "material." or that of an entry of materials with a dot behind it */
+    rg_material_input *of;
+    bool model;                /* its model is good */
+    bool flaws;                /* what the initial damage follows from is good */
+    const rg_node *density;    /* its flaw_density; NULL: not there */
+    bool saturates;            /* its saturation_stress is good */
+    const rg_node *saturation; /* its saturation_stress; NULL: not there */
+} rg_material_check;
+
+typedef struct {
+    rg_problems *problems;
+    rg_case *c;
+    rg_usage usage[RG_GROUPS];
+    bool box;    /* mesh.origin and mesh.size are good */
+    bool form;   /* interface.form and .faces are good */
+    bool models; /* those of all materials are good */
+    rg_material_check material;
+} rg_check;
+
+/* Fills ck->c, a zeroed case, from the tree and reports every problem. */
+void rg_case_check(rg_check *ck, const rg_node *root);
+
+/* Reads one value of `key` (any type but a list of mappings) into the structure `base`. False: wrong and
+ * reported under `path`. */
+bool rg_value_read(rg_check *ck, const rg_key *key, const rg_node *node, const char *path, void *base);
+
+/* Reports a wrong value with what the key allows; `nearest` may be NULL. */
+void rg_value_wrong(rg_check *ck, const rg_key *key, const rg_node *node, const char *path,
+                    const char *nearest, const char *what);
+
+/* Makes mesh.file, given relative to the case file, a path that holds anywhere; reports a file that cannot be
+ * read. */
+void rg_mesh_file_rule(rg_check *ck, const rg_node *node);
+
+/* Rules of the materials (case/material.c), but for the last two of the block in ck->material: a model that
+ * this build does not have; hardening that saturates, which needs a stress, not below the yield stress, and a
+ * rate (at `node`); an initial damage that leaves nothing to grow, reported at its flaw_density; what the
+ * name is made of (at `node`); output fields that no material has, or, without `node`, those that they put
+ * out by default. */
+void rg_model_rule(rg_check *ck, const rg_node *node);
+void rg_saturation_rule(rg_check *ck, const rg_node *node);
+void rg_flaw_rule(rg_check *ck);
+void rg_material_name_rule(rg_check *ck, const rg_node *node);
+void rg_fields_rule(rg_check *ck, const rg_key *key, const rg_node *node);
+/* Reports output times after the end of the run. */
+void rg_times_rule(rg_check *ck, const rg_node *node);
+
+/* Which keys of the interface are used, from form and law, which must fit each other. */
+void rg_law_rule(rg_check *ck, const rg_node *node, bool good);
+
+/* Form continuous has no other mass than the lumped one, which is its default. */
+void rg_mass_rule(rg_check *ck, const rg_node *node);
+
+/* A conserving activation: whether interface.onset is used (with `node` NULL or wrong too), and what form and
+ * law must be. */
+void rg_activation_rule(rg_check *ck, const rg_node *node, bool good);
+
+/* Contact `flux` brings DG terms back: form intrinsic has none, a conserving activation does not count them.
+ */
+void rg_contact_rule(rg_check *ck, const rg_node *node);
+
+/* Friction acts on faces that contact `penalty` keeps closed. */
+void rg_friction_rule(rg_check *ck, const rg_node *node);
+
+/* Why a key of `group`, which the interface has no use for, is not used: "form is intrinsic", "law is
+ * linear". */
+const char *rg_why_unused(rg_key_group group, const rg_case *c);
+
+/* Rules that tie several keys together, applied to entry i of a list once its keys are read. `good`: all of
+ * them were. An entry that is not is left so that later entries are not compared with it. */
+void rg_boundary_rule(rg_check *ck, const rg_node *list, int i, const char *path, bool good);
+void rg_body_rule(rg_check *ck, const rg_node *list, int i, const char *path, bool good);
+void rg_probe_rule(rg_check *ck, const rg_node *list, int i, const char *path, bool good);
+void rg_material_rule(rg_check *ck, const rg_node *list, int i, const char *path);
+void rg_face_set_rule(rg_check *ck, const rg_node *list, int i, const char *path, bool good);
+
+/* Letters, digits, _ and - alone. */
+bool rg_is_name(const char *text);
+
+/* Checks the name of a list's entry, which becomes part of column headings: of what letters it is, and that
+ * no body or probe before it has it. */
+void rg_name_rule(rg_check *ck, const rg_node *item, const char *path, const char *name);
+
+#endif

@@ -1,0 +1,133 @@
+/* The registry of all keys of a case file. Reading, checking, suggestions, echo and freeing all derive from
+ * it. */
+#ifndef RG_CASE_KEY_H
+#define RG_CASE_KEY_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "case/case.h"
+#include "case/problem.h"
+
+/* Defaults that rest on measurements. */
+#define RG_DEFAULT_MASS   RG_MASS_CONSISTENT
+#define RG_DEFAULT_SAFETY 0.5
+
+typedef enum {
+    RG_KEY_REAL,     /* double [count] */
+    RG_KEY_INTEGER,  /* int64_t [count] */
+    RG_KEY_CHOICE,   /* an enum: position in `choice` */
+    RG_KEY_FLAGS,    /* unsigned: list of entries of `choice`, one bit each */
+    RG_KEY_TEXT,     /* char *: any text, or one of `choice` if given */
+    RG_KEY_TEXTS,    /* char **: list of such texts */
+    RG_KEY_REALS,    /* double *: list of any length */
+    RG_KEY_EXPR,     /* rg_expr *: number or expression */
+    RG_KEY_INTERVAL, /* output.interval: steps or seconds, by the kind of number */
+    RG_KEY_LIST,     /* array of mappings with the keys of `entry` */
+} rg_key_type;
+
+typedef enum {
+    RG_NEED_REQUIRED,
+    RG_NEED_DEFAULT,  /* `fallback`, in every component */
+    RG_NEED_OPTIONAL, /* absent is 0 (of vectors: all three) or NULL, or derived from other keys */
+} rg_key_need;
+
+/* Keys that are used only in some cases; given in others, they are refused rather than ignored. */
+typedef enum {
+    RG_GROUP_ALWAYS,
+    RG_GROUP_BOX,          /* unless mesh.file */
+    RG_GROUP_COHESIVE,     /* unless interface.law is none */
+    RG_GROUP_ENERGY,       /* if the law has a work of separation */
+    RG_GROUP_SHEAR,        /* if the law has an effective opening */
+    RG_GROUP_LAW,          /* if interface.law is the key's `law` */
+    RG_GROUP_FACES,        /* if interface.form is continuous */
+    RG_GROUP_INTERFACE,    /* unless it is, and interface.faces is not given */
+    RG_GROUP_DG,           /* the same, and unless interface.form is intrinsic */
+    RG_GROUP_SWITCH,       /* if points switch from DG to a law: there is one, and DG terms */
+    RG_GROUP_ONSET,        /* ... by the conserving activation */
+    RG_GROUP_WEIBULL,      /* if interface.weibull.modulus is given */
+    RG_GROUP_VELOCITY,     /* boundary entries: one of the two */
+    RG_GROUP_DISPLACEMENT, /* the other */
+    RG_GROUPS,
+} rg_key_group;
+
+struct rg_key_table;
+
+typedef struct {
+    const char *name; /* dotted path within the mapping that the table describes */
+    const char *unit; /* NULL if it has none */
+    rg_key_type type;
+    rg_key_need need;
+    rg_key_group group;
+    bool of_material;          /* in the block of a material */
+    size_t input;              /* of one that is: offset of its rg_material_input in the structure */
+    unsigned models;           /* materials.h: bits of the models that use it; 0: all */
+    int count;                 /* numbers: 1 or 3 */
+    double low, high;          /* numbers: range */
+    bool low_open, high_open;  /* range without its ends */
+    bool no_time, no_place;    /* expression without t; without x, y, z */
+    bool normal;               /* expression of a face, with nx, ny, nz */
+    bool may_change;           /* on a restart: nothing that was computed depends on it */
+    const char *const *choice; /* NULL-terminated; of a text: with the built-in mesh only */
+    double fallback;
+    rg_law law;                       /* of a parameter of one law (RG_GROUP_LAW) */
+    size_t offset;                    /* of the value in the structure */
+    const struct rg_key_table *entry; /* of a list */
+    size_t offset_count;              /* of lists: where their length (int) is kept */
+} rg_key;
+
+typedef struct rg_key_table {
+    const rg_key *key;
+    int keys;
+    size_t size; /* of the structure that the keys fill */
+} rg_key_table;
+
+enum { RG_MAX_KEYS = 128 }; /* at most, in a table */
+
+/* A key comes after the keys that decide whether its group is used. */
+extern const rg_key_table rg_case_table, rg_material_table, rg_boundary_table, rg_body_table, rg_probe_table,
+    rg_face_set_table;
+
+/* What a value of the key must be, in words. Returns `text`. */
+const char *rg_key_allowed(const rg_key *key, char *text, size_t size);
+
+/* The models that use the key, in words. */
+void rg_models_words(const rg_key *key, char *text, size_t size);
+
+/* Whether the key is used in the filled structure `base`. */
+bool rg_key_used(const rg_key *key, const void *base);
+
+/* The same for a group that follows from law and form (RG_GROUP_COHESIVE to RG_GROUP_SWITCH, but for
+ * RG_GROUP_LAW). */
+bool rg_group_used(rg_key_group group, const rg_case *c);
+
+/* The key with exactly this name, or NULL. */
+const rg_key *rg_key_find(const rg_key_table *table, const char *name);
+
+/* True if some key lies below `name`: "mesh", "initial.velocity". */
+bool rg_key_is_section(const rg_key_table *table, const char *name);
+
+/* The key or section probably meant by `name`, in `text`, or NULL. */
+const char *rg_key_nearest(const rg_key_table *table, const char *name, char *text, size_t size);
+
+/* The pointer (to whatever type) kept at `place`. */
+static inline void *rg_pointer_get(const void *place) {
+    void *pointer = NULL;
+    memcpy(&pointer, place, sizeof pointer);
+    return pointer;
+}
+
+static inline void rg_pointer_set(void *place, const void *pointer) {
+    memcpy(place, &pointer, sizeof pointer);
+}
+
+/* Whether the structure `base` has a value of the key to write, and writes it in YAML (no list). */
+bool rg_key_present(const rg_key *key, const void *base);
+void rg_key_write(FILE *out, const rg_key *key, const void *base);
+
+/* Frees what the keys' values own in `base`. */
+void rg_keys_free(const rg_key_table *table, void *base);
+
+#endif

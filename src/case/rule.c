@@ -1,0 +1,334 @@
+/* Rules that tie several keys of the case file together. */
+#include "case/check.h"
+
+#include <errno.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "base/mem.h"
+#include "cohesive/facts.h"
+
+/* ---- mesh.file: relative to the case file, which case.yaml in the output directory is not ---- */
+
+void rg_mesh_file_rule(rg_check *ck, const rg_node *node) {
+    char *file = ck->c->mesh.file, here[4096];
+    const char *slash = strrchr(ck->problems->file, '/');
+    int folder = file[0] == '/' || slash == NULL ? 0 : (int)(slash - ck->problems->file) + 1;
+    char *path = rg_text_format("%.*s%s", folder, ck->problems->file, file);
+    if (access(path, R_OK) != 0) {
+        rg_subject subject = {
+            .key = "mesh.file", .value = file, .allowed = "path of a mesh file, relative to the case file"};
+        rg_problem_add(ck->problems, node->at, &subject, "cannot be read: %s", strerror(errno));
+    } else if (path[0] == '/' || getcwd(here, sizeof here) == NULL) {
+        ck->c->mesh.file = rg_text_copy(path, strlen(path));
+        rg_free(file);
+    } else {
+        ck->c->mesh.file = rg_text_format("%s/%s", here, path);
+        rg_free(file);
+    }
+    rg_free(path);
+}
+
+void rg_times_rule(rg_check *ck, const rg_node *node) {
+    const rg_case *c = ck->c;
+    int last = c->output.times - 1;
+    if (c->time.end > 0 && c->output.time[last] > c->time.end) {
+        rg_subject subject = {.key = "output.times", .value = node->child[last].text};
+        rg_problem_add(ck->problems, node->child[last].at, &subject, "after time.end, %g s", c->time.end);
+    }
+}
+
+/* ---- interface: law and form ---- */
+
+static const char *law_word(rg_law law) {
+    return law == RG_LAW_NONE ? "none" : rg_law_facts_of(law, (double[RG_LAW_SHAPE]){0}, 1).word;
+}
+
+static int forms_of(rg_law law) {
+    return rg_law_facts_of(law, (double[RG_LAW_SHAPE]){0}, 1).forms;
+}
+
+/* What a form asks of a law. */
+typedef struct {
+    int bit;           /* of the law's forms; 0: no law at all */
+    const char *words; /* the form, or what else asks */
+    const char *other; /* why another law does not fit */
+} demand;
+
+static const demand dg_law = {RG_FORMS_DG, "form variational or incomplete",
+                              "starts with a slope, which only form intrinsic can use"};
+static const demand face_law = {RG_FORMS_DG, "form continuous",
+                                "starts with a slope, which only form intrinsic can use"};
+static const demand sloped_law = {RG_FORMS_INTRINSIC, "form intrinsic",
+                                  "does not start with a slope, which form intrinsic needs"};
+static const demand no_law = {0, "form continuous and no interface.faces",
+                              "nothing can break, because form continuous has interfaces only on the faces "
+                              "that interface.faces selects"};
+
+static const demand falling_law = {RG_ENVELOPE, "activation conserving",
+                                   "needs a law that falls from the strength by opening alone"};
+
+static const demand *demand_of(const rg_case *c) {
+    switch (c->interface.form) {
+    case RG_FORM_INTRINSIC:
+        return &sloped_law;
+    case RG_FORM_CONTINUOUS:
+        return c->interface.faces != NULL ? &face_law : &no_law;
+    default:
+        return &dg_law;
+    }
+}
+
+static bool fits(const demand *d, rg_law law) {
+    return law == RG_LAW_NONE ? d != &sloped_law && d != &falling_law : (forms_of(law) & d->bit) != 0;
+}
+
+const char *rg_why_unused(rg_key_group group, const rg_case *c) {
+    static char text[64];
+    bool none = c->interface.law == RG_LAW_NONE, intrinsic = c->interface.form == RG_FORM_INTRINSIC;
+    if (group == RG_GROUP_FACES) {
+        return "form is not continuous";
+    }
+    if (group == RG_GROUP_ONSET && rg_group_used(RG_GROUP_SWITCH, c)) {
+        return "activation is not conserving";
+    }
+    bool switches = group == RG_GROUP_SWITCH || group == RG_GROUP_ONSET;
+    if (group == RG_GROUP_INTERFACE || group == RG_GROUP_DG || (switches && !none)) {
+        return intrinsic ? "form is intrinsic" : "form is continuous, without interface.faces";
+    }
+    snprintf(text, sizeof text, "law is %s", law_word(c->interface.law));
+    return text;
+}
+
+/* "with form intrinsic: free, exponential" */
+static void laws_for(const demand *d, char *text, size_t size) {
+    snprintf(text, size, "with %s", d->words);
+    const char *join = ": ";
+    for (int law = 0; law <= (int)RG_LAWS; law++) {
+        if (fits(d, (rg_law)law)) {
+            rg_text_add(text, size, "%s%s", join, law_word((rg_law)law));
+            join = ", ";
+        }
+    }
+}
+
+static void check_law_and_form(rg_check *ck, const rg_node *node) {
+    const demand *d = demand_of(ck->c);
+    rg_law law = ck->c->interface.law;
+    if (!fits(d, law)) {
+        char allowed[256];
+        laws_for(d, allowed, sizeof allowed);
+        rg_subject subject = {.key = "interface.law", .value = law_word(law), .allowed = allowed};
+        rg_problem_add(ck->problems, node->at, &subject, "%s", d->other);
+    }
+}
+
+/* Its speed is the difference of two openings, of which floats leave too little. */
+static void check_rate(rg_check *ck, const rg_node *node) {
+    if (sizeof(rg_real) < sizeof(double) && ck->c->interface.law == RG_LAW_RATE) {
+        rg_subject subject = {.key = "interface.law", .value = law_word(RG_LAW_RATE)};
+        rg_problem_add(ck->problems, node->at, &subject,
+                       "needs double precision, and this program is built with -Dprecision=single");
+    }
+}
+
+void rg_law_rule(rg_check *ck, const rg_node *node, bool good) {
+    static const rg_key_group groups[] = {RG_GROUP_COHESIVE, RG_GROUP_ENERGY, RG_GROUP_SHEAR, RG_GROUP_LAW,
+                                          RG_GROUP_SWITCH};
+    for (size_t i = 0; i < sizeof groups / sizeof *groups; i++) {
+        bool sure = good && (ck->form || groups[i] != RG_GROUP_SWITCH);
+        ck->usage[groups[i]] = !sure ? RG_UNSURE : rg_group_used(groups[i], ck->c) ? RG_USED : RG_UNUSED;
+    }
+    if (good && ck->form) {
+        check_law_and_form(ck, node);
+        check_rate(ck, node);
+    }
+}
+
+static void check_conserving(rg_check *ck, const rg_node *node) {
+    const rg_case *c = ck->c;
+    char laws[128];
+    rg_subject subject = {.key = "interface.activation", .value = "conserving"};
+    if (c->interface.form != RG_FORM_VARIATIONAL) {
+        subject.allowed = "with this form: continuous, total";
+        rg_problem_add(ck->problems, node->at, &subject,
+                       "counts the energy of the lift, which form variational alone has");
+    }
+    if (!fits(&falling_law, c->interface.law)) {
+        laws_for(&falling_law, laws, sizeof laws);
+        subject.allowed = laws;
+        rg_problem_add(ck->problems, node->at, &subject, "%s, and interface.law is %s", falling_law.other,
+                       law_word(c->interface.law));
+    }
+}
+
+void rg_activation_rule(rg_check *ck, const rg_node *node, bool good) {
+    rg_usage switches = ck->usage[RG_GROUP_SWITCH];
+    bool conserving = ck->c->interface.activation == RG_ACTIVATION_CONSERVING;
+    ck->usage[RG_GROUP_ONSET] = switches == RG_UNUSED            ? RG_UNUSED
+                                : switches == RG_UNSURE || !good ? RG_UNSURE
+                                : conserving                     ? RG_USED
+                                                                 : RG_UNUSED;
+    if (node != NULL && ck->usage[RG_GROUP_ONSET] == RG_USED) {
+        check_conserving(ck, node);
+    }
+}
+
+void rg_contact_rule(rg_check *ck, const rg_node *node) {
+    bool conserving = ck->usage[RG_GROUP_ONSET] == RG_USED;
+    if (conserving && ck->c->interface.contact == RG_CONTACT_FLUX) {
+        rg_subject subject = {.key = "interface.contact",
+                              .value = "flux",
+                              .allowed = "with activation conserving: penalty, potential"};
+        rg_problem_add(ck->problems, node->at, &subject,
+                       "brings DG terms back, whose energy activation conserving does not count");
+    }
+    if (ck->form && ck->c->interface.form == RG_FORM_INTRINSIC &&
+        ck->c->interface.contact == RG_CONTACT_FLUX) {
+        rg_subject subject = {
+            .key = "interface.contact", .value = "flux", .allowed = "with form intrinsic: penalty"};
+        rg_problem_add(ck->problems, node->at, &subject,
+                       "brings DG terms back, which form intrinsic does not have");
+    }
+}
+
+void rg_friction_rule(rg_check *ck, const rg_node *node) {
+    if (ck->c->interface.friction > 0 && ck->c->interface.contact != RG_CONTACT_PENALTY) {
+        bool flux = ck->c->interface.contact == RG_CONTACT_FLUX;
+        rg_subject subject = {.key = "interface.friction",
+                              .value = node->text,
+                              .allowed = flux ? "with contact flux: 0" : "with contact potential: 0"};
+        rg_problem_add(ck->problems, node->at, &subject,
+                       flux ? "contact flux holds closed faces by all DG terms, so they do not slide"
+                            : "friction has no part in the potential, whose forces would turn with it");
+    }
+}
+
+void rg_mass_rule(rg_check *ck, const rg_node *node) {
+    if (ck->c->interface.form != RG_FORM_CONTINUOUS) {
+        return;
+    }
+    if (node != NULL && ck->c->mass != RG_MASS_LUMPED) {
+        rg_subject subject = {
+            .key = "mass", .value = "consistent", .allowed = "with form continuous: lumped"};
+        rg_problem_add(
+            ck->problems, node->at, &subject,
+            "couples all nodes that elements share, so that each step would have to solve with it");
+    }
+    ck->c->mass = RG_MASS_LUMPED;
+}
+
+/* ---- boundary: one prescribed motion per entry, one entry per set and component ---- */
+
+static bool one_motion(rg_check *ck, const rg_node *item, const char *path, rg_boundary *b) {
+    const rg_node *velocity = rg_node_find(item, "velocity", strlen("velocity"));
+    const rg_node *displacement = rg_node_find(item, "displacement", strlen("displacement"));
+    b->is_displacement = displacement != NULL;
+    if ((velocity == NULL) != (displacement == NULL)) {
+        return true;
+    }
+    rg_subject subject = {.key = path, .allowed = "exactly one of velocity, displacement"};
+    if (velocity == NULL) {
+        rg_problem_add(ck->problems, item->at, &subject, "missing velocity or displacement");
+    } else {
+        rg_problem_add(ck->problems, displacement->key_at, &subject, "velocity and displacement both given");
+    }
+    return false;
+}
+
+static const rg_node *same_motion(const rg_case *c, const rg_node *list, int i) {
+    for (int j = 0; j < i; j++) {
+        const rg_boundary *a = &c->boundary[j], *b = &c->boundary[i];
+        if (a->component == b->component && strcmp(a->set, b->set) == 0) {
+            return &list->child[j];
+        }
+    }
+    return NULL;
+}
+
+void rg_boundary_rule(rg_check *ck, const rg_node *list, int i, const char *path, bool good) {
+    rg_boundary *b = &ck->c->boundary[i];
+    bool mapping = list->child[i].kind == RG_NODE_MAPPING;
+    good = mapping && one_motion(ck, &list->child[i], path, b) && good;
+    if (!good) {
+        b->component = -1; /* equals no other */
+        return;
+    }
+    const rg_node *first = same_motion(ck->c, list, i);
+    if (first != NULL) {
+        rg_problem_add(ck->problems, list->child[i].at, &(rg_subject){.key = path},
+                       "set %s component %c is prescribed twice, first at line %d column %d", b->set,
+                       "xyz"[b->component], first -> at.line, first->at.column);
+    }
+}
+
+/* ---- names: unique, fit for a column heading ---- */
+
+static bool is_taken(const rg_case *c, const char *name) {
+    for (int j = 0; j < c->bodies; j++) {
+        const char *other = c->body[j].name;
+        if (other != NULL && other != name && strcmp(other, name) == 0) {
+            return true;
+        }
+        if (other == name) {
+            return false;
+        }
+    }
+    for (int j = 0; j < c->output.probes; j++) {
+        const char *other = c->output.probe[j].name;
+        if (other == name) {
+            return false;
+        }
+        if (other != NULL && strcmp(other, name) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+bool rg_is_name(const char *text) {
+    static const char allowed[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
+    return strspn(text, allowed) == strlen(text);
+}
+
+void rg_name_rule(rg_check *ck, const rg_node *item, const char *path, const char *name) {
+    const rg_node *node = rg_node_find(item, "name", strlen("name"));
+    const char *wrong = !rg_is_name(name)       ? "not a name"
+                        : is_taken(ck->c, name) ? "the name of an earlier body or probe"
+                                                : NULL;
+    if (wrong != NULL && node != NULL) {
+        char *key = rg_text_format("%s.name", path);
+        rg_subject subject = {.key = key,
+                              .value = node->text,
+                              .allowed = "letters, digits, _ and -; unique among bodies and probes"};
+        rg_problem_add(ck->problems, node->at, &subject, "%s", wrong);
+        rg_free(key);
+    }
+}
+
+/* ---- probes: places inside the box ---- */
+
+static void check_place(rg_check *ck, const rg_node *item, const char *path, const rg_probe *probe) {
+    const rg_node *node = rg_node_find(item, "at", strlen("at"));
+    const double *origin = ck->c->mesh.origin, *size = ck->c->mesh.size;
+    for (int k = 0; k < 3 && node != NULL; k++) {
+        if (probe->at[k] < origin[k] || probe->at[k] > origin[k] + size[k]) {
+            char *key = rg_text_format("%s.at[%d]", path, k);
+            char *allowed = rg_text_format("number >= %g and <= %g (m)", origin[k], origin[k] + size[k]);
+            rg_subject subject = {.key = key, .value = node->child[k].text, .allowed = allowed};
+            rg_problem_add(ck->problems, node->child[k].at, &subject, "outside the box");
+            rg_free(allowed);
+            rg_free(key);
+        }
+    }
+}
+
+void rg_probe_rule(rg_check *ck, const rg_node *list, int i, const char *path, bool good) {
+    const rg_node *item = &list->child[i];
+    if (ck->c->output.probe[i].name != NULL) {
+        rg_name_rule(ck, item, path, ck->c->output.probe[i].name);
+    }
+    if (good && ck->box) {
+        check_place(ck, item, path, &ck->c->output.probe[i]);
+    }
+}

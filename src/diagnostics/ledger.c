@@ -1,0 +1,257 @@
+#include "diagnostics/ledger.h"
+
+#include <float.h>
+#include <math.h>
+#include <omp.h>
+
+#include "base/mem.h"
+#include "domain/element.h"
+#include "quadrature.h"
+#include "solver/tile.h"
+
+enum {
+    KINETIC,
+    BULK,
+    INTERFACE,
+    DISSIPATED = INTERFACE + RG_E_DISSIPATED,
+    EXTERNAL,
+    RELEASED,
+    VISCOUS = RELEASED + RG_RELEASED,
+    FRICTION,
+    BROKEN,
+    FAILED,
+    VOLUME,
+    MOMENTUM,
+    ANGULAR = MOMENTUM + 3,
+    SUMS = ANGULAR + 3
+};
+
+static void add_all(rg_exact_sum *sum, const double *x, size_t count) {
+    for (size_t i = 0; i < count; i++) {
+        rg_exact_add(sum, x[i]);
+    }
+}
+
+/* Momentum int rho v and angular momentum int rho x cross v of an element, both from M v at the
+ * nodes. */
+static void add_momentum(rg_exact_sum *sum, const rg_solver *s, size_t slot) {
+    double mv[RG_NODES][3], p[3] = {0, 0, 0}, l[3] = {0, 0, 0};
+    rg_mass_times(s->lumped, rg_element_mass(s->domain, s->material, slot), s->now, slot, mv);
+    for (int n = 0; n < RG_NODES; n++) {
+        double x[3];
+        rg_node_position(s->domain->corner + 12 * slot, n, x);
+        for (int c = 0; c < 3; c++) {
+            x[c] += s->u[rg_node_index(slot, n, c)];
+            p[c] += mv[n][c];
+        }
+        for (int c = 0; c < 3; c++) {
+            int a = (c + 1) % 3, b = (c + 2) % 3;
+            l[c] += x[a] * mv[n][b] - x[b] * mv[n][a];
+        }
+    }
+    for (int c = 0; c < 3; c++) {
+        rg_exact_add(&sum[MOMENTUM + c], p[c]);
+        rg_exact_add(&sum[ANGULAR + c], l[c]);
+    }
+}
+
+static void add_released(rg_exact_sum *sum, const rg_solver *s, size_t slot) {
+    int history = rg_material_history(rg_material_of(s, slot)->model);
+    for (size_t k = 0; history > 0 && k < RG_RELEASED; k++) {
+        rg_exact_add(&sum[RELEASED + k], rg_history_value(s, slot, (size_t)(RG_GAUSS * history) + k));
+    }
+}
+
+static void kinetic_energies(const rg_solver *s, const rg_tile *t, double *energy) {
+    rg_kinetic_args kinetic = {.lumped = s->lumped,
+                               .geom = s->domain->geom + t->begin * RG_GEOM_BLOCK,
+                               .velocity = s->now + t->begin * RG_NODE_BLOCK};
+    for (size_t begin = 0, end; begin < rg_tile_eblocks(t); begin = end) {
+        end = rg_run_end(s->domain, t, begin);
+        kinetic.density = rg_block_material(s, t, begin)->density;
+        kinetic.energy = energy + begin * RG_LANES;
+        s->kernels->kinetic(&kinetic, begin, end);
+    }
+}
+
+static void element_energies(rg_solver *s, const rg_tile *t, const rg_workspace *w, double *energy,
+                             rg_exact_sum sum[SUMS]) {
+    size_t blocks = rg_tile_eblocks(t);
+    rg_tile_state(s, t, w, energy, NULL, NULL);
+    add_all(&sum[BULK], energy, blocks * RG_LANES);
+    kinetic_energies(s, t, energy);
+    add_all(&sum[KINETIC], energy, blocks * RG_LANES);
+    for (size_t slot = t->begin * RG_LANES; slot < t->end * RG_LANES; slot++) {
+        if (s->domain->id[slot] >= 0) {
+            add_released(sum, s, slot);
+            if (s->heat != NULL) {
+                rg_exact_add(&sum[VISCOUS], s->heat[slot]);
+            }
+            rg_exact_add(&sum[VOLUME], s->domain->geom[rg_geom_index(slot, RG_GEOM_VOLUME)]);
+            add_momentum(sum, s, slot);
+        }
+    }
+}
+
+static void add_areas(rg_exact_sum sum[SUMS], const rg_solver *s, size_t i) {
+    static const double weight[2] = {RG_TRI_W0, RG_TRI_W1};
+    double normal[3], area = rg_interface_area(s->domain, i, normal);
+    for (int q = 0; q < RG_POINTS; q++) {
+        if (rg_point_is_broken(s, i, q)) {
+            rg_exact_add(&sum[BROKEN], weight[q / 3] * area);
+            bool failed = *rg_crack_value(s, i, q, RG_CRACK_OPENING) >= rg_separation(s, i);
+            rg_exact_add(&sum[FAILED], failed ? weight[q / 3] * area : 0);
+        }
+    }
+}
+
+static void add_friction(rg_exact_sum sum[SUMS], const rg_solver *s, size_t i) {
+    for (int q = 0; q < RG_POINTS && s->law.friction > 0; q++) {
+        if (s->broken[i] >> q & 1) {
+            rg_exact_add(&sum[FRICTION], *rg_friction_value(s, i, q, RG_FRICTION_HEAT));
+        }
+    }
+}
+
+/* Of the two copies of a seam one is counted. */
+static void interface_energies(rg_solver *s, const rg_tile *t, const rg_workspace *w, double *energy,
+                               rg_exact_sum sum[SUMS]) {
+    rg_interface_args interface = rg_tile_interfaces(s, t, w);
+    rg_interface_state_args args = {&interface, energy};
+    s->kernels->interface_state(&args, 0, rg_tile_iblocks(t));
+    for (size_t i = t->ibegin * RG_LANES; i < t->iend * RG_LANES; i++) {
+        if (!s->domain->counted[i]) {
+            continue;
+        }
+        for (size_t k = 0; k < RG_E_INTERFACE; k++) {
+            size_t row = i / RG_LANES - t->ibegin;
+            rg_exact_add(&sum[INTERFACE + k], energy[(row * RG_E_INTERFACE + k) * RG_LANES + i % RG_LANES]);
+        }
+        if (s->broken[i]) {
+            add_areas(sum, s, i);
+            add_friction(sum, s, i);
+        }
+    }
+}
+
+static void sum_up(rg_solver *s, rg_exact_sum sum[SUMS]) {
+    const rg_domain *d = s->domain;
+    size_t most =
+        d->tile_iblocks * RG_E_INTERFACE > d->tile_blocks ? d->tile_iblocks * RG_E_INTERFACE : d->tile_blocks;
+#pragma omp parallel
+    {
+        rg_exact_sum mine[SUMS] = {0};
+        rg_workspace *w = &s->work[omp_get_thread_num()];
+        double *energy = RG_NEW(double, most *RG_LANES);
+#pragma omp for schedule(static) nowait
+        for (size_t t = 0; t < d->tiles; t++) {
+            rg_tile_receive(s, &d->tile[t], w);
+            element_energies(s, &d->tile[t], w, energy, mine);
+            interface_energies(s, &d->tile[t], w, energy, mine);
+            rg_bodies_energy(s->bodies, t, s->u, &mine[INTERFACE + RG_E_CONTACT]);
+        }
+        rg_free(energy);
+#pragma omp critical
+        for (int k = 0; k < SUMS; k++) {
+            rg_exact_merge(&sum[k], &mine[k]);
+        }
+    }
+}
+
+const rg_energy *rg_ledger_take(rg_ledger *l, rg_solver *s) {
+    rg_exact_sum sum[SUMS] = {0};
+    rg_constraints_work(s->constraints, &sum[EXTERNAL]);
+    sum_up(s, sum);
+    rg_exact_allreduce(sum, SUMS, s->comm);
+    double v[SUMS];
+    for (int k = 0; k < SUMS; k++) {
+        v[k] = rg_exact_value(&sum[k]);
+    }
+    const double *part = v + INTERFACE;
+    rg_bodies_account bodies = rg_bodies_take(s->bodies);
+    rg_energy *e = &l->last;
+    *e = (rg_energy){.step = s->step,
+                     .time = s->time,
+                     .kinetic = v[KINETIC],
+                     .bodies = bodies.kinetic,
+                     .bulk = v[BULK],
+                     .penalty = part[RG_E_PENALTY],
+                     .cohesive = part[RG_E_COHESIVE],
+                     .contact = part[RG_E_CONTACT],
+                     .dissipated = part[RG_E_DISSIPATED],
+                     .plastic = v[RELEASED + RG_RELEASED_PLASTIC],
+                     .damage = v[RELEASED + RG_RELEASED_DAMAGE],
+                     .viscous = v[VISCOUS],
+                     .friction = v[FRICTION],
+                     .external = v[EXTERNAL] + bodies.work,
+                     .broken_area = v[BROKEN],
+                     .failed_area = v[FAILED],
+                     .momentum = {v[MOMENTUM], v[MOMENTUM + 1], v[MOMENTUM + 2]},
+                     .angular_momentum = {v[ANGULAR], v[ANGULAR + 1], v[ANGULAR + 2]}};
+    for (int c = 0; c < 3; c++) {
+        e->momentum[c] += bodies.momentum[c];
+        e->angular_momentum[c] += bodies.angular_momentum[c];
+    }
+    double stored = e->kinetic + e->bodies + e->bulk + e->penalty + e->cohesive + e->contact + e->dissipated +
+                    e->plastic + e->damage + e->viscous + e->friction;
+    e->total = stored - e->external;
+    if (!l->begun) {
+        *l = (rg_ledger){.begun = true, .start = e->total, .last = *e};
+    }
+    double mu = 0;
+    for (int m = 0; m < s->materials; m++) {
+        mu = fmax(mu, s->material[m].mu);
+    }
+    l->largest = fmax(fmax(l->largest, fabs(stored)), 1e3 * DBL_EPSILON * mu * v[VOLUME]);
+    e->error = e->total == l->start ? 0 : (e->total - l->start) / l->largest;
+    l->worst = isnan(e->error) ? INFINITY : fmax(l->worst, fabs(e->error));
+    return e;
+}
+
+double rg_first_fracture(const rg_solver *s) {
+    double first = INFINITY;
+    for (size_t i = 0; i < s->domain->iblocks * RG_LANES; i++) {
+        for (int q = 0; s->broken[i] && q < RG_POINTS; q++) {
+            if (rg_point_is_broken(s, i, q)) {
+                first = fmin(first, *rg_crack_value(s, i, q, RG_CRACK_TIME));
+            }
+        }
+    }
+    MPI_Allreduce(MPI_IN_PLACE, &first, 1, MPI_DOUBLE, MPI_MIN, s->comm);
+    return first;
+}
+
+void rg_energy_header(rg_csv *t) {
+    rg_csv_header(
+        t, "step,time,kinetic,bodies,bulk,penalty,cohesive,contact,dissipated,plastic,damage,viscous,"
+           "friction,external_work,total,error_rel,broken_area,failed_area,momentum_x,momentum_y,momentum_z,"
+           "angular_x,angular_y,"
+           "angular_z");
+}
+
+void rg_energy_row(rg_csv *t, const rg_energy *e) {
+    const double row[] = {e->time,
+                          e->kinetic,
+                          e->bodies,
+                          e->bulk,
+                          e->penalty,
+                          e->cohesive,
+                          e->contact,
+                          e->dissipated,
+                          e->plastic,
+                          e->damage,
+                          e->viscous,
+                          e->friction,
+                          e->external,
+                          e->total,
+                          e->error,
+                          e->broken_area,
+                          e->failed_area,
+                          e->momentum[0],
+                          e->momentum[1],
+                          e->momentum[2],
+                          e->angular_momentum[0],
+                          e->angular_momentum[1],
+                          e->angular_momentum[2]};
+    rg_csv_row(t, &e->step, 1, row, sizeof row / sizeof *row);
+}

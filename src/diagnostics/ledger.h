@@ -1,0 +1,48 @@
+/* The energy ledger: kinetic + bulk + penalty + cohesive + contact + dissipated + plastic + damage + viscous
+ * + friction - external work = constant. */
+#ifndef RG_LEDGER_H
+#define RG_LEDGER_H
+
+#include "base/files.h"
+#include "solver/solver.h"
+
+typedef struct {
+    int64_t step;
+    double time;
+    double kinetic, bodies, bulk, penalty, cohesive, contact; /* J; kinetic: of the solid, bodies: of free
+ rigid ones; contact: of cracks and of bodies */
+    double dissipated;                                        /* by cracks between elements (J) */
+    double plastic,
+        damage;         /* set free in the bulk by plastic flow and by growing microcracks (J); the latter
+                     can be negative, where growth raises the stored energy (material/deshpande_evans_model.h) */
+    double viscous;     /* dissipated by bulk viscosity (J) */
+    double friction;    /* dissipated where closed cracks slide (J); what they store while they stick is
+                         * part of contact */
+    double external;    /* work done by prescribed motions (J) */
+    double total;       /* sum of the parts less the external work (J) */
+    double error;       /* change of the total since the start, over the largest energy seen (or what
+                         * rounding of F makes of the energy, if that is more: 1000 eps mu V) */
+    double broken_area; /* of the points that switched (m^2) */
+    double failed_area; /* of those that carry nothing any more (m^2) */
+    double momentum[3], angular_momentum[3]; /* with free bodies: kg m/s, kg m^2/s about the origin */
+} rg_energy;
+
+typedef struct {
+    bool begun;
+    double start, largest; /* total at the start, largest energy so far (J) */
+    double worst;          /* largest |error| so far */
+    rg_energy last;
+} rg_ledger;
+
+/* Takes stock of the current state, between its kick and its drift. Sums are exact: the same bits on any
+ * ranks and threads. Collective; returns &l->last. */
+const rg_energy *rg_ledger_take(rg_ledger *l, rg_solver *s);
+
+/* Time at which the first point switched (s); infinite if none has. Collective. */
+double rg_first_fracture(const rg_solver *s);
+
+/* Columns of energy.csv, and a row of it. */
+void rg_energy_header(rg_csv *t);
+void rg_energy_row(rg_csv *t, const rg_energy *e);
+
+#endif

@@ -1,0 +1,218 @@
+#include "diagnostics/probe.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/error.h"
+#include "base/files.h"
+#include "base/mem.h"
+#include "base/spot.h"
+#include "domain/element.h"
+#include "quadrature.h"
+#include "solver/tile.h"
+
+enum { VALUES = 12, BODY = 9, CAPACITY = 256 }; /* per probe, body and sample; samples between two flushes */
+
+static const char *const column[VALUES] = {"ux",  "uy",  "uz",  "vx",  "vy",  "vz",
+                                           "sxx", "syy", "szz", "syz", "sxz", "sxy"};
+
+static const char *const body_column[BODY] = {"x", "y", "z", "vx", "vy", "vz", "fx", "fy", "fz"};
+
+struct rg_probes {
+    MPI_Comm comm;
+    int rank, probes, samples;
+    int row; /* values of a sample: of the probes, then of the bodies */
+    const rg_bodies *bodies;
+    rg_lid *slot;                 /* [probes]; -1 where another rank has it */
+    double (*at)[4];              /* [probes]: barycentric coordinates */
+    double *time, *value, *total; /* [CAPACITY], [CAPACITY][row]; total: on rank 0 */
+    FILE *file;
+};
+
+/* The element with the lowest number that contains probe i. */
+static rg_lid locate(const rg_solver *s, int i, double at[4]) {
+    const double *x = s->input->output.probe[i].at;
+    const double inside = -1e-9;
+    rg_lid found = -1;
+    for (size_t slot = 0; slot < s->domain->blocks * RG_LANES; slot++) {
+        rg_gid id = s->domain->id[slot];
+        double l[4];
+        if (id < 0 || (found >= 0 && id > s->domain->id[found])) {
+            continue;
+        }
+        rg_barycentric(s->domain->corner + 12 * slot, x, l);
+        if (fmin(fmin(l[0], l[1]), fmin(l[2], l[3])) >= inside) {
+            found = (rg_lid)slot;
+            memcpy(at, l, sizeof l);
+        }
+    }
+    int64_t id = found >= 0 ? s->domain->id[found] : INT64_MAX, first;
+    MPI_Allreduce(&id, &first, 1, MPI_INT64_T, MPI_MIN, s->comm);
+    if (first == INT64_MAX) {
+        rg_speak(s->comm);
+        const char *file = s->input->mesh.file;
+        rg_fatal(RG_USAGE, "%s: output.probes[%d].at: [%g, %g, %g]: no element of %s contains it",
+                 s->input->path, i, x[0], x[1], x[2], file != NULL ? file : "the mesh");
+    }
+    return id == first ? found : -1;
+}
+
+static void write_header(rg_probes *p, const rg_case *c) {
+    p->file = rg_open_in(c->output.dir, "history.csv");
+    fprintf(p->file, "time");
+    for (int i = 0; i < p->probes; i++) {
+        for (int k = 0; k < VALUES; k++) {
+            fprintf(p->file, ",%s_%s", c->output.probe[i].name, column[k]);
+        }
+    }
+    for (int i = 0; i < c->bodies * BODY; i++) {
+        fprintf(p->file, ",%s_%s", c->body[i / BODY].name, body_column[i % BODY]);
+    }
+    fputc('\n', p->file);
+}
+
+/* Stress at barycentric point l: linear through the four Gauss points. */
+static void stress_at(const rg_solver *s, const rg_workspace *w, size_t slot, const double l[4],
+                      double out[6]) {
+    _Alignas(64) double cauchy[RG_GAUSS * 6 * RG_LANES];
+    const rg_tile *t = rg_tile_of(s->domain, slot);
+    size_t block = slot / RG_LANES - t->begin;
+    rg_bulk_args bulk = rg_tile_bulk(s, t, w, block);
+    rg_bulk_state_args args = {.bulk = &bulk, .cauchy = cauchy};
+    s->kernels->bulk_state(&args, block, block + 1);
+    for (size_t k = 0; k < 6; k++) {
+        out[k] = 0;
+        for (size_t g = 0; g < RG_GAUSS; g++) { /* sum_i l_i e_ig, e_ig = (delta_ig - a)/(b - a) */
+            out[k] += (l[g] - RG_GAUSS_A) / RG_GAUSS_BA * cauchy[(g * 6 + k) * RG_LANES + slot % RG_LANES];
+        }
+    }
+}
+
+static void sample(const rg_solver *s, const rg_workspace *w, size_t slot, const double l[4],
+                   double out[VALUES]) {
+    double N[RG_NODES];
+    rg_shape(l, N);
+    for (int c = 0; c < 3; c++) {
+        out[c] = out[3 + c] = 0;
+        for (int n = 0; n < RG_NODES; n++) {
+            out[c] += N[n] * s->u[rg_node_index(slot, n, c)];
+            out[3 + c] += N[n] * s->now[rg_node_index(slot, n, c)];
+        }
+    }
+    stress_at(s, w, slot, l, out + 6);
+}
+
+/* Tiles are watched by several threads at once, each with its own probes. */
+static void watch(void *context, rg_solver *s, size_t tile, const rg_workspace *w) {
+    rg_probes *p = context;
+    for (int i = 0; i < p->probes; i++) {
+        if (p->slot[i] >= 0 && rg_tile_of(s->domain, (size_t)p->slot[i]) == &s->domain->tile[tile]) {
+            sample(s, w, (size_t)p->slot[i], p->at[i], p->value + p->samples * p->row + i * VALUES);
+        }
+    }
+}
+
+rg_probes *rg_probes_find(const rg_solver *s) {
+    rg_probes *p = RG_NEW(rg_probes, 1);
+    int probes = s->input->output.probes;
+    *p = (rg_probes){.comm = s->comm,
+                     .rank = s->rank,
+                     .probes = probes,
+                     .row = probes * VALUES + s->bodies->count * BODY,
+                     .bodies = s->bodies};
+    p->slot = RG_NEW(rg_lid, (size_t)p->probes);
+    p->at = rg_alloc((size_t)p->probes, sizeof *p->at);
+    for (int i = 0; i < p->probes; i++) {
+        p->slot[i] = locate(s, i, p->at[i]);
+    }
+    return p;
+}
+
+/* Room for samples, and the solver's kicks fill it. */
+static void begin(rg_probes *p, rg_solver *s) {
+    size_t size = CAPACITY * (size_t)p->row + 1;
+    p->time = RG_NEW(double, CAPACITY);
+    p->value = RG_NEW(double, size);
+    p->total = RG_NEW(double, size);
+    for (int i = 0; i < p->probes; i++) {
+        if (p->slot[i] >= 0) {
+            s->watched[rg_tile_of(s->domain, (size_t)p->slot[i]) - s->domain->tile] = 1;
+        }
+    }
+    s->watch = watch;
+    s->watch_context = p;
+}
+
+void rg_probes_open(rg_probes *p, rg_solver *s) {
+    begin(p, s);
+    if (p->rank == 0 && p->row > 0) {
+        write_header(p, s->input);
+    }
+}
+
+void rg_probes_reopen(rg_probes *p, rg_solver *s, int64_t length) {
+    begin(p, s);
+    if (p->rank == 0 && p->row > 0) {
+        p->file = rg_reopen_in(s->input->output.dir, "history.csv", length);
+    }
+}
+
+/* All ranks know the bodies; one says where they are. */
+static void sample_bodies(const rg_probes *p, double *out) {
+    for (int i = 0; p->rank == 0 && i < p->bodies->count; i++) {
+        const rg_body_seen *seen = &p->bodies->body[i].seen;
+        memcpy(out + i * BODY, seen->x, sizeof seen->x);
+        memcpy(out + i * BODY + 3, seen->v, sizeof seen->v);
+        memcpy(out + i * BODY + 6, seen->force, sizeof seen->force);
+    }
+}
+
+void rg_probes_next(rg_probes *p, double time) {
+    if (p->row == 0) {
+        return;
+    }
+    sample_bodies(p, p->value + p->samples * p->row + p->probes * VALUES);
+    p->time[p->samples] = time;
+    if (++p->samples == CAPACITY) {
+        rg_probes_flush(p);
+    }
+}
+
+void rg_probes_flush(rg_probes *p) {
+    int count = p->samples * p->row;
+    if (count == 0) {
+        return;
+    }
+    /* One rank has each value, the others have zero from the start: the sum only brings them together. */
+    MPI_Reduce(p->value, p->total, count, MPI_DOUBLE, MPI_SUM, 0, p->comm);
+    for (int k = 0; p->rank == 0 && k < p->samples; k++) {
+        fprintf(p->file, "%.17g", p->time[k]);
+        for (int i = 0; i < p->row; i++) {
+            fprintf(p->file, ",%.17g", p->total[k * p->row + i]);
+        }
+        fputc('\n', p->file);
+    }
+    if (p->rank == 0 && fflush(p->file) != 0) {
+        rg_fatal(RG_FAILURE, "history.csv: cannot be written: %s", strerror(errno));
+    }
+    p->samples = 0;
+}
+
+int64_t rg_probes_settle(rg_probes *p) {
+    rg_probes_flush(p);
+    return p->file != NULL ? rg_settle(p->file, "history.csv") : 0;
+}
+
+void rg_probes_close(rg_probes *p) {
+    rg_probes_flush(p);
+    if (p->file != NULL) {
+        fclose(p->file);
+    }
+    void *blocks[] = {p->slot, p->at, p->time, p->value, p->total, p};
+    for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) {
+        rg_free(blocks[i]);
+    }
+}

@@ -1,0 +1,33 @@
+/* What is recorded every step, in history.csv: displacement, velocity and stress at the probes; position,
+ * velocity of rigid bodies, and the solid's force on them. */
+#ifndef RG_PROBE_H
+#define RG_PROBE_H
+
+#include "solver/solver.h"
+
+typedef struct rg_probes rg_probes;
+
+/* Finds the elements that hold the probes: of several, the one with the lowest number. Ends the run with a
+ * message if a probe is in none, which of a mesh file nobody knew before. Collective. */
+rg_probes *rg_probes_find(const rg_solver *s);
+
+/* Creates history.csv in the output directory, on rank 0 and if there are probes or bodies. From then on the
+ * solver's kicks record what they see there. */
+void rg_probes_open(rg_probes *p, rg_solver *s);
+
+/* The same, going on with history.csv behind its first `length` bytes. */
+void rg_probes_reopen(rg_probes *p, rg_solver *s, int64_t length);
+
+/* Writes what is buffered and brings it to the disk; the length of history.csv (rank 0; 0 elsewhere).
+ * Collective. */
+int64_t rg_probes_settle(rg_probes *p);
+
+/* Closes the record of a kick at `time` (s). Collective only when the buffer is full. */
+void rg_probes_next(rg_probes *p, double time);
+
+/* Writes what is buffered. Collective. */
+void rg_probes_flush(rg_probes *p);
+
+void rg_probes_close(rg_probes *p);
+
+#endif

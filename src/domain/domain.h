@@ -1,0 +1,103 @@
+/* The domain: what one rank sweeps. Elements and interfaces in tiles and blocks (kernels/layout.h), their
+ * links and geometry. Knows the mesh, no physics and no messages.
+ *
+ * Tiles are the mesh's; those that touch another rank come first. Each has its elements, the interfaces
+ * inside it and its seams, padded to whole blocks. Its elements lie by material, each of them padded, and of
+ * each by number: every block is of one material. A seam has a row by which the other side finds its trace
+ * and its tractions; the rows of other ranks' seams come behind the own ones, in the order in which they
+ * arrive. */
+#ifndef RG_DOMAIN_H
+#define RG_DOMAIN_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "case/case.h"
+#include "layout.h"
+#include "mesh/mesh.h"
+
+typedef struct {
+    rg_gid first;                /* global number of its first element */
+    size_t begin, end;           /* element blocks */
+    size_t ibegin, sbegin, iend; /* interface blocks: inside, then seams */
+    size_t row;                  /* row of the first seam */
+} rg_tile;
+
+/* A face shared with another rank, from this rank's point of view. */
+typedef struct {
+    int32_t rank;   /* the other rank */
+    rg_gid tile[2]; /* global numbers, the lower one first */
+    rg_gid key;     /* the same on both ranks: 4 * lower element number + its local face */
+    size_t seam;    /* its row here */
+} rg_shared_face;
+
+typedef struct {
+    size_t elements, interfaces; /* own elements; interfaces that this rank counts */
+    size_t blocks, iblocks;
+    rg_gid *id;           /* [slots]: global element number; -1 in padding */
+    double *corner;       /* [slots][4][3]: m */
+    int8_t *set;          /* [slots][4]: surface set, -1 for none */
+    uint8_t *material;    /* [blocks]: number of its material */
+    uint16_t *place;      /* [tiles][tile_elements]: slot in its tile, by number in it; NULL: the number */
+    rg_real *geom;        /* kernels/layout.h */
+    int32_t *neighbour;   /* links */
+    int32_t *interface;   /* links */
+    rg_gid tile_elements; /* of every tile but the mesh's last one */
+    size_t tiles, boundary_tiles;
+    rg_tile *tile;
+    size_t tile_blocks, tile_iblocks, tile_sblocks; /* largest of a tile: all, interfaces, seams */
+
+    int32_t *side[2]; /* links of the interfaces */
+    rg_real *igeom;
+    uint8_t (*beside)[2]; /* [interface]: materials of both sides, the lower first; NULL: there is but one */
+    uint8_t *counted; /* [interface]: 1 where this copy speaks for the face (owns the lower-numbered side) */
+    size_t own_rows;  /* of the seams, padding included; `shared` more come behind */
+    size_t shared;
+    rg_shared_face *shared_face; /* sorted by rank, tiles and key: the order in which rows are exchanged */
+} rg_domain;
+
+/* Materials and penalty that enter the interface geometry. */
+typedef struct {
+    int materials;
+    const rg_material *material; /* [materials] */
+    double beta_s;
+    rg_penalty penalty;
+} rg_interface_material;
+
+/* Builds the domain of rank `rank` from its part. Bit f of joined[i] is set where the elements on both sides
+ * of face f of element i share their nodes (domain/joint.h), so that it carries no interface; NULL: nowhere.
+ * The caller owns the result. */
+rg_domain *rg_domain_build(const rg_part *part, const uint8_t *joined, int rank,
+                           const rg_interface_material *m);
+
+/* Tile that holds an element slot. */
+const rg_tile *rg_tile_of(const rg_domain *d, size_t slot);
+
+/* Slot, in its tile t, of element `id`. */
+static inline size_t rg_slot_in(const rg_domain *d, const rg_tile *t, rg_gid id) {
+    size_t number = (size_t)(id - t->first);
+    return d->place == NULL ? number : d->place[(size_t)(t - d->tile) * (size_t)d->tile_elements + number];
+}
+
+/* Where the blocks of tile t that are of one material with its block `begin` end; both count from the tile's
+ * first block. */
+static inline size_t rg_run_end(const rg_domain *d, const rg_tile *t, size_t begin) {
+    const uint8_t *of = d->material + t->begin;
+    size_t end = begin + 1;
+    while (end < t->end - t->begin && of[end] == of[begin]) {
+        end++;
+    }
+    return end;
+}
+
+/* Mass of an element (kg); `m`: the materials, by number. */
+static inline double rg_element_mass(const rg_domain *d, const rg_material *m, size_t slot) {
+    return m[d->material[slot / RG_LANES]].density * (double)d->geom[rg_geom_index(slot, RG_GEOM_VOLUME)];
+}
+
+/* The area vector of an interface (m^2), and its length. */
+double rg_interface_area(const rg_domain *d, size_t i, double normal[3]);
+
+void rg_domain_free(rg_domain *d);
+
+#endif

@@ -1,0 +1,249 @@
+#include "mesh/check.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "base/tet.h"
+#include "layout.h"
+
+/* Relative bounds. */
+static const double least_volume = 1e-12, same_place = 1e-9;
+
+static const double *corner(const rg_mesh *mesh, rg_gid e, int i) {
+    return mesh->x + 3 * mesh->corner[4 * e + i];
+}
+
+static double distance(const double a[3], const double b[3]) {
+    return sqrt((a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) +
+                (a[2] - b[2]) * (a[2] - b[2]));
+}
+
+/* ---- elements ---- */
+
+double rg_tet_longest_edge(const double *x) {
+    double edge = 0;
+    for (int i = 0; i < 4; i++) {
+        for (int j = 0; j < i; j++) {
+            edge = fmax(edge, distance(x + 3 * i, x + 3 * j));
+        }
+    }
+    return edge;
+}
+
+static bool has_volume(const double *x) {
+    double edge = rg_tet_longest_edge(x);
+    return fabs(rg_tet_volume(x, x + 3, x + 6, x + 9)) >
+           least_volume * edge * edge * edge; /* no: not finite */
+}
+
+bool rg_tet_sound(const double *x, const rg_gid corner[4], rg_gid name, char *what) {
+    if (!(corner[0] < corner[1] && corner[1] < corner[2] && corner[2] < corner[3])) {
+        snprintf(what, RG_FAULT_WORDS,
+                 "element %" PRId64
+                 ": its corners must be four different vertices in ascending order; they are "
+                 "%" PRId64 ", %" PRId64 ", %" PRId64 ", %" PRId64,
+                 name, corner[0], corner[1], corner[2], corner[3]);
+    } else if (!has_volume(x)) {
+        snprintf(what, RG_FAULT_WORDS,
+                 "element %" PRId64 " at (%g, %g, %g) m has no volume: %g m3 with edges of up to %g m", name,
+                 x[0], x[1], x[2], fabs(rg_tet_volume(x, x + 3, x + 6, x + 9)), rg_tet_longest_edge(x));
+    } else {
+        return true;
+    }
+    return false;
+}
+
+static void check_element(const rg_mesh *mesh, rg_faults *faults, rg_gid e) {
+    const rg_gid *c = mesh->corner + 4 * e;
+    double x[12] = {0};
+    char what[RG_FAULT_WORDS];
+    for (int i = 0; i < 4; i++) {
+        if (c[i] < 0 || c[i] >= mesh->vertices) {
+            rg_faults_add(faults, e, 0, "element %" PRId64 ": there is no vertex %" PRId64,
+                          rg_mesh_original(mesh, e), c[i]);
+            return;
+        }
+        memcpy(x + 3 * i, corner(mesh, e, i), 3 * sizeof *x);
+    }
+    if (!rg_tet_sound(x, c, rg_mesh_original(mesh, e), what)) {
+        rg_faults_add(faults, e, 0, "%s", what);
+    }
+}
+
+static void check_neighbour(const rg_mesh *mesh, rg_faults *faults, rg_gid e, int f) {
+    rg_gid other = mesh->neighbour[4 * e + f];
+    if (other < 0) {
+        return;
+    }
+    int g = mesh->face[4 * e + f];
+    bool agree = other < mesh->elements && other != e && g >= 0 && g < 4 &&
+                 mesh->neighbour[4 * other + g] == e && mesh->face[4 * other + g] == f;
+    for (int i = 0; i < 3 && agree; i++) {
+        agree = mesh->corner[4 * e + rg_face_node[f][i]] == mesh->corner[4 * other + rg_face_node[g][i]];
+    }
+    if (!agree) {
+        rg_faults_add(faults, e, 1 + f,
+                      "neighbour: element %" PRId64 " takes element %" PRId64
+                      " for its neighbour across face %d, but they do not share it",
+                      rg_mesh_original(mesh, e),
+                      other < mesh->elements ? rg_mesh_original(mesh, other) : other, f);
+    }
+}
+
+static void check_use(const rg_mesh *mesh, rg_faults *faults) {
+    int8_t *used = RG_NEW(int8_t, (size_t)mesh->vertices);
+    for (rg_gid i = 0; i < 4 * mesh->elements; i++) {
+        used[mesh->corner[i]] = 1;
+    }
+    for (rg_gid v = 0; v < mesh->vertices; v++) {
+        if (!used[v]) {
+            rg_faults_add(faults, mesh->elements + v, 0, "no element uses vertex %" PRId64, v);
+        }
+    }
+    rg_free(used);
+}
+
+/* ---- vertices at the same place ---- */
+
+struct projected {
+    double along; /* a line that no regular mesh is aligned with, so that few vertices share a place on it */
+    rg_gid vertex;
+};
+
+static int by_place(const void *a, const void *b) {
+    const struct projected *p = a, *q = b;
+    return (p->along > q->along) - (p->along < q->along);
+}
+
+static rg_gid element_of(const rg_mesh *mesh, rg_gid vertex) {
+    rg_gid i = 0;
+    while (mesh->corner[i] != vertex) {
+        i++;
+    }
+    return rg_mesh_original(mesh, i / 4);
+}
+
+/* twin[v]: the lowest vertex at the place of v, below v; -1 if there is none. */
+static void check_twins(const rg_mesh *mesh, const rg_gid *twin, rg_faults *faults) {
+    for (rg_gid v = 0; v < mesh->vertices; v++) {
+        char *words = twin[v] >= 0 ? rg_faults_place(faults, v, 0) : NULL;
+        if (words != NULL) {
+            const double *x = mesh->x + 3 * v;
+            snprintf(
+                words, RG_FAULT_WORDS,
+                "elements %" PRId64 " and %" PRId64
+                " have different vertices at the same place (%.9g, %.9g, %.9g) m: the mesh is open there; "
+                "merge its duplicate nodes",
+                element_of(mesh, twin[v]), element_of(mesh, v), x[0], x[1], x[2]);
+        }
+    }
+}
+
+static void check_places(const rg_mesh *mesh, rg_faults *faults) {
+    static const double line[3] = {0.5257311, 0.6360098, 0.5648217}; /* of length 1 */
+    struct projected *p = RG_NEW(struct projected, (size_t)mesh->vertices);
+    rg_gid *twin = RG_NEW(rg_gid, (size_t)mesh->vertices);
+    double box[2][3];
+    rg_mesh_box_around(mesh, box);
+    double reach = same_place * distance(box[0], box[1]);
+    for (rg_gid v = 0; v < mesh->vertices; v++) {
+        const double *x = mesh->x + 3 * v;
+        p[v] = (struct projected){line[0] * x[0] + line[1] * x[1] + line[2] * x[2], v};
+        twin[v] = -1;
+    }
+    qsort(p, (size_t)mesh->vertices, sizeof *p, by_place);
+    for (rg_gid i = 0; i < mesh->vertices; i++) {
+        for (rg_gid j = i + 1; j < mesh->vertices && p[j].along - p[i].along <= reach; j++) {
+            rg_gid v = p[i].vertex, w = p[j].vertex, low = v < w ? v : w, high = v < w ? w : v;
+            if (distance(mesh->x + 3 * v, mesh->x + 3 * w) <= reach && (twin[high] < 0 || low < twin[high])) {
+                twin[high] = low;
+            }
+        }
+    }
+    check_twins(mesh, twin, faults);
+    rg_free(twin);
+    rg_free(p);
+}
+
+static void check_hanging(const rg_mesh *mesh, rg_faults *faults) {
+    rg_gid *face = rg_mesh_hanging(mesh);
+    for (rg_gid v = 0; v < mesh->vertices; v++) {
+        char *words = face[v] >= 0 ? rg_faults_place(faults, v, 0) : NULL;
+        if (words != NULL) {
+            const double *x = mesh->x + 3 * v;
+            snprintf(words, RG_FAULT_WORDS,
+                     "a vertex of element %" PRId64
+                     " at (%.9g, %.9g, %.9g) m lies on a face of element %" PRId64
+                     " without being its corner (a hanging node): the mesh is open there",
+                     element_of(mesh, v), x[0], x[1], x[2], rg_mesh_original(mesh, face[v] / 4));
+        }
+    }
+    rg_free(face);
+}
+
+void rg_mesh_check_elements(const rg_mesh *mesh, const char *name) {
+    rg_faults faults = {.name = name};
+    for (rg_gid e = 0; e < mesh->elements; e++) {
+        check_element(mesh, &faults, e);
+    }
+    rg_faults_end(&faults);
+}
+
+void rg_mesh_check_surface(const rg_mesh *mesh, rg_faults *faults) {
+    int64_t before = faults->count;
+    check_places(mesh, faults);
+    if (faults->count == before) { /* each copy of a corner would hang */
+        check_hanging(mesh, faults);
+    }
+}
+
+void rg_mesh_check(const rg_mesh *mesh, const char *name) {
+    rg_faults faults = {.name = name};
+    rg_mesh_check_elements(mesh, name);
+    for (rg_gid e = 0; e < mesh->elements; e++) {
+        for (int f = 0; f < 4; f++) {
+            check_neighbour(mesh, &faults, e, f);
+        }
+    }
+    check_use(mesh, &faults);
+    rg_faults_end(&faults);
+    rg_mesh_check_surface(mesh, &faults);
+    rg_faults_end(&faults);
+}
+
+/* ---- parts ---- */
+
+static void flood(const rg_mesh *mesh, rg_gid first, int32_t number, int32_t *part, rg_gid *stack) {
+    rg_gid depth = 0;
+    stack[depth++] = first;
+    part[first] = number;
+    while (depth > 0) {
+        rg_gid e = stack[--depth];
+        for (int f = 0; f < 4; f++) {
+            rg_gid other = mesh->neighbour[4 * e + f];
+            if (other >= 0 && part[other] < 0) {
+                part[other] = number;
+                stack[depth++] = other;
+            }
+        }
+    }
+}
+
+int32_t rg_mesh_parts(const rg_mesh *mesh, int32_t *part) {
+    int32_t count = 0;
+    rg_gid *stack = RG_NEW(rg_gid, (size_t)mesh->elements);
+    for (rg_gid e = 0; e < mesh->elements; e++) {
+        part[e] = -1;
+    }
+    for (rg_gid e = 0; e < mesh->elements; e++) {
+        if (part[e] < 0) {
+            flood(mesh, e, count++, part, stack);
+        }
+    }
+    rg_free(stack);
+    return count;
+}

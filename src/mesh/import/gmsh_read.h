@@ -1,0 +1,16 @@
+/* Meshes by way of Gmsh. */
+#ifndef RG_GMSH_READ_H
+#define RG_GMSH_READ_H
+
+#include "mesh/mesh.h"
+
+/* Reads a mesh in any format of this Gmsh, or meshes a geometry (.geo, .step, ...), with lengths times
+ * `scale` in m. Physical surfaces and volumes become sets by their names, or their numbers where they have
+ * none; where there are no physical surfaces (or volumes) at all, all surfaces (or volumes) do by their
+ * numbers. Elements outside of the physical volumes are left out. Second-order elements are taken by their
+ * corners. What is left out is told in warnings; elements that are not tetrahedra, and faces or elements in
+ * two sets, end the run. The result is neither sorted nor connected; `original` holds Gmsh's element numbers.
+ * The caller frees it. */
+rg_mesh *rg_gmsh_read(const char *path, double scale);
+
+#endif

@@ -1,0 +1,330 @@
+#include "mesh/import/import.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/error.h"
+#include "base/mem.h"
+#include "base/tet.h"
+#include "layout.h"
+
+static const double straight = 1e-6; /* of an edge: how far its middle node may be off */
+
+static const int edge_end[6][2] = {{0, 1}, {1, 2}, {2, 0}, {3, 0}, {2, 3}, {1, 3}};
+
+/* ---- adding ---- */
+
+void rg_import_node(rg_import *m, size_t number, const double x[3]) {
+    m->x = rg_grow(m->x, &m->x_room, m->nodes, 3 * sizeof *m->x);
+    m->number = rg_grow(m->number, &m->number_room, m->nodes, sizeof *m->number);
+    m->number[m->nodes] = number;
+    for (size_t i = 0; i < 3; i++) {
+        m->x[3 * m->nodes + i] = m->scale * x[i];
+    }
+    m->nodes++;
+}
+
+/* Maps all numbers; of rows with the same one the first keeps it and takes the position of the last. */
+static void map_nodes(rg_import *m) {
+    rg_gid_map_free(&m->row);
+    m->row = rg_gid_map_make(m->nodes);
+    for (size_t n = 0; n < m->nodes; n++) {
+        size_t row = (size_t)rg_gid_map_put(&m->row, (rg_gid)m->number[n], (rg_lid)n);
+        memmove(m->x + 3 * row, m->x + 3 * n, 3 * sizeof *m->x);
+    }
+    m->mapped = m->nodes;
+}
+
+/* Row of the node with this number, SIZE_MAX if there is none. */
+static size_t row_of(rg_import *m, size_t number) {
+    if (m->mapped < m->nodes) {
+        map_nodes(m);
+    }
+    rg_lid row = m->nodes > 0 ? rg_gid_map_get(&m->row, (rg_gid)number) : -1;
+    return row >= 0 ? (size_t)row : SIZE_MAX;
+}
+
+static void look_at_middles(rg_import *m, const size_t *node) {
+    for (int k = 0; k < 6; k++) {
+        const double *a = m->x + 3 * node[edge_end[k][0]], *b = m->x + 3 * node[edge_end[k][1]];
+        const double *middle = m->x + 3 * node[4 + k];
+        double off = 0, edge = 0;
+        for (int i = 0; i < 3; i++) {
+            off += (middle[i] - 0.5 * (a[i] + b[i])) * (middle[i] - 0.5 * (a[i] + b[i]));
+            edge += (b[i] - a[i]) * (b[i] - a[i]);
+        }
+        m->middles++;
+        m->bent += off > straight * straight * edge;
+        m->worst = off > 0 ? fmax(m->worst, sqrt(off / edge)) : m->worst;
+    }
+}
+
+/* Elements that the input numbers inside out. Corners are sorted later, so it does no harm. */
+static void look_at_orientation(rg_import *m, rg_gid name, const size_t *row) {
+    const double *x = m->x;
+    if (rg_tet_volume(x + 3 * row[0], x + 3 * row[1], x + 3 * row[2], x + 3 * row[3]) < 0) {
+        m->first_inverted = m->inverted++ == 0 ? name : m->first_inverted;
+    }
+}
+
+void rg_import_element(rg_import *m, rg_gid name, int nodes, const size_t *node, int region) {
+    size_t row[10], count = (size_t)m->elements;
+    m->corner = rg_grow(m->corner, &m->corner_room, count, 4 * sizeof *m->corner);
+    m->name = rg_grow(m->name, &m->name_room, count, sizeof *m->name);
+    m->region = rg_grow(m->region, &m->region_room, count, sizeof *m->region);
+    for (int i = 0; i < nodes; i++) {
+        row[i] = row_of(m, node[i]);
+        if (row[i] == SIZE_MAX) {
+            rg_fatal(RG_USAGE, "%s: element %" PRId64 " has node %zu, which is not there", m->path, name,
+                     node[i]);
+        }
+    }
+    memcpy(m->corner + 4 * m->elements, row, 4 * sizeof *row);
+    look_at_orientation(m, name, row);
+    m->name[m->elements] = name;
+    m->region[m->elements++] = (int8_t)region;
+    if (nodes == 10) {
+        look_at_middles(m, row);
+    }
+}
+
+void rg_import_add_face(rg_import *m, rg_gid name, const size_t node[3], int set) {
+    m->face = rg_grow(m->face, &m->face_room, m->faces, sizeof *m->face);
+    m->face[m->faces++] = (rg_import_face){{node[0], node[1], node[2]}, name, set};
+}
+
+/* ---- vertices and elements ---- */
+
+struct numbered {
+    size_t number, row;
+};
+
+static int by_number(const void *a, const void *b) {
+    const struct numbered *p = a, *q = b;
+    if (p->number != q->number) {
+        return p->number < q->number ? -1 : 1;
+    }
+    return (p->row > q->row) - (p->row < q->row);
+}
+
+/* The rows in the order of the input's numbers. */
+static struct numbered *sort_nodes(const rg_import *m) {
+    struct numbered *list = RG_NEW(struct numbered, m->nodes);
+    for (size_t n = 0; n < m->nodes; n++) {
+        list[n] = (struct numbered){m->number[n], n};
+    }
+    qsort(list, m->nodes, sizeof *list, by_number);
+    return list;
+}
+
+/* Numbers the corners in the order of the input's numbers; vertex[row] is -1 for what is no corner. */
+static rg_gid *number_vertices(const rg_import *m, const struct numbered *order, rg_mesh *mesh) {
+    rg_gid *vertex = RG_NEW(rg_gid, m->nodes);
+    for (size_t n = 0; n < m->nodes; n++) {
+        vertex[n] = -1;
+    }
+    for (rg_gid i = 0; i < 4 * m->elements; i++) {
+        vertex[m->corner[i]] = 0;
+    }
+    for (size_t n = 0; n < m->nodes; n++) {
+        rg_gid *v = &vertex[order[n].row];
+        *v = *v < 0 ? -1 : mesh->vertices++;
+    }
+    mesh->x = RG_NEW(double, 3 * (size_t)mesh->vertices);
+    for (size_t n = 0; n < m->nodes; n++) {
+        if (vertex[n] >= 0) {
+            memcpy(mesh->x + 3 * vertex[n], m->x + 3 * n, 3 * sizeof *mesh->x);
+        }
+    }
+    return vertex;
+}
+
+static int ascending(const void *a, const void *b) {
+    rg_gid p = *(const rg_gid *)a, q = *(const rg_gid *)b;
+    return (p > q) - (p < q);
+}
+
+static void fill_elements(const rg_import *m, const rg_gid *vertex, rg_mesh *mesh) {
+    size_t count = (size_t)m->elements;
+    mesh->elements = m->elements;
+    mesh->corner = RG_NEW(rg_gid, 4 * count);
+    mesh->neighbour = RG_NEW(rg_gid, 4 * count);
+    mesh->face = RG_NEW(int8_t, 4 * count);
+    mesh->set = RG_NEW(int8_t, 4 * count);
+    mesh->region = RG_NEW(int8_t, count);
+    mesh->original = RG_NEW(rg_gid, count);
+    memcpy(mesh->region, m->region, count * sizeof *m->region);
+    memcpy(mesh->original, m->name, count * sizeof *m->name);
+    for (size_t e = 0; e < count; e++) {
+        for (size_t i = 0; i < 4; i++) {
+            mesh->corner[4 * e + i] = vertex[m->corner[4 * e + i]];
+            mesh->set[4 * e + i] = -1;
+        }
+        qsort(mesh->corner + 4 * e, 4, sizeof *mesh->corner, ascending);
+    }
+}
+
+static void tell_orientation(const rg_import *m) {
+    if (m->inverted > 0) {
+        rg_warn("%s: %" PRId64 " of %" PRId64
+                " elements have their corners in the order of a negative volume, the "
+                "first of them %" PRId64 ": they are taken as if they had not",
+                m->path, m->inverted, m->elements, m->first_inverted);
+    }
+}
+
+static void tell_nodes(const rg_import *m, const struct numbered *order, const rg_gid *vertex) {
+    int64_t unused = 0;
+    size_t first = 0, last = SIZE_MAX; /* a number that no node has */
+    for (size_t n = 0; n < m->nodes; n++) {
+        bool again = order[n].number == last;
+        last = order[n].number;
+        if (!again && vertex[order[n].row] < 0) {
+            first = unused++ == 0 ? order[n].row : first;
+        }
+    }
+    if (m->bent > 0) {
+        rg_warn("%s: second-order elements are taken by their corners: %" PRId64 " of %" PRId64
+                " mid-nodes are off straight by more than %g of their edge, by %.2g at most",
+                m->path, m->bent, m->middles, straight, m->worst);
+    }
+    if (unused > 0 && m->middles == 0) {
+        const double *x = m->x + 3 * first;
+        rg_warn("%s: %" PRId64
+                " nodes belong to no tetrahedron and are left out; the first is node %zu at (%g, "
+                "%g, %g) m",
+                m->path, unused, m->number[first], x[0], x[1], x[2]);
+    }
+}
+
+/* ---- names of faces ---- */
+
+/* A triangle of the input, or (FACE) a face of the mesh. */
+enum { FACE = RG_IMPORT_UNNAMED - 1 };
+
+struct triangle {
+    rg_gid vertex[3]; /* ascending */
+    rg_gid name;      /* of the input: its number; a face: 4 * element + face */
+    int set;
+};
+
+/* Named ones, unnamed ones, then the faces in the order of the elements. */
+static int by_vertices(const void *a, const void *b) {
+    const struct triangle *p = a, *q = b;
+    for (int i = 0; i < 3; i++) {
+        if (p->vertex[i] != q->vertex[i]) {
+            return p->vertex[i] < q->vertex[i] ? -1 : 1;
+        }
+    }
+    int above = p->set < 0 ? p->set : 0, below = q->set < 0 ? q->set : 0;
+    if (above != below) {
+        return below - above;
+    }
+    return (p->name > q->name) - (p->name < q->name);
+}
+
+struct tally {
+    int64_t inside, nowhere; /* named triangles between two elements; that are no faces */
+};
+
+/* One group of equal triangles: the named ones come first, then the unnamed ones, then the faces. */
+static void mark_group(const rg_import *m, const struct triangle *t, size_t count, char *const set_name[],
+                       rg_mesh *mesh, struct tally *tally) {
+    bool named = t[0].set >= 0;
+    size_t triangles = 0;
+    for (size_t i = 0; i < count; i++) {
+        if (t[i].set >= 0 && t[i].set != t[0].set) {
+            rg_fatal(RG_USAGE,
+                     "%s: %" PRId64 " and %" PRId64
+                     " are the same face, in surface sets '%s' and '%s'; it can be in one only",
+                     m->path, t[0].name, t[i].name, set_name[t[0].set], set_name[t[i].set]);
+        }
+        triangles += t[i].set != FACE;
+    }
+    size_t faces = count - triangles;
+    tally->inside += named && faces > 1;
+    tally->nowhere += named && faces == 0;
+    if (named && faces == 1) {
+        mesh->set[t[triangles].name] = (int8_t)t[0].set;
+    }
+    if (triangles > 0 && faces > 1) {
+        memcpy(mesh->inner + 3 * mesh->inners++, t->vertex, sizeof t->vertex);
+    }
+}
+
+/* The input's triangles that have corners, then all faces of the mesh. */
+static struct triangle *list_triangles(rg_import *m, const rg_gid *vertex, const rg_mesh *mesh, size_t *count,
+                                       struct tally *tally) {
+    struct triangle *list = RG_NEW(struct triangle, m->faces + 4 * (size_t)mesh->elements);
+    *count = 0;
+    for (size_t i = 0; i < m->faces; i++) {
+        struct triangle t = {.name = m->face[i].name, .set = m->face[i].set};
+        bool known = true;
+        for (int k = 0; k < 3; k++) {
+            size_t n = row_of(m, m->face[i].node[k]);
+            t.vertex[k] = n < SIZE_MAX ? vertex[n] : -1;
+            known = known && t.vertex[k] >= 0;
+        }
+        qsort(t.vertex, 3, sizeof *t.vertex, ascending);
+        list[*count] = t;
+        *count += known;
+        tally->nowhere += !known && t.set >= 0;
+    }
+    for (rg_gid slot = 0; slot < 4 * mesh->elements; slot++) {
+        struct triangle t = {.name = slot, .set = FACE};
+        for (int k = 0; k < 3; k++) {
+            t.vertex[k] = mesh->corner[slot / 4 * 4 + rg_face_node[slot % 4][k]];
+        }
+        list[(*count)++] = t;
+    }
+    return list;
+}
+
+static void mark_faces(rg_import *m, const rg_gid *vertex, char *const set_name[], rg_mesh *mesh) {
+    struct tally tally = {0, 0};
+    size_t count;
+    struct triangle *list = list_triangles(m, vertex, mesh, &count, &tally);
+    mesh->inner = RG_NEW(rg_gid, 3 * m->faces + 1);
+    qsort(list, count, sizeof *list, by_vertices);
+    for (size_t i = 0, n; i < count; i += n) {
+        for (n = 1; i + n < count && memcmp(list[i].vertex, list[i + n].vertex, sizeof list->vertex) == 0;
+             n++) {
+        }
+        mark_group(m, list + i, n, set_name, mesh, &tally);
+    }
+    if (tally.inside > 0) {
+        rg_warn("%s: %" PRId64 " faces of surface sets lie between elements, not on the surface: in no set",
+                m->path, tally.inside);
+    }
+    if (tally.nowhere > 0) {
+        rg_warn("%s: %" PRId64 " triangles of surface sets are no faces of tetrahedra: left out", m->path,
+                tally.nowhere);
+    }
+    rg_free(list);
+}
+
+rg_mesh *rg_import_finish(rg_import *m, char *const set_name[]) {
+    if (m->elements == 0) {
+        rg_fatal(RG_USAGE, "%s: no tetrahedra", m->path);
+    }
+    rg_mesh *mesh = RG_NEW(rg_mesh, 1);
+    struct numbered *order = sort_nodes(m);
+    rg_gid *vertex = number_vertices(m, order, mesh);
+    fill_elements(m, vertex, mesh);
+    tell_orientation(m);
+    tell_nodes(m, order, vertex);
+    mark_faces(m, vertex, set_name, mesh);
+    rg_free(vertex);
+    rg_free(order);
+    rg_gid_map_free(&m->row);
+    rg_free(m->x);
+    rg_free(m->number);
+    rg_free(m->corner);
+    rg_free(m->name);
+    rg_free(m->region);
+    rg_free(m->face);
+    return mesh;
+}

@@ -1,0 +1,56 @@
+/* A mesh on its way in, whatever its format: nodes and elements by the input's own numbers, which need not be
+ * consecutive. */
+#ifndef RG_IMPORT_H
+#define RG_IMPORT_H
+
+#include <stddef.h>
+
+#include "mesh/gid_map.h"
+#include "mesh/mesh.h"
+
+/* A surface face as the input names it. */
+typedef struct {
+    size_t node[3];
+    rg_gid name; /* the input's number for it, for messages */
+    int set;     /* or RG_IMPORT_UNNAMED */
+} rg_import_face;
+
+/* Set of a face that is only known to be a place of its own, not by a name. */
+enum { RG_IMPORT_UNNAMED = -1 };
+
+typedef struct {
+    const char *path; /* begins the messages */
+    double scale;     /* m per unit of the input */
+    size_t nodes;     /* rows below, in the order of the input */
+    double *x;        /* [nodes][3] m */
+    size_t *number;   /* [nodes]: the input's */
+    rg_gid_map row;   /* of a number, among the first `mapped` rows; numbers may be far apart */
+    size_t mapped;
+    rg_gid elements;
+    size_t *corner;        /* [elements][4] rows of nodes */
+    rg_gid *name;          /* [elements] numbers */
+    int8_t *region;        /* [elements] volume sets, -1 for none */
+    int64_t inverted;      /* elements of negative volume */
+    rg_gid first_inverted; /* number of one */
+    int64_t middles, bent; /* mid-nodes, and those off straight */
+    double worst;          /* how far, as a fraction of the edge */
+    size_t faces;
+    rg_import_face *face;
+    size_t x_room, number_room, corner_room, name_room, region_room, face_room;
+} rg_import;
+
+/* Adds a node with coordinates x in units of the input; a number given twice keeps the last. */
+void rg_import_node(rg_import *m, size_t number, const double x[3]);
+
+/* Adds a tetrahedron of 4 or 10 nodes (corners, then the middles of edges 01 12 20 30 23 13), whose nodes
+ * must be there already; ends the run with a message if they are not. */
+void rg_import_element(rg_import *m, rg_gid name, int nodes, const size_t *node, int region);
+
+void rg_import_add_face(rg_import *m, rg_gid name, const size_t node[3], int set);
+
+/* The mesh, neither sorted nor connected, with `original` and `region` but without names of sets; frees the
+ * rest. Warns of what is left out or not as it seems; ends the run if there are no elements or if a face is
+ * in two sets, whose names set_name gives. */
+rg_mesh *rg_import_finish(rg_import *m, char *const set_name[]);
+
+#endif

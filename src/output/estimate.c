@@ -1,0 +1,196 @@
+#include "output/estimate.h"
+
+#include <inttypes.h>
+#include <math.h>
+
+#include "base/error.h"
+#include "base/mem.h"
+#include "base/spot.h"
+#include "mesh/info.h"
+#include "output/snapshot.h"
+#include "partition/material.h"
+
+#define MOST_STEPS 1e15
+
+/* Pressure waves run at some 20 m/s in the softest gels and at 18 km/s in diamond (m/s). */
+#define SLOWEST_WAVE 10
+#define FASTEST_WAVE 30e3
+
+/* Length of the cohesive zone of mode I, plane strain: (9 pi/32) E/(1 - nu^2) G_c/sigma_c^2 (thesis 2; Rice
+ * 1968). */
+static double cohesive_zone(const rg_case *c, const rg_solver *s) {
+    if (c->interface.law == RG_LAW_NONE) {
+        return INFINITY;
+    }
+    double modulus = INFINITY; /* E/(1 - nu^2) of the softest material, in which it is shortest */
+    for (int i = 0; i < s->materials; i++) {
+        const rg_material *m = &s->material[i];
+        modulus = fmin(modulus, 4 * m->mu * (m->lambda + m->mu) / (m->lambda + 2 * m->mu));
+    }
+    return 9 * 3.14159265358979324 / 32 * modulus * c->interface.energy /
+           (c->interface.strength * c->interface.strength);
+}
+
+/* A point that has just switched by the conserving activation unloads 1/onset times as stiffly as a closed
+ * one bears contact, sliding beta^2 times that. In all directions alike, at all faces at once, that stiffness
+ * is taken to add up to 1.2 times what the normal one does, so that up to this safety no state that a face
+ * can take is unstable. */
+static double steady_safety(const rg_cohesive *law) {
+    return (1 + 1e-9) * sqrt(law->onset / (1.2 * fmax(1, law->beta * law->beta)));
+}
+
+static double largest_edge(const rg_solver *s) {
+    double square = 0;
+    for (size_t i = 0; i < s->domain->iblocks * RG_LANES; i++) {
+        for (int e = 0; e < 3; e++) { /* edges 01, 02 and their difference 12 */
+            double sum = 0;
+            for (int c = 0; c < 3; c++) {
+                double a = s->domain->igeom[rg_igeom_index(i, RG_IGEOM_EDGE + c)];
+                double b = s->domain->igeom[rg_igeom_index(i, RG_IGEOM_EDGE + 3 + c)];
+                double x = e == 0 ? a : e == 1 ? b : b - a;
+                sum += x * x;
+            }
+            square = fmax(square, sum);
+        }
+    }
+    MPI_Allreduce(MPI_IN_PLACE, &square, 1, MPI_DOUBLE, MPI_MAX, s->comm);
+    return sqrt(square);
+}
+
+/* Of the fields, or at most: with cracks everywhere and the buffers of field output. */
+static double bytes_per_element(const rg_solver *s, bool at_most) {
+    double crack = (double)s->domain->iblocks * (double)s->crack_stride * sizeof *s->crack;
+    double now = (double)rg_alloc_total(), elements = (double)s->domain->elements;
+    double output = (double)rg_snapshots_bytes(s->input, s->domain->elements);
+    double sum[2] = {now + (at_most ? output : -crack), elements};
+    MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPI_DOUBLE, MPI_SUM, s->comm);
+    return sum[0] / sum[1];
+}
+
+/* Interfaces, and nodes that move on their own, of the whole mesh. */
+static void count_all(const rg_solver *s, int64_t count[2]) {
+    count[0] = (int64_t)s->domain->interfaces;
+    count[1] =
+        (int64_t)(s->assembly != NULL ? rg_assembly_nodes(s->assembly) : RG_NODES * s->domain->elements);
+    MPI_Allreduce(MPI_IN_PLACE, count, 2, MPI_INT64_T, MPI_SUM, s->comm);
+}
+
+static void count_materials(const rg_solver *s, int64_t of[RG_MAX_MATERIALS]) {
+    for (size_t slot = 0; slot < s->domain->blocks * RG_LANES; slot++) {
+        of[s->domain->material[slot / RG_LANES]] += s->domain->id[slot] >= 0;
+    }
+    MPI_Allreduce(MPI_IN_PLACE, of, RG_MAX_MATERIALS, MPI_INT64_T, MPI_SUM, s->comm);
+}
+
+rg_estimate rg_estimate_run(const rg_solver *s) {
+    const rg_case *c = s->input;
+    double xi = s->damping * c->viscosity.linear; /* of the stiffest mode, by bulk viscosity */
+    int64_t count[2];
+    count_all(s, count);
+    rg_estimate e = {.elements = s->part->total,
+                     .interfaces = count[0],
+                     .dofs = 3 * count[1],
+                     .dt_critical = 2 / sqrt(s->omega2) * (sqrt(1 + xi * xi) - xi)};
+    count_materials(s, e.of_material);
+    e.dt = c->time.safety * e.dt_critical;
+    double steps = ceil(c->time.end / e.dt * (1 - 1e-12));
+    if (c->time.steps > 0) {
+        steps = fmin(steps, (double)c->time.steps);
+    }
+    if (!(steps <= MOST_STEPS)) {
+        rg_speak(s->comm);
+        rg_fatal(RG_USAGE, "time.end: %g s are %g steps of %g s, more than a run can count", c->time.end,
+                 steps, e.dt);
+    }
+    e.steps = (int64_t)steps;
+    e.bytes_per_element = bytes_per_element(s, false);
+    e.peak_bytes_per_element = bytes_per_element(s, true);
+    e.seconds = 1.3 * s->pass_seconds * (double)e.steps; /* a step is a pass, the update and some output */
+    e.cohesive_zone = cohesive_zone(c, s);
+    e.largest_edge = largest_edge(s);
+    return e;
+}
+
+void rg_estimate_warn(const rg_case *c, const rg_estimate *e) {
+    for (int i = 0; i <= c->others; i++) {
+        if (e->of_material[i] == 0) {
+            rg_warn("%s: %s %s: later materials claim all of its elements", c->path,
+                    i == 0 ? "material" : "materials:", rg_case_material_name(c, i));
+        }
+    }
+}
+
+static void print_material(const rg_solver *s, const rg_estimate *e, int i, FILE *out) {
+    const rg_material *m = &s->material[i];
+    double limit, speed;
+    char name[160] = "";
+    if (s->materials > 1) {
+        snprintf(name, sizeof name, "%s: %" PRId64 " elements, ", rg_case_material_name(s->input, i),
+                 e->of_material[i]);
+    }
+    fprintf(out, "material       %s%s%s\n", name, rg_material_word(m->model),
+            m->model == RG_MATERIAL_LINEAR_ELASTIC ? ": for small strains and rotations alone" : "");
+    double fastest = rg_material_dilatational(m);
+    fprintf(out, "wave speeds    dilatational %.1f m/s, shear %.1f m/s\n", fastest, rg_material_shear(m));
+    if (fastest < SLOWEST_WAVE || fastest > FASTEST_WAVE) {
+        fprintf(
+            out,
+            "warning: no solid carries waves at %.3g m/s: are its moduli in Pa and its density in kg/m3?\n",
+            fastest);
+    }
+    if (rg_material_plastic_wave(m, &limit, &speed)) {
+        fprintf(out, "plastic waves  %.1f m/s, beyond %.4g Pa in uniaxial strain\n", speed, limit);
+    }
+}
+
+void rg_estimate_print(const rg_solver *s, const rg_estimate *e, FILE *out) {
+    const rg_case *c = s->input;
+    fprintf(out, "elements       %" PRId64 " (%" PRId64 " degrees of freedom), %" PRId64 " interfaces\n",
+            e->elements, e->dofs, e->interfaces);
+    const double(*box)[3] = (const double(*)[3])s->part->box;
+    fprintf(out, "body           %.4g x %.4g x %.4g m\n", box[1][0] - box[0][0], box[1][1] - box[0][1],
+            box[1][2] - box[0][2]);
+    if (s->ranks > 1) {
+        fprintf(out, "partition      ");
+        rg_quality_print(&s->part->quality, s->part->interfaces, out);
+    }
+    for (int i = 0; i < s->materials; i++) {
+        print_material(s, e, i, out);
+    }
+    fprintf(out,
+            "time step      %.4g s = %.3g of the critical %.4g s, set by element %" PRId64
+            " with its faces %s\n",
+            e->dt, c->time.safety, e->dt_critical, s->limiting, s->limiting_state);
+    if (s->bodies->omega2 > 0) {
+        fprintf(out, "               shorter by %.2g %% for what may touch bodies\n",
+                100 * (1 - sqrt(1 - s->bodies->omega2 / s->omega2)));
+    }
+    fprintf(out, "steps          %" PRId64 " to %.4g s\n", e->steps,
+            fmin(c->time.end, (double)e->steps * e->dt));
+    fprintf(
+        out,
+        "memory         %.0f bytes per element, at most %.0f (output, cracks everywhere); %.3g GB in all\n",
+        e->bytes_per_element, e->peak_bytes_per_element,
+        e->peak_bytes_per_element * (double)e->elements * 1e-9);
+    fprintf(out, "time loop      about %.3g s on %d ranks x %d threads (%s, %s precision)\n", e->seconds,
+            s->ranks, s->threads, s->kernels->name, RG_PRECISION);
+    if (s->law.onset > 0 && c->time.safety > steady_safety(&s->law)) {
+        fprintf(out,
+                "warning: with interface.onset %.3g no step of time.safety above %.2g follows points that "
+                "have just "
+                "switched; the energy will show it\n",
+                s->law.onset, steady_safety(&s->law));
+    }
+    if (isfinite(e->cohesive_zone) && e->largest_edge > 0) {
+        double ratio = e->cohesive_zone / e->largest_edge;
+        fprintf(out, "cohesive zone  %.3g m, %.2g times the longest edge (%.3g m)\n", e->cohesive_zone, ratio,
+                e->largest_edge);
+        if (ratio < 2) {
+            fprintf(
+                out,
+                "warning: the cohesive zone is not resolved: it should span at least two edges, here %.2g; "
+                "the dissipated energy will depend on the mesh\n",
+                ratio);
+        }
+    }
+}

@@ -1,0 +1,147 @@
+#include "output/summary.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <string.h>
+
+#include "base/files.h"
+#include "base/h5_parallel.h"
+#include "base/json.h"
+#include "base/mem.h"
+#include "diagnostics/state_hash.h"
+#include "revision.h"
+
+static void write_bodies(FILE *f, const rg_bodies *b) {
+    if (b->count == 0) {
+        return;
+    }
+    fputs("  \"bodies\": [\n", f);
+    for (int i = 0; i < b->count; i++) {
+        const rg_body_seen *seen = &b->body[i].seen;
+        fputs("  {\n", f);
+        rg_json_vector(f, "position", seen->x);
+        rg_json_vector(f, "velocity", seen->v);
+        rg_json_vector(f, "force", seen->force);
+        fprintf(f, "  \"name\": \"%s\"}%s\n", b->body[i].input->name, i + 1 < b->count ? "," : "],");
+    }
+}
+
+static void write_materials(FILE *f, const rg_solver *s, const rg_estimate *e) {
+    fputs("  \"materials\": [\n", f);
+    for (int i = 0; i < s->materials; i++) {
+        fputs("  {\n", f);
+        rg_json_text(f, "name", rg_case_material_name(s->input, i));
+        rg_json_integer(f, "elements", e->of_material[i]);
+        fprintf(f, "  \"model\": \"%s\"}%s\n", rg_material_word(rg_case_material(s->input, i)->model),
+                i + 1 < s->materials ? "," : "],");
+    }
+}
+
+static void write_run(FILE *f, const rg_summary *m, const rg_solver *s, const rg_estimate *e) {
+    rg_json_text(f, "case", s->input->name);
+    rg_json_integer(f, "elements", e->elements);
+    rg_json_integer(f, "interfaces", e->interfaces);
+    rg_json_integer(f, "dofs", e->dofs);
+    write_materials(f, s, e);
+    rg_json_integer(f, "ranks", s->ranks);
+    rg_json_integer(f, "threads", s->threads);
+    rg_json_integer(f, "partitions", m->partitions);
+    rg_json_number(f, "imbalance", s->part->quality.imbalance);
+    rg_json_number(f, "cost_imbalance", s->part->quality.cost_imbalance);
+    rg_json_integer(f, "cut_faces", s->part->quality.cut_faces);
+    rg_json_integer(f, "neighbours_max", s->part->quality.neighbours_max);
+    rg_json_text(f, "instruction_set", s->kernels->name);
+    rg_json_text(f, "precision", RG_PRECISION);
+    rg_json_integer(f, "steps", s->step);
+    rg_json_integer(f, "restarted_from_step", m->first_step);
+    rg_json_number(f, "time_end", s->time);
+    rg_json_number(f, "dt_critical", e->dt_critical);
+    rg_json_number(f, "dt_first", m->dt_first);
+    rg_json_number(f, "dt_last", s->dt);
+    rg_json_integer(f, "limiting_element", s->limiting);
+    rg_json_text(f, "limiting_state", s->limiting_state);
+    rg_json_number(f, "setup_s", m->setup_seconds);
+    rg_json_number(f, "wall_s", m->loop_seconds + m->output_seconds);
+    rg_json_number(f, "output_s", m->output_seconds);
+    rg_json_integer(f, "checkpoints", m->checkpoints);
+    rg_json_number(f, "checkpoint_s", m->checkpoint_seconds);
+    rg_json_number(f, "checkpoint_median_s", m->checkpoint_median);
+    rg_json_number(f, "halo_wait_s", m->halo_wait_seconds);
+    rg_json_number(f, "us_per_tet_step", m->us_per_tet_step);
+}
+
+static void write_physics(FILE *f, const rg_summary *m, const rg_ledger *l) {
+    rg_json_number(f, "energy_error_rel", l->worst);
+    rg_json_number(f, "energy_largest_J", l->largest);
+    rg_json_number(f, "dissipated_J", l->last.dissipated);
+    rg_json_number(f, "plastic_J", l->last.plastic);
+    rg_json_number(f, "damage_J", l->last.damage);
+    rg_json_number(f, "viscous_J", l->last.viscous);
+    rg_json_number(f, "friction_J", l->last.friction);
+    rg_json_number(f, "first_fracture_time_s", m->first_fracture);
+    rg_json_number(f, "broken_area_m2", l->last.broken_area);
+    rg_json_number(f, "failed_area_m2", l->last.failed_area);
+    rg_json_number(f, "halo_doubles_per_face",
+                   (RG_TRACE_ROW + RG_SEAM_ROW) * (double)sizeof(rg_real) / sizeof(double));
+    rg_json_vector(f, "momentum", l->last.momentum);
+    rg_json_vector(f, "angular_momentum", l->last.angular_momentum);
+    rg_json_text(f, "status", m->failure[0] == '\0' ? "completed" : m->failure);
+}
+
+void rg_summary_write(rg_summary *m, rg_solver *s, const rg_ledger *l, const rg_fragment_table *fragments) {
+    const rg_estimate *e = &m->estimate;
+    uint64_t hash = rg_state_hash(s);
+    m->first_fracture = rg_first_fracture(s);
+    rg_halo *nodes = s->assembly == NULL ? NULL : rg_assembly_halo(s->assembly);
+    rg_halo *halo[] = {s->halo_u[0], s->halo_t, nodes}; /* of a step */
+    int halos = nodes == NULL ? 2 : 3;
+    double work = (double)e->elements * (double)(s->step - m->first_step);
+    m->us_per_tet_step = work > 0 ? 1e6 * m->loop_seconds * s->ranks * s->threads / work : 0;
+    rg_phases_report phases = rg_phases_gather(&s->phases, s->domain, halo, halos, s->comm);
+    m->halo_wait_seconds = phases.phase[RG_PHASE_WAIT].most;
+    if (s->rank != 0) {
+        return;
+    }
+    FILE *f = rg_open_in(s->input->output.dir, "summary.json");
+    fputs("{\n", f);
+    write_run(f, m, s, e);
+    rg_json_number(f, "exchange_alone_s", s->exchange_seconds);
+    rg_phases_write(&phases, f);
+    write_physics(f, m, l);
+    write_bodies(f, s->bodies);
+    rg_fragment_table_summary(fragments, f);
+    rg_json_number(f, "bytes_per_tet", e->bytes_per_element);
+    fprintf(f, "  \"state_hash\": \"%016" PRIx64 "\",\n  \"revision\": \"%s\"\n}\n", hash, RG_REVISION);
+    rg_close_in(f, s->input->output.dir, "summary.json");
+}
+
+bool rg_completed(const char *dir) {
+    char *path = rg_join_path(dir, "summary.json"), line[256];
+    FILE *f = fopen(path, "r");
+    rg_free(path);
+    bool found = false;
+    while (f != NULL && !found && fgets(line, sizeof line, f) != NULL) {
+        found = strstr(line, "\"status\": \"completed\"") != NULL;
+    }
+    if (f != NULL) {
+        fclose(f);
+    }
+    return found;
+}
+
+void rg_summary_print(const rg_summary *m, const rg_solver *s, const rg_ledger *l, FILE *out) {
+    fprintf(out,
+            "set-up %.2f s, time loop %.2f s, output %.2f s: %.3g us of core time per element and step\n",
+            m->setup_seconds, m->loop_seconds, m->output_seconds, m->us_per_tet_step);
+    fprintf(out, "energy error %.2g of the largest energy, %.4g J\n", l->worst, l->largest);
+    if (isfinite(m->first_fracture)) {
+        fprintf(out, "first fracture at %.5g s; broken %.4g m2, dissipated %.4g J\n", m->first_fracture,
+                l->last.broken_area, l->last.dissipated);
+    }
+    for (int i = 0; i < s->bodies->count; i++) {
+        const rg_body_seen *b = &s->bodies->body[i].seen;
+        fprintf(out, "%s: at (%.4g, %.4g, %.4g) m, velocity (%.4g, %.4g, %.4g) m/s\n",
+                s->bodies->body[i].input->name, b->x[0], b->x[1], b->x[2], b->v[0], b->v[1], b->v[2]);
+    }
+    fprintf(out, "results in %s\n", s->input->output.dir);
+}

@@ -1,0 +1,412 @@
+#include "solver/body.h"
+
+#include <math.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/error.h"
+#include "base/mem.h"
+#include "base/spot.h"
+#include "base/vector.h"
+#include "domain/element.h"
+#include "quadrature.h"
+
+/* Of the height of an element: a body this deep in the solid at the start only touches it. */
+#define TOUCH 1e-6
+
+enum { POWER_ITERATIONS = 200 };
+
+/* ---- The bodies ---- */
+
+static void unit(const double v[3], double out[3]) {
+    double norm = sqrt(rg_dot(v, v));
+    for (int c = 0; c < 3 && norm > 0; c++) {
+        out[c] = v[c] / norm;
+    }
+}
+
+/* The velocity that the case gives body i; notes where that is not finite for the first time. */
+static double velocity_at(rg_bodies *b, int i, int c, double time) {
+    static const double nowhere[3] = {0, 0, 0};
+    const rg_expr *e = b->body[i].input->velocity[c];
+    double v = e == NULL ? 0 : rg_expr_value(e, nowhere, time);
+    if (!isfinite(v) && b->lapse.input == NULL) {
+        b->lapse = (rg_body_lapse){b->body[i].input, c, time};
+    }
+    return v;
+}
+
+bool rg_bodies_told(const rg_bodies *b, char *words, size_t size) {
+    const rg_body_lapse *l = &b->lapse;
+    if (l->input != NULL) {
+        snprintf(words, size, "bodies: velocity.%c of %s: %s is not finite at t = %g s", "xyz"[l->component],
+                 l -> input -> name, rg_expr_text(l->input->velocity[l->component]), l -> time);
+    }
+    return l->input != NULL;
+}
+
+static double mass_of(const rg_body_input *in) {
+    double volume = 4 * acos(-1.0) / 3 * in->radius * in->radius * in->radius;
+    return in->motion == RG_MOTION_PRESCRIBED ? INFINITY : in->density > 0 ? in->density * volume : in->mass;
+}
+
+static void make_body(rg_bodies *all, int i, const rg_body_input *in) {
+    rg_body *b = &all->body[i];
+    b->input = in;
+    b->mass = mass_of(in);
+    unit(in->shape == RG_SHAPE_PLANE ? in->normal : in->axis, b->direction);
+    memcpy(b->x, in->at, sizeof b->x);
+    for (int c = 0; c < 3; c++) {
+        b->v[c] = velocity_at(all, i, c, 0);
+    }
+}
+
+static void refuse_lapse(const rg_bodies *b, const rg_case *c) {
+    char words[400];
+    if (rg_bodies_told(b, words, sizeof words)) { /* on all ranks */
+        rg_speak(b->comm);
+        rg_fatal(RG_USAGE, "%s: %s", c->path, words);
+    }
+}
+
+/* ---- Faces that may touch them ---- */
+
+/* Shape functions of the six-node triangle: corners l (2 l - 1), mid-edges 4 l l, in the order 01 12 02. */
+static void make_rule(rg_face_rule *rule) {
+    for (int q = 0; q < RG_POINTS; q++) {
+        double p = q < 3 ? RG_TRI_P0 : RG_TRI_P1, l[3] = {p, p, p}, *N = rule->shape[q];
+        l[q % 3] = 1 - 2 * p;
+        rule->weight[q] = q < 3 ? RG_TRI_W0 : RG_TRI_W1;
+        for (int i = 0; i < 3; i++) {
+            N[i] = l[i] * (2 * l[i] - 1);
+        }
+        N[3] = 4 * l[0] * l[1];
+        N[4] = 4 * l[1] * l[2];
+        N[5] = 4 * l[0] * l[2];
+    }
+}
+
+/* The sets that may touch body i, as bits by set number; all bits, and that of faces in no set, where none is
+ * named. */
+static uint64_t touching_sets(const rg_case *c, const rg_part *part, int i, MPI_Comm comm) {
+    uint64_t bits = c->body[i].sets == 0 ? UINT64_MAX : 0;
+    for (int k = 0; k < c->body[i].sets; k++) {
+        int set = rg_part_set(part, c->body[i].set[k]);
+        if (set < 0) {
+            rg_speak(comm);
+            rg_fatal(RG_USAGE, "%s: bodies[%d].faces[%d]: the mesh has no set named '%s'", c->path, i, k,
+                     c->body[i].set[k]);
+        }
+        bits |= UINT64_C(1) << set;
+    }
+    return bits;
+}
+
+static double face_area(const double *corner, int face) {
+    double edge[2][3], square = 0;
+    for (int c = 0; c < 3; c++) {
+        edge[0][c] = corner[3 * rg_face_node[face][1] + c] - corner[3 * rg_face_node[face][0] + c];
+        edge[1][c] = corner[3 * rg_face_node[face][2] + c] - corner[3 * rg_face_node[face][0] + c];
+    }
+    for (int c = 0; c < 3; c++) {
+        int a = (c + 1) % 3, b = (c + 2) % 3;
+        double n = edge[0][a] * edge[1][b] - edge[0][b] * edge[1][a];
+        square += n * n;
+    }
+    return 0.5 * sqrt(square);
+}
+
+static double height_over(const rg_domain *d, size_t slot, int face) {
+    return 3 * (double)d->geom[rg_geom_index(slot, RG_GEOM_VOLUME)] / face_area(d->corner + 12 * slot, face);
+}
+
+static bool is_outer(const rg_domain *d, size_t slot, int face) {
+    return d->id[slot] >= 0 && d->interface[rg_link_index(slot, face)] == RG_NO_INTERFACE;
+}
+
+/* Visits the faces of a tile that may touch a body, in an order that follows from the mesh: counts them and,
+ * with room for them, lists them. */
+static size_t list_faces(rg_bodies *b, const uint64_t *sets, size_t tile, rg_contact_face *out) {
+    const rg_domain *d = b->domain;
+    size_t count = 0;
+    for (size_t slot = d->tile[tile].begin * RG_LANES; slot < d->tile[tile].end * RG_LANES; slot++) {
+        for (int k = 0; k < RG_FACES * b->count; k++) {
+            int face = k / b->count, body = k % b->count, set = d->set[4 * slot + (size_t)face];
+            bool may = sets[body] == UINT64_MAX || (set >= 0 && (sets[body] >> set & 1) != 0);
+            if (!may || !is_outer(d, slot, face)) {
+                continue;
+            }
+            if (out != NULL) {
+                const rg_material *m = &b->material[d->material[slot / RG_LANES]];
+                double modulus = m->lambda + 2 * m->mu;
+                double kappa = b->body[body].input->penalty * modulus / height_over(d, slot, face);
+                out[count] = (rg_contact_face){.slot = (rg_lid)slot,
+                                               .face = (int8_t)face,
+                                               .body = (int16_t)body,
+                                               .stiffness = kappa * face_area(d->corner + 12 * slot, face)};
+            }
+            count++;
+        }
+    }
+    return count;
+}
+
+static void find_faces(rg_bodies *b, const rg_case *c, const rg_part *part) {
+    uint64_t *sets = RG_NEW(uint64_t, (size_t)b->count);
+    for (int i = 0; i < b->count; i++) {
+        sets[i] = touching_sets(c, part, i, b->comm);
+    }
+    for (size_t t = 0; t < b->domain->tiles; t++) {
+        b->tile_begin[t + 1] = b->tile_begin[t] + list_faces(b, sets, t, NULL);
+    }
+    b->face = RG_NEW(rg_contact_face, b->tile_begin[b->domain->tiles] + 1);
+    for (size_t t = 0; t < b->domain->tiles; t++) {
+        list_faces(b, sets, t, b->face + b->tile_begin[t]);
+    }
+    rg_free(sets);
+}
+
+/* ---- Time step ---- */
+
+/* Largest eigenvalue of M^-1 K for an element of unit mass with unit stiffness on one face, by iteration; it
+ * is the same for all four faces (5 with the consistent mass: Warburton & Hesthaven 2003). */
+static double face_eigenvalue(const rg_bodies *b) {
+    const int *node = rg_face_node[0];
+    double x[RG_FNODES] = {1, 0.9, 0.8, 0.7, 0.6, 0.5}, y[RG_FNODES], largest = 0;
+    for (int i = 0; i < POWER_ITERATIONS; i++) {
+        for (int a = 0; a < RG_FNODES; a++) {
+            y[a] = 0;
+            for (int k = 0; k < RG_FNODES; k++) {
+                y[a] += b->inverse_mass[node[a]][node[k]] * x[k];
+            }
+        }
+        memset(x, 0, sizeof x);
+        for (int q = 0; q < RG_POINTS; q++) {
+            double at = 0;
+            for (int a = 0; a < RG_FNODES; a++) {
+                at += b->rule.shape[q][a] * y[a];
+            }
+            for (int a = 0; a < RG_FNODES; a++) {
+                x[a] += b->rule.weight[q] * b->rule.shape[q][a] * at;
+            }
+        }
+        largest = 0;
+        for (int a = 0; a < RG_FNODES; a++) {
+            largest = fmax(largest, fabs(x[a]));
+        }
+        for (int a = 0; a < RG_FNODES; a++) {
+            x[a] /= largest;
+        }
+    }
+    return largest;
+}
+
+/* Largest squared frequency of an element whose faces are all pressed, held by nothing else. */
+static double element_omega2(const rg_bodies *b) {
+    double largest = 0, eigenvalue = face_eigenvalue(b), sum = 0;
+    size_t faces = b->tile_begin[b->domain->tiles];
+    for (size_t i = 0; i < faces; i++) {
+        const rg_contact_face *f = &b->face[i];
+        bool same = i > 0 && f->slot == f[-1].slot;
+        double mass = rg_element_mass(b->domain, b->material, (size_t)f->slot);
+        sum = (same ? sum : 0) + eigenvalue * f->stiffness / mass;
+        largest = fmax(largest, sum);
+    }
+    return largest;
+}
+
+/* Squared frequency of a body on all the faces that may press it at once: those named and, on a sphere, no
+ * more than half of its surface. */
+static double body_omega2(const rg_bodies *b, int body) {
+    rg_exact_sum sum = {0};
+    double area, kappa = 0, radius = b->body[body].input->radius;
+    for (size_t i = 0; i < b->tile_begin[b->domain->tiles]; i++) {
+        const rg_contact_face *f = &b->face[i];
+        if (f->body == body) {
+            rg_exact_add(&sum, f->stiffness);
+            area = face_area(b->domain->corner + 12 * (size_t)f->slot, f->face);
+            kappa = fmax(kappa, f->stiffness / area);
+        }
+    }
+    rg_exact_allreduce(&sum, 1, b->comm);
+    MPI_Allreduce(MPI_IN_PLACE, &kappa, 1, MPI_DOUBLE, MPI_MAX, b->comm);
+    double stiffness = rg_exact_value(&sum);
+    if (b->body[body].input->shape == RG_SHAPE_SPHERE) {
+        stiffness = fmin(stiffness, 2 * acos(-1.0) * radius * radius * kappa);
+    }
+    return stiffness / b->body[body].mass;
+}
+
+/* The largest eigenvalue of a sum is at most the sum of the largest ones: the solid's (solver/spectrum.h),
+ * the contact's on its elements and on the bodies. */
+static double contact_omega2(const rg_bodies *b) {
+    double here = element_omega2(b), elements, largest = 0;
+    MPI_Allreduce(&here, &elements, 1, MPI_DOUBLE, MPI_MAX, b->comm);
+    for (int i = 0; i < b->count; i++) {
+        largest = fmax(largest, body_omega2(b, i));
+    }
+    return elements + largest;
+}
+
+/* ---- Overlap at the start ---- */
+
+typedef struct {
+    double depth;
+    int rank; /* as MPI_DOUBLE_INT wants them */
+} overlap;
+
+static void start_position(const rg_case *c, const rg_domain *d, const rg_contact_face *f, int a,
+                           double x[3]) {
+    double reference[3];
+    rg_node_position(d->corner + 12 * (size_t)f->slot, rg_face_node[f->face][a], reference);
+    for (int k = 0; k < 3; k++) {
+        const rg_expr *e = c->initial.displacement[k];
+        x[k] = reference[k] + (e == NULL ? 0 : rg_expr_value(e, reference, 0));
+    }
+}
+
+static void refuse_overlap(const rg_bodies *b, const rg_case *c) {
+    double worst[3] = {0, 0, 0};
+    const rg_contact_face *in = NULL;
+    overlap here = {0}, all;
+    MPI_Comm_rank(b->comm, &here.rank);
+    for (size_t i = 0; i < b->tile_begin[b->domain->tiles]; i++) {
+        const rg_contact_face *f = &b->face[i];
+        for (int a = 0; a < RG_FNODES; a++) {
+            double x[3], normal[3];
+            start_position(c, b->domain, f, a, x);
+            double depth = rg_body_depth(&b->body[f->body], x, normal);
+            if (depth > fmax(here.depth, TOUCH * height_over(b->domain, (size_t)f->slot, f->face))) {
+                here.depth = depth;
+                in = f;
+                memcpy(worst, x, sizeof worst);
+            }
+        }
+    }
+    MPI_Allreduce(&here, &all, 1, MPI_DOUBLE_INT, MPI_MAXLOC, b->comm);
+    if (all.depth > 0 && all.rank != here.rank) {
+        MPI_Barrier(b->comm); /* one rank speaks and ends the job */
+    }
+    if (all.depth > 0 && in != NULL) {
+        rg_fatal(
+            RG_USAGE,
+            "%s: bodies[%d].at: [%g, %g, %g]: %s overlaps the solid at the start, by %.3g m at (%g, %g, %g)",
+            c->path, in->body, c->body[in->body].at[0], c->body[in->body].at[1], c->body[in->body].at[2],
+            c->body[in->body].name, all.depth, worst[0], worst[1], worst[2]);
+    }
+}
+
+rg_bodies *rg_bodies_make(const rg_case *c, const rg_domain *d, const rg_part *part, const rg_material *m,
+                          int threads, MPI_Comm comm) {
+    rg_bodies *b = RG_NEW(rg_bodies, 1);
+    *b = (rg_bodies){.count = c->bodies,
+                     .threads = threads,
+                     .comm = comm,
+                     .domain = d,
+                     .material = m,
+                     .request = MPI_REQUEST_NULL};
+    b->tile_begin = RG_NEW(size_t, d->tiles + 1);
+    if (c->bodies == 0) {
+        return b;
+    }
+    make_rule(&b->rule);
+    for (int i = 0; i < RG_NODES * RG_NODES; i++) {
+        b->inverse_mass[i / RG_NODES][i % RG_NODES] =
+            rg_inverse_mass_entry(c->mass == RG_MASS_LUMPED, i / RG_NODES, i % RG_NODES);
+    }
+    b->body = RG_NEW(rg_body, (size_t)b->count);
+    for (int i = 0; i < b->count; i++) {
+        make_body(b, i, &c->body[i]);
+    }
+    refuse_lapse(b, c);
+    b->sum = RG_NEW(rg_exact_sum, (size_t)(3 * b->count * threads));
+    b->total = RG_NEW(rg_exact_sum, (size_t)(3 * b->count));
+    find_faces(b, c, part);
+    refuse_overlap(b, c);
+    b->omega2 = contact_omega2(b);
+    return b;
+}
+
+/* ---- Motion ---- */
+
+void rg_bodies_sum(rg_bodies *b) {
+    int sums = 3 * b->count;
+    if (sums == 0) {
+        return;
+    }
+    memset(b->total, 0, (size_t)sums * sizeof *b->total);
+    for (int i = 0; i < sums * b->threads; i++) {
+        rg_exact_merge(&b->total[i % sums], &b->sum[i]);
+    }
+    memset(b->sum, 0, (size_t)(sums * b->threads) * sizeof *b->sum);
+    rg_exact_start_allreduce(b->total, sums, b->comm, &b->request);
+}
+
+static void kick(rg_bodies *all, int i, double time, double dt_last, double dt_next) {
+    rg_body *b = &all->body[i];
+    bool prescribed = b->input->motion == RG_MOTION_PRESCRIBED;
+    b->seen.work = b->work;
+    for (int c = 0; c < 3; c++) {
+        double force = b->seen.force[c], before = b->v[c];
+        b->seen.v[c] = prescribed ? velocity_at(all, i, c, time) : before + 0.5 * dt_last * force / b->mass;
+        b->v[c] = prescribed ? velocity_at(all, i, c, time + 0.5 * dt_next)
+                             : before + 0.5 * (dt_last + dt_next) * force / b->mass;
+        if (prescribed) {
+            b->seen.work -= 0.5 * dt_last * before * force;
+            b->work -= 0.5 * (dt_last * before + dt_next * b->v[c]) * force;
+        }
+    }
+    memcpy(b->seen.x, b->x, sizeof b->x);
+}
+
+void rg_bodies_kick(rg_bodies *b, double time, double dt_last, double dt_next) {
+    MPI_Wait(&b->request, MPI_STATUS_IGNORE);
+    for (int i = 0; i < b->count; i++) {
+        for (int c = 0; c < 3; c++) {
+            b->body[i].seen.force[c] = rg_exact_value(&b->total[3 * i + c]);
+        }
+        kick(b, i, time, dt_last, dt_next);
+    }
+}
+
+void rg_bodies_drift(rg_bodies *b, double dt) {
+    for (int i = 0; i < b->count; i++) {
+        for (int c = 0; c < 3; c++) {
+            b->body[i].x[c] += dt * b->body[i].v[c];
+        }
+    }
+}
+
+rg_bodies_account rg_bodies_take(const rg_bodies *b) {
+    rg_bodies_account a = {0};
+    for (int i = 0; i < b->count; i++) {
+        const rg_body_seen *s = &b->body[i].seen;
+        a.work += s->work;
+        for (int c = 0; c < 3 && b->body[i].input->motion == RG_MOTION_FREE; c++) {
+            int p = (c + 1) % 3, q = (c + 2) % 3;
+            a.kinetic += 0.5 * b->body[i].mass * s->v[c] * s->v[c];
+            a.momentum[c] += b->body[i].mass * s->v[c];
+            a.angular_momentum[c] += b->body[i].mass * (s->x[p] * s->v[q] - s->x[q] * s->v[p]);
+        }
+    }
+    return a;
+}
+
+void rg_bodies_register(rg_bodies *b, rg_state *st) {
+    enum { VALUES = (sizeof(rg_body) - offsetof(rg_body, x)) / sizeof(double) };
+    if (b->count > 0) {
+        rg_state_add_rows(st, "bodies", RG_STATE_DOUBLE, VALUES, b->body[0].x, sizeof *b->body,
+                          (size_t)b->count);
+    }
+}
+
+void rg_bodies_free(rg_bodies *b) {
+    if (b == NULL) {
+        return;
+    }
+    void *blocks[] = {b->body, b->tile_begin, b->face, b->sum, b->total, b};
+    for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) {
+        rg_free(blocks[i]);
+    }
+}

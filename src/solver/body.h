@@ -1,0 +1,132 @@
+/* Rigid bodies that touch the solid's surface: spheres, planes (half-spaces) and cylinders without ends. They
+ * move without turning, freely or as prescribed.
+ *
+ * Contact is a penalty on penetration, with one potential: the integral over the outer faces of
+ *     (kappa/2) <g>^2,    kappa = penalty (lambda + 2 mu)/h,
+ * g the depth of a point below the body's surface, h the height of the element over the face: the stiffness
+ * with which interfaces hold together. The integral is the six-point rule of the interfaces, so a face's
+ * forces follow from its own element alone, whose nodes no other element shares, and do not depend on the
+ * partition.
+ *
+ * Every rank knows all bodies and moves them alike: the force on a body is an exact sum over faces
+ * (base/exact_sum.h), sent for under the seams and needed when the step ends. Bodies kick and drift like the
+ * solid: what they gain in momentum, it loses. */
+#ifndef RG_BODY_H
+#define RG_BODY_H
+
+#include <mpi.h>
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "base/exact_sum.h"
+#include "case/case.h"
+#include "domain/domain.h"
+#include "kernels.h"
+#include "solver/state.h"
+
+/* A body as it was seen at a present time, between kick and drift. */
+typedef struct {
+    double x[3], v[3], force[3]; /* m, m/s; force of the solid on it (N) */
+    double work;                 /* done on a prescribed body by what moves it, since the start (J) */
+} rg_body_seen;
+
+typedef struct {
+    const rg_body_input *input;
+    double direction[3]; /* unit normal of a plane, unit axis of a cylinder */
+    double mass;         /* kg; infinite where the motion is prescribed */
+    /* From here to the end doubles only: a checkpoint takes them as a row. */
+    double x[3];       /* place of input->at, in the state that the forces belong to (m) */
+    double v[3];       /* in the middle of the last step, after a kick of the next one (m/s) */
+    double work;       /* as in `seen`, up to the middle of the next step (J) */
+    rg_body_seen seen; /* at the last kick */
+} rg_body;
+
+/* A prescribed velocity that is not finite, and when (s); `input` NULL: none was. */
+typedef struct {
+    const rg_body_input *input;
+    int component;
+    double time;
+} rg_body_lapse;
+
+/* A face that may touch a body. */
+typedef struct {
+    rg_lid slot;
+    int8_t face;
+    int16_t body;
+    double stiffness; /* kappa times the area of the face (N/m) */
+} rg_contact_face;
+
+/* The six-point rule on a face: weights (sum 1) and shape functions of its nodes. */
+typedef struct {
+    double weight[RG_POINTS], shape[RG_POINTS][RG_FNODES];
+} rg_face_rule;
+
+typedef struct {
+    int count, threads;
+    rg_body *body;
+    MPI_Comm comm;
+    const rg_domain *domain;
+    rg_face_rule rule;
+    const rg_material *material;             /* of the solid, by number */
+    double inverse_mass[RG_NODES][RG_NODES]; /* (M / (rho V))^-1 */
+    size_t *tile_begin;                      /* faces of tile t: from tile_begin[t] on */
+    rg_contact_face *face;
+    double omega2;       /* what contact adds to the largest squared frequency, at most (1/s^2) */
+    rg_exact_sum *sum;   /* [threads][count][3] force on each body (N) */
+    rg_exact_sum *total; /* [count][3] */
+    MPI_Request request;
+    rg_body_lapse lapse; /* the first; on all ranks the same */
+} rg_bodies;
+
+/* The bodies of a case, with the faces of this rank that may touch them. Ends the run with a message if a set
+ * is unknown, a velocity is not finite or a body overlaps the solid at the start. Keeps references to `c`,
+ * `d` and `m`, the materials. Collective. Free with rg_bodies_free. */
+rg_bodies *rg_bodies_make(const rg_case *c, const rg_domain *d, const rg_part *part, const rg_material *m,
+                          int threads, MPI_Comm comm);
+
+/* What forces do to the solid. */
+typedef struct {
+    double dt, dt_now; /* velocity += dt M^-1 f, now += dt_now M^-1 f */
+    rg_real *velocity; /* whole fields (layout.h) */
+    rg_real *now;      /* or NULL */
+} rg_contact_kick;
+
+/* Depth of point x below the surface of a body (m), negative outside; `normal` points out of the body. */
+double rg_body_depth(const rg_body *b, const double x[3], double normal[3]);
+
+/* Forces of the bodies on the faces of a tile at displacement u: kicks the velocities and keeps account of
+ * the forces for the bodies' own. Threads call it for different tiles. */
+void rg_bodies_touch(rg_bodies *b, size_t tile, const rg_real *u, const rg_contact_kick *kick);
+
+/* Adds the contact energy of a tile's faces at displacement u (J) to `energy`. */
+void rg_bodies_energy(const rg_bodies *b, size_t tile, const rg_real *u, rg_exact_sum *energy);
+
+/* Starts the sum of the forces over threads and ranks. One thread, once all tiles are touched. Collective. */
+void rg_bodies_sum(rg_bodies *b);
+
+/* Waits for the forces and kicks the bodies: their velocities go on by `dt` to the middle of the next step,
+ * dt_next long; `seen` is their state at `time`, half of dt_last after the middle of the last step.
+ * Collective. */
+void rg_bodies_kick(rg_bodies *b, double time, double dt_last, double dt_next);
+
+/* Whether a prescribed velocity was not finite so far; then words[size] says which and when first. Such a
+ * body touches nothing any more. */
+bool rg_bodies_told(const rg_bodies *b, char *words, size_t size);
+
+/* Moves the bodies on by a step. */
+void rg_bodies_drift(rg_bodies *b, double dt);
+
+/* Work done on prescribed bodies and kinetic energy of the free ones (J), and their momentum and angular
+ * momentum about the origin, as last seen. */
+typedef struct {
+    double work, kinetic, momentum[3], angular_momentum[3];
+} rg_bodies_account;
+
+rg_bodies_account rg_bodies_take(const rg_bodies *b);
+
+/* Registers what moves (solver/state.h). */
+void rg_bodies_register(rg_bodies *b, rg_state *st);
+
+void rg_bodies_free(rg_bodies *b);
+
+#endif

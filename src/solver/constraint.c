@@ -1,0 +1,390 @@
+#include "solver/constraint.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/error.h"
+#include "base/mem.h"
+#include "base/spot.h"
+#include "domain/element.h"
+#include "layout.h"
+
+/* What depends only on which nodes are constrained: c of them, then the free ones. For the mass M / (rho V):
+ * impulse[c][c] = (Minv_cc)^-1, follow[f][c] = Minv_fc (Minv_cc)^-1. */
+typedef struct {
+    int constrained;
+    int8_t node[RG_NODES];
+    double impulse[RG_NODES][RG_NODES], follow[RG_NODES][RG_NODES];
+} pattern;
+
+/* What a component of an element must remember. Arrays run over the constrained nodes of the pattern. Doubles
+ * only: a checkpoint takes it as a row of them. */
+typedef struct {
+    double work, work_now;    /* of all kicks; up to the present time (J) */
+    double before[RG_NODES];  /* velocity before the kick */
+    double present[RG_NODES]; /* velocity at the time of the kick */
+    double target[RG_NODES];  /* velocity after it */
+    double place[RG_NODES];   /* displacement after it, where that is prescribed */
+} memory;
+
+/* One component of one element. */
+typedef struct {
+    rg_lid slot;
+    int8_t component;
+    bool varies;
+    int16_t boundary[RG_NODES];
+    const pattern *pattern;
+    double mass;
+    memory is;
+} entry;
+
+#define JUMP                                                                                                 \
+    1e-9 /* of the element size: a prescribed displacement off the initial one by more is worth a warning */
+
+struct rg_constraints {
+    const rg_case *input;
+    const rg_domain *domain;
+    int64_t *key;                /* [entries], by which a checkpoint knows them */
+    size_t entries, *tile_begin; /* entries of tile t: tile_begin[t] .. tile_begin[t + 1] - 1 */
+    entry *entry;
+    pattern *patterns[1 << RG_NODES];
+    bool lumped, varies; /* varies: some value depends on time or is a displacement */
+    bool moving;         /* at the start the velocities are the initial ones */
+    rg_spot bad;         /* where a value was not finite first, and when */
+};
+
+/* ---- Patterns ---- */
+
+/* Inverts the leading n x n part of a symmetric positive definite matrix (Gauss-Jordan, no pivoting needed).
+ */
+static void invert(int n, double a[RG_NODES][RG_NODES], double inverse[RG_NODES][RG_NODES]) {
+    for (int i = 0; i < n; i++) {
+        for (int j = 0; j < n; j++) {
+            inverse[i][j] = i == j;
+        }
+    }
+    for (int k = 0; k < n; k++) {
+        double pivot = a[k][k];
+        for (int j = 0; j < n; j++) {
+            a[k][j] /= pivot;
+            inverse[k][j] /= pivot;
+        }
+        for (int i = 0; i < n; i++) {
+            double factor = a[i][k];
+            for (int j = 0; i != k && j < n; j++) {
+                a[i][j] -= factor * a[k][j];
+                inverse[i][j] -= factor * inverse[k][j];
+            }
+        }
+    }
+}
+
+static const pattern *pattern_of(rg_constraints *k, unsigned mask) {
+    if (k->patterns[mask] != NULL) {
+        return k->patterns[mask];
+    }
+    pattern *p = RG_NEW(pattern, 1);
+    int n = 0;
+    for (int pass = 1; pass >= 0; pass--) {
+        for (int8_t a = 0; a < RG_NODES; a++) {
+            if ((int)(mask >> a & 1) == pass) {
+                p->node[n++] = a;
+            }
+        }
+        p->constrained = pass == 1 ? n : p->constrained;
+    }
+    double block[RG_NODES][RG_NODES];
+    for (int i = 0; i < p->constrained; i++) {
+        for (int j = 0; j < p->constrained; j++) {
+            block[i][j] = rg_inverse_mass_entry(k->lumped, p->node[i], p->node[j]);
+        }
+    }
+    invert(p->constrained, block, p->impulse);
+    for (int f = p->constrained; f < RG_NODES; f++) {
+        for (int i = 0; i < p->constrained; i++) {
+            for (int j = 0; j < p->constrained; j++) {
+                p->follow[f][i] +=
+                    rg_inverse_mass_entry(k->lumped, p->node[f], p->node[j]) * p->impulse[j][i];
+            }
+        }
+    }
+    return k->patterns[mask] = p;
+}
+
+/* ---- Set-up ---- */
+
+static int set_number(const rg_part *part, const char *name) {
+    int set = rg_part_set(part, name);
+    if (set < 0) {
+        rg_fatal(RG_USAGE, "boundary: the mesh has no set named '%s'", name);
+    }
+    return set;
+}
+
+/* Bits of the nodes of each element on the set of each boundary: mask[boundaries][slots]. */
+static uint16_t *list_nodes(const rg_constraints *k, const int *set, rg_assembly *nodes) {
+    size_t slots = k->domain->blocks * RG_LANES;
+    uint16_t *mask = RG_NEW(uint16_t, (size_t)k->input->boundaries * slots + 1);
+    for (int b = 0; b < k->input->boundaries; b++) {
+        uint16_t *of = mask + (size_t)b * slots;
+        for (size_t side = 0; side < RG_FACES * slots; side++) {
+            for (int a = 0; k->domain->set[side] == set[b] && a < RG_FNODES; a++) {
+                of[side / RG_FACES] |= (uint16_t)(1u << rg_face_node[side % RG_FACES][a]);
+            }
+        }
+        if (nodes != NULL) {
+            rg_assembly_spread(nodes, of);
+        }
+    }
+    return mask;
+}
+
+/* Boundary that prescribes component c of each node of an element, -1 for none; returns the mask of those
+ * nodes. */
+static unsigned constrained_nodes(const rg_constraints *k, const uint16_t *on_set, size_t slot, int c,
+                                  int16_t which[RG_NODES]) {
+    unsigned mask = 0;
+    for (int b = 0; b < k->input->boundaries; b++) {
+        unsigned here = on_set[(size_t)b * k->domain->blocks * RG_LANES + slot];
+        for (int n = 0; k->input->boundary[b].component == c && n < RG_NODES; n++) {
+            if ((here >> n & 1) != 0) {
+                which[n] = (int16_t)b;
+                mask |= 1u << n;
+            }
+        }
+    }
+    return mask;
+}
+
+static bool boundary_varies(const rg_boundary *b) {
+    return b->is_displacement || rg_expr_uses_time(b->value);
+}
+
+static void add_entry(rg_constraints *k, double mass, size_t slot, int c, unsigned mask,
+                      const int16_t which[RG_NODES]) {
+    if ((k->entries & (k->entries - 1)) == 0) { /* grow at powers of two */
+        k->entry = rg_realloc(k->entry, k->entries == 0 ? 1 : 2 * k->entries, sizeof *k->entry);
+    }
+    entry *e = &k->entry[k->entries++];
+    *e = (entry){.slot = (rg_lid)slot, .component = (int8_t)c, .pattern = pattern_of(k, mask), .mass = mass};
+    for (int i = 0; i < e->pattern->constrained; i++) {
+        e->boundary[i] = which[e->pattern->node[i]];
+        e->varies = e->varies || boundary_varies(&k->input->boundary[e->boundary[i]]);
+    }
+}
+
+rg_constraints *rg_constraints_make(const rg_case *c, const rg_domain *d, const rg_part *part,
+                                    const rg_material *m, rg_assembly *nodes) {
+    rg_constraints *k = RG_NEW(rg_constraints, 1);
+    *k = (rg_constraints){
+        .input = c, .domain = d, .lumped = c->mass == RG_MASS_LUMPED, .bad = {.which = RG_NOWHERE}};
+    int *set = RG_NEW(int, (size_t)c->boundaries + 1);
+    for (int b = 0; b < c->boundaries; b++) {
+        set[b] = set_number(part, c->boundary[b].set);
+        k->varies = k->varies || boundary_varies(&c->boundary[b]);
+    }
+    uint16_t *on_set = list_nodes(k, set, nodes);
+    k->tile_begin = RG_NEW(size_t, d->tiles + 1);
+    for (size_t t = 0; t < d->tiles; t++) {
+        k->tile_begin[t] = k->entries;
+        for (size_t slot = d->tile[t].begin * RG_LANES; slot < d->tile[t].end * RG_LANES; slot++) {
+            for (int comp = 0; comp < 3; comp++) {
+                int16_t which[RG_NODES];
+                unsigned mask = constrained_nodes(k, on_set, slot, comp, which);
+                if (mask != 0) {
+                    add_entry(k, rg_element_mass(d, m, slot), slot, comp, mask, which);
+                }
+            }
+        }
+    }
+    k->tile_begin[d->tiles] = k->entries;
+    rg_free(on_set);
+    rg_free(set);
+    return k;
+}
+
+/* ---- Values ---- */
+
+static double value_at(const rg_constraints *k, const entry *e, int i, double time) {
+    double x[3];
+    rg_node_position(k->domain->corner + 12 * (size_t)e->slot, e->pattern->node[i], x);
+    return rg_expr_value(k->input->boundary[e->boundary[i]].value, x, time);
+}
+
+/* Velocity of constrained node i at `time`; of a prescribed displacement, its difference over a step. */
+static double velocity_at(const rg_constraints *k, const entry *e, int i, double time, double dt) {
+    if (!k->input->boundary[e->boundary[i]].is_displacement) {
+        return value_at(k, e, i, time);
+    }
+    double half = 0.5 * dt;
+    return dt > 0 ? (value_at(k, e, i, time + half) - value_at(k, e, i, time - half)) / dt : 0;
+}
+
+/* Notes that constrained node i of an entry was told something that is not finite at `time`. */
+static void note(rg_constraints *k, const entry *e, int i, double time) {
+    double x[3];
+    if (k->bad.which == RG_NOWHERE || k->bad.value == time) { /* what comes later only follows */
+        rg_node_position(k->domain->corner + 12 * (size_t)e->slot, e->pattern->node[i], x);
+        rg_spot_note(&k->bad, e->boundary[i], x, time);
+    }
+}
+
+bool rg_constraints_told(const rg_constraints *k, char *words, size_t size, MPI_Comm comm) {
+    rg_spot bad = k->bad;
+    double first = bad.which == RG_NOWHERE ? INFINITY : bad.value;
+    MPI_Allreduce(MPI_IN_PLACE, &first, 1, MPI_DOUBLE, MPI_MIN, comm);
+    if (bad.which != RG_NOWHERE && bad.value > first) { /* it only followed */
+        bad.which = RG_NOWHERE;
+    }
+    bool found = rg_spot_lowest(&bad, comm);
+    if (found) {
+        const rg_boundary *b = &k->input->boundary[bad.which];
+        snprintf(words, size, "boundary[%d].%s: %s is not finite at (%g, %g, %g), t = %g s", (int)bad.which,
+                 b->is_displacement ? "displacement" : "velocity", rg_expr_text(b->value), bad.x[0], bad.x[1],
+                 bad.x[2], bad.value);
+    }
+    return found;
+}
+
+void rg_constraints_start(rg_constraints *k, const rg_real *u, const rg_real *velocity, MPI_Comm comm) {
+    int64_t jumps = 0;
+    for (size_t n = 0; n < k->entries; n++) {
+        entry *e = &k->entry[n];
+        for (int i = 0; i < e->pattern->constrained; i++) {
+            size_t at = rg_node_index((size_t)e->slot, e->pattern->node[i], e->component);
+            e->is.before[i] = velocity[at];
+            e->is.place[i] = u[at];
+            e->is.target[i] = e->is.present[i] = velocity_at(k, e, i, 0, 0);
+            bool placed = k->input->boundary[e->boundary[i]].is_displacement;
+            double first = value_at(k, e, i, 0);
+            if (!isfinite(first)) {
+                note(k, e, i, 0);
+            }
+            double volume = k->domain->geom[rg_geom_index((size_t)e->slot, RG_GEOM_VOLUME)];
+            jumps += placed && fabs(first - u[at]) > JUMP * cbrt(volume);
+        }
+    }
+    char words[400];
+    if (rg_constraints_told(k, words, sizeof words, comm)) {
+        rg_speak(comm);
+        rg_fatal(RG_USAGE, "%s: %s", k->input->path, words);
+    }
+    int rank;
+    MPI_Comm_rank(comm, &rank);
+    MPI_Allreduce(MPI_IN_PLACE, &jumps, 1, MPI_INT64_T, MPI_SUM, comm);
+    if (rank == 0 && jumps > 0) {
+        rg_warn("boundary: %" PRId64
+                " prescribed displacements differ from the initial ones at t = 0; the first "
+                "step imposes them",
+                jumps);
+    }
+}
+
+void rg_constraints_set(rg_constraints *k, double time, double dt, bool moving) {
+    k->moving = moving;
+    for (size_t n = 0; k->varies && n < k->entries; n++) {
+        entry *e = &k->entry[n];
+        for (int i = 0; e->varies && i < e->pattern->constrained; i++) {
+            if (k->input->boundary[e->boundary[i]].is_displacement) {
+                double next = value_at(k, e, i, time + dt);
+                e->is.target[i] = (next - e->is.place[i]) / dt;
+                e->is.place[i] = next;
+            } else {
+                e->is.target[i] = value_at(k, e, i, time + 0.5 * dt);
+            }
+            e->is.present[i] = velocity_at(k, e, i, time, dt);
+            if (!isfinite(e->is.target[i] + e->is.present[i])) {
+                note(k, e, i, time);
+            }
+        }
+    }
+}
+
+/* ---- Correction ---- */
+
+/* Adds to the velocities of an entry's nodes what brings the constrained ones to `target`; returns the work
+ * of that impulse. */
+static double correct(const entry *e, const double *target, rg_real *velocity) {
+    const pattern *p = e->pattern;
+    double work = 0, change[RG_NODES];
+    for (int i = 0; i < p->constrained; i++) {
+        change[i] = target[i] - velocity[rg_node_index((size_t)e->slot, p->node[i], e->component)];
+    }
+    for (int i = 0; i < p->constrained; i++) {
+        double impulse = 0;
+        for (int j = 0; j < p->constrained; j++) {
+            impulse += p->impulse[i][j] * change[j];
+        }
+        work += 0.5 * e->mass * impulse * (e->is.before[i] + target[i]);
+    }
+    for (int n = 0; n < RG_NODES; n++) {
+        size_t at = rg_node_index((size_t)e->slot, p->node[n], e->component);
+        if (n < p->constrained) {
+            velocity[at] = (rg_real)target[n];
+            continue;
+        }
+        double v = velocity[at];
+        for (int j = 0; j < p->constrained; j++) {
+            v += p->follow[n][j] * change[j];
+        }
+        velocity[at] = (rg_real)v;
+    }
+    return work;
+}
+
+void rg_constraints_kick(rg_constraints *k, size_t tile, rg_real *velocity, rg_real *now) {
+    for (size_t n = k->tile_begin[tile]; n < k->tile_begin[tile + 1]; n++) {
+        entry *e = &k->entry[n];
+        if (now != NULL) {
+            e->is.work_now = e->is.work + (k->moving ? correct(e, e->is.present, now) : 0);
+        }
+        e->is.work += correct(e, e->is.target, velocity);
+        memcpy(e->is.before, e->is.target, sizeof e->is.before);
+    }
+}
+
+void rg_constraints_place(const rg_constraints *k, size_t tile, rg_real *u) {
+    for (size_t n = k->tile_begin[tile]; n < k->tile_begin[tile + 1]; n++) {
+        const entry *e = &k->entry[n];
+        for (int i = 0; i < e->pattern->constrained; i++) {
+            if (k->input->boundary[e->boundary[i]].is_displacement) {
+                u[rg_node_index((size_t)e->slot, e->pattern->node[i], e->component)] =
+                    (rg_real)e->is.place[i];
+            }
+        }
+    }
+}
+
+void rg_constraints_work(const rg_constraints *k, rg_exact_sum *work) {
+    for (size_t n = 0; n < k->entries; n++) {
+        rg_exact_add(work, k->entry[n].is.work_now);
+    }
+}
+
+void rg_constraints_register(rg_constraints *k, rg_state *st) {
+    enum { VALUES = sizeof(memory) / sizeof(double) };
+    if (k->key == NULL) { /* a list of state keeps a reference: all have the same */
+        k->key = rg_alloc(k->entries, sizeof *k->key);
+    }
+    for (size_t n = 0; n < k->entries; n++) {
+        k->key[n] = 4 * k->domain->id[k->entry[n].slot] + k->entry[n].component;
+    }
+    void *first = k->entries == 0 ? NULL : &k->entry[0].is;
+    rg_state_add_list(st, "constraint", RG_STATE_DOUBLE, VALUES, first, sizeof *k->entry, k->entries, k->key);
+}
+
+void rg_constraints_free(rg_constraints *k) {
+    if (k == NULL) {
+        return;
+    }
+    for (size_t i = 0; i < sizeof k->patterns / sizeof *k->patterns; i++) {
+        rg_free(k->patterns[i]);
+    }
+    rg_free(k->entry);
+    rg_free(k->key);
+    rg_free(k->tile_begin);
+    rg_free(k);
+}

@@ -1,0 +1,56 @@
+/* Prescribed velocities and displacements on named sets of faces, on every node of the face.
+ *
+ * The mass matrix of an element couples its nodes, so a prescribed node moves the free ones: with d the
+ * change of velocity wanted at the constrained nodes c, the reaction impulse is J = (Minv_cc)^-1 d, and the
+ * free nodes get Minv_fc J. The work of the reaction in a step, J . (v_before + v_after)/2, closes the
+ * leapfrog's energy balance exactly. */
+#ifndef RG_CONSTRAINT_H
+#define RG_CONSTRAINT_H
+
+#include <stdbool.h>
+
+#include "base/exact_sum.h"
+#include "base/spot.h"
+#include "case/case.h"
+#include "domain/assembly.h"
+#include "domain/domain.h"
+#include "solver/state.h"
+
+typedef struct rg_constraints rg_constraints;
+
+/* The constraints of a case, of the materials m, on this rank. Where elements share nodes by an assembly
+ * (else NULL), all copies of a node on a face of the set are prescribed, also those of elements that only
+ * touch the set. Keeps references to `c` and `d`. Collective; free with rg_constraints_free. */
+rg_constraints *rg_constraints_make(const rg_case *c, const rg_domain *d, const rg_part *part,
+                                    const rg_material *m, rg_assembly *nodes);
+
+/* Takes the fields at t = 0 as what the constrained nodes come from. Collective; ends the run with a message
+ * (RG_USAGE) if a value is not finite then. */
+void rg_constraints_start(rg_constraints *k, const rg_real *u, const rg_real *velocity, MPI_Comm comm);
+
+/* Collective: whether a value was not finite in any step so far; then words[size] says which, where and when
+ * first. */
+bool rg_constraints_told(const rg_constraints *k, char *words, size_t size, MPI_Comm comm);
+
+/* Evaluates what is prescribed for a step `dt` (> 0) from `time`: velocities in its middle, displacements at
+ * its end, and, `moving`, velocities at `time` itself (at the start they are the initial ones). One thread.
+ */
+void rg_constraints_set(rg_constraints *k, double time, double dt, bool moving);
+
+/* Corrects the velocities of tile `tile` after its kick; before that those at the present time, unless `now`
+ * is NULL. Both are whole fields. Keeps account of the work. */
+void rg_constraints_kick(rg_constraints *k, size_t tile, rg_real *velocity, rg_real *now);
+
+/* Puts what has a prescribed displacement in its place after the drift of tile `tile`. */
+void rg_constraints_place(const rg_constraints *k, size_t tile, rg_real *u);
+
+/* Adds the work done up to the last present time at which velocities were asked for (J) to `work`. */
+void rg_constraints_work(const rg_constraints *k, rg_exact_sum *work);
+
+/* Registers what the constraints must remember: all that varies of their entries, keyed by 4 * global number
+ * of the element + component. */
+void rg_constraints_register(rg_constraints *k, rg_state *st);
+
+void rg_constraints_free(rg_constraints *k);
+
+#endif

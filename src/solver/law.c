@@ -1,0 +1,68 @@
+#include "solver/law.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "case/key.h"
+#include "cohesive/facts.h"
+
+static rg_law_facts facts_of(const rg_cohesive *law) {
+    return rg_law_facts_of(law->law, law->shape, law->beta);
+}
+
+void rg_law_stiffness(const rg_cohesive *law, double slope[2]) {
+    rg_law_facts facts = facts_of(law);
+    for (int k = 0; k < 2; k++) {
+        slope[k] = facts.slope[k] * law->strength / law->opening;
+    }
+}
+
+/* The critical opening of a law without work of separation means nothing: any does. */
+rg_cohesive rg_law_make(const rg_case *c) {
+    if (c->interface.law == RG_LAW_NONE) {
+        return (rg_cohesive){.strength = INFINITY, .opening = 1, .separation = 1, .beta = c->interface.beta};
+    }
+    rg_cohesive law = {.law = c->interface.law,
+                       .strength = c->interface.strength,
+                       .beta = c->interface.beta,
+                       .total = c->interface.activation == RG_ACTIVATION_TOTAL,
+                       .onset = rg_group_used(RG_GROUP_ONSET, c) ? c->interface.onset : 0,
+                       .beta_s = c->interface.beta_s,
+                       .flux = c->interface.contact == RG_CONTACT_FLUX,
+                       .potential = c->interface.contact == RG_CONTACT_POTENTIAL,
+                       .intrinsic = c->interface.form == RG_FORM_INTRINSIC,
+                       .friction = c->interface.friction};
+    memcpy(law.shape, c->interface.shape[law.law], sizeof law.shape);
+    rg_law_facts facts = facts_of(&law);
+    if ((facts.forms & RG_NORMAL_MEASURE) != 0) {
+        law.beta = 0;
+    }
+    law.opening = facts.work > 0 ? c->interface.energy / (facts.work * law.strength) : 1;
+    law.separation = facts.separation * law.opening;
+    if (law.intrinsic) {
+        double slope[2];
+        rg_law_stiffness(&law, slope);
+        law.slope = slope[0];
+    }
+    return law;
+}
+
+double rg_law_steps(const rg_cohesive *law) {
+    return (facts_of(law).forms & RG_PACED) != 0 ? law->shape[RG_PACE_STEPS] : 0;
+}
+
+size_t rg_crack_stride(const rg_cohesive *law) {
+    size_t friction = law->friction > 0 ? RG_FRICTION_BLOCK : 0;
+    return RG_CRACK_BLOCK + (size_t)facts_of(law).memory * RG_POINTS * RG_LANES + friction;
+}
+
+void rg_law_start(rg_solver *s) {
+    if (!s->law.intrinsic) {
+        return;
+    }
+    const rg_domain *d = s->domain;
+    memset(s->broken, (1 << RG_POINTS) - 1, d->iblocks * RG_LANES);
+    memset(s->unlinked, (1 << RG_POINTS) - 1, d->iblocks * RG_LANES);
+    memset(s->active, 1, d->iblocks);
+    memset(s->cracked, 1, d->blocks);
+}

@@ -1,0 +1,23 @@
+/* The cohesive law of a case, and the state in which its faces start. */
+#ifndef RG_LAW_H
+#define RG_LAW_H
+
+#include "solver/solver.h"
+
+/* Law of the case, its critical opening from strength and energy; of infinite strength where there is none.
+ */
+rg_cohesive rg_law_make(const rg_case *c);
+
+/* N of the adaptive time step (solver/pace.h); 0: the law has none, or it is not asked for. */
+double rg_law_steps(const rg_cohesive *law);
+
+/* Values of crack state, memory and friction of a block of interfaces. */
+size_t rg_crack_stride(const rg_cohesive *law);
+
+/* In the intrinsic form every point follows its law from the start, on the total jump. */
+void rg_law_start(rg_solver *s);
+
+/* Bound on the stiffness of opening and of sliding where the law starts with a slope (Pa/m). */
+void rg_law_stiffness(const rg_cohesive *law, double slope[2]);
+
+#endif

@@ -1,0 +1,181 @@
+#include "solver/setup.h"
+
+#include <omp.h>
+#include <string.h>
+
+#include "base/error.h"
+#include "base/mem.h"
+#include "partition/material.h"
+#include "partition/mesh_case.h"
+#include "partition/patch.h"
+#include "solver/law.h"
+#include "solver/strength.h"
+#include "solver/tile.h"
+
+static void allocate_fields(rg_solver *s) {
+    const rg_domain *d = s->domain;
+    size_t blocks = d->blocks, rows = d->own_rows + d->shared;
+    s->u = RG_NEW(rg_real, blocks * RG_NODE_BLOCK);
+    s->velocity = RG_NEW(rg_real, blocks * RG_NODE_BLOCK);
+    s->now = RG_NEW(rg_real, blocks * RG_NODE_BLOCK);
+    s->acceleration = s->assembly != NULL ? RG_NEW(rg_real, blocks * RG_NODE_BLOCK) : NULL;
+    s->stiffening = RG_NEW(rg_real, blocks * RG_LANES);
+    s->tile_stiffening = RG_NEW(rg_real, d->tiles);
+    s->tile_pace = rg_law_steps(&s->law) > 0 ? RG_NEW(double, d->tiles) : NULL;
+    s->crack_stride = rg_crack_stride(&s->law);
+    s->crack = rg_alloc_sparse(d->iblocks * s->crack_stride, sizeof *s->crack);
+    s->history = s->history_stride > 0 ? RG_NEW(rg_real, blocks * s->history_stride) : NULL;
+    bool viscous = s->input->viscosity.linear > 0 || s->input->viscosity.quadratic > 0;
+    s->heat = viscous ? RG_NEW(double, blocks *RG_LANES) : NULL;
+    s->cracked = RG_NEW(uint8_t, blocks);
+    s->broken = RG_NEW(uint8_t, d->iblocks * RG_LANES);
+    s->unlinked = RG_NEW(uint8_t, d->iblocks * RG_LANES);
+    s->active = RG_NEW(uint8_t, d->iblocks);
+    s->rows[0] = RG_NEW(rg_real, rows * RG_TRACE_ROW);
+    s->rows[1] = RG_NEW(rg_real, rows * RG_TRACE_ROW);
+    s->tractions = RG_NEW(rg_real, rows * RG_SEAM_ROW);
+    s->watched = RG_NEW(uint8_t, d->tiles);
+    s->work = RG_NEW(rg_workspace, (size_t)s->threads);
+}
+
+static void place_tile(rg_solver *s, const rg_tile *t) {
+    const size_t nodal = sizeof(rg_real[RG_NODE_BLOCK]), trace = sizeof(rg_real[RG_TRACE_ROW]);
+    const size_t end = t->row + rg_tile_seams(t) * RG_LANES;
+    const struct {
+        void *array;              /* NULL: there is no such */
+        size_t bytes, begin, end; /* of an item; the tile's items */
+    } part[] = {
+        {s->u, nodal, t->begin, t->end},
+        {s->velocity, nodal, t->begin, t->end},
+        {s->acceleration, nodal, t->begin, t->end},
+        {s->heat, sizeof(double[RG_LANES]), t->begin, t->end},
+        {s->history, s->history_stride * sizeof *s->history, t->begin, t->end},
+        {s->tractions, sizeof(rg_real[RG_SEAM_ROW]), t->row, end},
+        {s->rows[0], trace, t->row, end},
+        {s->rows[1], trace, t->row, end},
+    };
+    for (size_t i = 0; i < sizeof part / sizeof *part; i++) {
+        if (part[i].array != NULL) {
+            memset((char *)part[i].array + part[i].begin * part[i].bytes, 0,
+                   (part[i].end - part[i].begin) * part[i].bytes);
+        }
+    }
+}
+
+/* First touch: the pages go to the thread that will sweep the tile, in the loops of `evaluate`; the
+ * workspaces to their threads. */
+static void place_fields(rg_solver *s) {
+    const rg_domain *d = s->domain;
+#pragma omp parallel
+    {
+        s->work[omp_get_thread_num()] = rg_workspace_make(d);
+#pragma omp for schedule(static)
+        for (size_t t = 0; t < d->boundary_tiles; t++) {
+            place_tile(s, &d->tile[t]);
+        }
+#pragma omp for schedule(static)
+        for (size_t t = d->boundary_tiles; t < d->tiles; t++) {
+            place_tile(s, &d->tile[t]);
+        }
+    }
+}
+
+static void select_kernels(rg_solver *s) {
+    s->kernels = rg_kernels_select();
+    if (s->kernels == NULL) {
+        rg_speak(s->comm);
+        rg_fatal(RG_USAGE, "RHEGMA_ISA names an instruction set that this machine does not have; there are "
+                           "x86-64-v2, -v3, -v4");
+    }
+}
+
+/* The domain, and what joins its elements; the part's list of them is needed no more. */
+static void build_domain(rg_solver *s, const rg_interface_material *m) {
+    uint8_t *joined = rg_joined_faces(s->input, s->part, s->comm);
+    s->domain = rg_domain_build(s->part, joined, s->rank, m);
+    if (joined != NULL) {
+        s->joints = rg_joints_make(s->domain, s->part, joined, s->rank);
+        s->assembly = rg_assembly_make(s->domain, s->joints, s->material, s->comm);
+    }
+    rg_free(joined);
+    rg_free(s->part->element);
+    s->part->element = NULL;
+}
+
+rg_solver *rg_solver_make_from_part(const rg_case *input, rg_part *part, MPI_Comm comm) {
+    rg_solver *s = RG_NEW(rg_solver, 1);
+    *s = (rg_solver){.input = input,
+                     .comm = comm,
+                     .threads = omp_get_max_threads(),
+                     .part = part,
+                     .limiting = -1,
+                     .stiffest = 1,
+                     .materials = 1 + input->others,
+                     .material = rg_materials_of_case(input),
+                     .law = rg_law_make(input),
+                     .lift = input->interface.form == RG_FORM_VARIATIONAL || input->interface.faces != NULL,
+                     .lumped = input->mass == RG_MASS_LUMPED};
+    MPI_Comm_rank(comm, &s->rank);
+    MPI_Comm_size(comm, &s->ranks);
+    select_kernels(s);
+    for (int m = 0; m < s->materials; m++) {
+        size_t block = rg_history_block(rg_material_history(s->material[m].model));
+        s->history_stride = block > s->history_stride ? block : s->history_stride;
+    }
+    rg_interface_material m = {s->materials, s->material, input->interface.beta_s, input->interface.penalty};
+    build_domain(s, &m);
+    s->constraints = rg_constraints_make(input, s->domain, s->part, s->material, s->assembly);
+    s->bodies = rg_bodies_make(input, s->domain, s->part, s->material, s->threads, comm);
+    allocate_fields(s);
+    place_fields(s);
+    rg_law_start(s);
+    if (part->original == NULL) { /* a patch has no need of them */
+        rg_strength_make(s);
+    }
+    for (int k = 0; k < 2; k++) {
+        s->halo_u[k] = rg_halo_make(s->domain, RG_TRACE_ROW, s->rows[k], 1 + k, comm);
+    }
+    s->halo_t = rg_halo_make(s->domain, RG_SEAM_ROW, s->tractions, 3, comm);
+    return s;
+}
+
+rg_solver *rg_solver_make(const rg_case *input, MPI_Comm comm) {
+    rg_part *part = rg_part_of_case(input, NULL, comm);
+    bool shared = input->interface.form == RG_FORM_CONTINUOUS; /* rg_spectrum has no use for a patch then */
+    rg_material *material = rg_materials_of_case(input);
+    rg_part *patch = shared ? NULL : rg_patch_gather(part, material, comm);
+    rg_free(material);
+    rg_solver *s = rg_solver_make_from_part(input, part, comm);
+    s->patch = patch;
+    return s;
+}
+
+void rg_solver_free(rg_solver *s) {
+    if (s == NULL) {
+        return;
+    }
+    for (int t = 0; t < s->threads; t++) {
+        rg_workspace_free(&s->work[t]);
+    }
+    void *blocks[] = {s->u,         s->velocity, s->now,      s->crack,   s->stiffening, s->tile_stiffening,
+                      s->cracked,   s->broken,   s->unlinked, s->active,  s->rows[0],    s->rows[1],
+                      s->tractions, s->watched,  s->work,     s->history, s->heat,       s->acceleration};
+    rg_free(s->material);
+    rg_free(s->scale);
+    rg_free(s->tile_pace);
+    rg_free(s->tile_seconds);
+    rg_constraints_free(s->constraints);
+    rg_bodies_free(s->bodies);
+    rg_halo_free(s->halo_u[0]);
+    rg_halo_free(s->halo_u[1]);
+    rg_halo_free(s->halo_t);
+    rg_assembly_free(s->assembly);
+    rg_joints_free(s->joints);
+    for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) {
+        rg_free(blocks[i]);
+    }
+    rg_domain_free(s->domain);
+    rg_part_free(s->part);
+    rg_part_free(s->patch);
+    rg_free(s);
+}

@@ -1,0 +1,94 @@
+/* The state of a run on one rank and the passes over it: the physics, with the messages hidden under it.
+ *
+ * A step from state n to n + 1 is a kick and a drift. The kick evaluates the forces of u(n) in two sweeps
+ * over the tiles: elements and the interfaces inside them, whose results never leave the cache; then, when
+ * the tractions of all tiles are known, the seams. The drift moves u and publishes the traces of the seams.
+ * In form continuous the sweeps kick accelerations in place of velocities, whose mean over the copies of a
+ * node (domain/assembly.h) moves all of them in a third one.
+ *
+ * A material with a history goes on in the kick, by the step that led to u(n): once for each state. Between
+ * kick and drift stress and energy are those that the forces were made of. */
+#ifndef RG_SOLVER_H
+#define RG_SOLVER_H
+
+#include <mpi.h>
+
+#include "base/exact_sum.h"
+#include "case/case.h"
+#include "domain/assembly.h"
+#include "domain/domain.h"
+#include "domain/halo.h"
+#include "kernels.h"
+#include "solver/body.h"
+#include "solver/constraint.h"
+#include "solver/phases.h"
+
+/* What one thread needs to work on a tile. */
+typedef struct {
+    rg_real *force, *traction, *iforce, *turn, *ghost; /* layout.h */
+} rg_workspace;
+
+typedef struct rg_solver rg_solver;
+
+/* Called for a tile between its kick and its drift, with `now` up to date there and the ghosts received. */
+typedef void rg_watcher(void *context, rg_solver *s, size_t tile, const rg_workspace *work);
+
+struct rg_solver {
+    const rg_case *input;
+    MPI_Comm comm;
+    int rank, ranks, threads;
+    const rg_kernels *kernels;
+    rg_part *part;  /* sets and totals; its element list is gone once the domain stands */
+    rg_part *patch; /* rank 0, until rg_spectrum: the elements that limit the time step (partition/patch.h);
+                       not in form continuous */
+    rg_domain *domain;
+    rg_joints *joints;     /* of form continuous; NULL in others */
+    rg_assembly *assembly; /* likewise */
+
+    rg_real *u, *velocity, *now; /* layout.h; now: velocity at the time of u, where it was asked for */
+    rg_real *acceleration;       /* of each element for itself, then of the nodes; only with an assembly */
+    rg_real *crack;              /* state of all broken points, and the memory of their law: layout.h */
+    size_t crack_stride;         /* values of a block of interfaces */
+    rg_real *history;            /* layout.h: of the materials; NULL where none has any */
+    size_t history_stride;       /* values of a block: as many as the longest history needs */
+    double *heat;        /* [blocks][lane]: dissipated by bulk viscosity (J); NULL where there is none */
+    rg_real *stiffening; /* [blocks][lane] */
+    rg_real *tile_stiffening;
+    double *tile_seconds;       /* [tiles]: that the sweeps took (solver/balance.h); NULL: nobody asks */
+    double *tile_pace;          /* solver/pace.h; NULL: the law asks for no steps */
+    double pace;                /* largest on all ranks (1/s) */
+    double stiffening_anywhere; /* largest on all ranks; infinite if not finite */
+    int wish; /* largest of all ranks (base/interrupt.h) when the forces were last computed */
+    double here[2], anywhere[2]; /* both on their way */
+    MPI_Request stiffening_request;
+    uint8_t *cracked, *broken, *unlinked, *active;
+    rg_real *rows[2], *tractions; /* trace rows, of the current state and of the next; traction rows */
+    int current;                  /* which of `rows` */
+    rg_halo *halo_u[2], *halo_t;
+    rg_workspace *work; /* [threads] */
+    rg_constraints *constraints;
+    rg_bodies *bodies;
+    rg_watcher *watch;
+    void *watch_context;
+    uint8_t *watched; /* [tiles] */
+
+    int materials;
+    rg_material *material; /* [materials] */
+    rg_cohesive law;
+    rg_real *scale;  /* layout as in rg_interface_args; NULL: all faces alike */
+    double stiffest; /* largest ratio of strength to critical opening, over that of the law; 1: all alike */
+    bool lift, lumped;
+
+    double damping;  /* by viscosity.linear 1, of the stiffest mode */
+    double omega2;   /* largest squared frequency, faces intact or closed, bodies in contact (1/s^2) */
+    rg_gid limiting; /* element that sets it */
+    const char *limiting_state;
+    double pass_seconds;     /* of one evaluation of all forces, as measured at set-up */
+    double exchange_seconds; /* of a step's messages with nothing to hide them, as measured at set-up */
+    rg_phases phases;        /* of all passes since it was cleared */
+    double time, dt;         /* of the current state (s); dt is the step that led to it */
+    double dt_next;          /* step that leads on, once kicked */
+    int64_t step;
+};
+
+#endif

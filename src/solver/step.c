@@ -1,0 +1,484 @@
+#include "solver/step.h"
+
+#include <math.h>
+#include <omp.h>
+#include <string.h>
+
+#include "base/error.h"
+#include "base/interrupt.h"
+#include "base/spot.h"
+#include "domain/element.h"
+#include "partition/material.h"
+#include "solver/law.h"
+#include "solver/pace.h"
+#include "solver/tile.h"
+
+/* ---- One tile ---- */
+
+/* Where the forces go: velocity += dt M^-1 f. */
+typedef struct {
+    rg_real *velocity;
+    double dt;
+    bool move;      /* the step goes on: drift and publish at once */
+    bool observe;   /* `now` is wanted everywhere */
+    bool constrain; /* prescribed motions and bodies act */
+    bool advance;   /* the history of the material goes on by the step that led here: once for each state */
+    bool apart;     /* velocity is that of elements that do not know yet that they share nodes */
+} impulse;
+
+/* Where the velocity at the present time goes; NULL: it is not wanted. */
+static rg_real *now_of(const rg_solver *s, size_t tile, const impulse *p) {
+    return !p->apart && (p->observe || s->watched[tile]) ? s->now : NULL;
+}
+
+/* Tells the elements beside broken points, so that the lift leaves those points out. */
+static void mark_cracked(rg_solver *s, const rg_tile *t, size_t begin, size_t end) {
+    for (size_t b = begin; b < end; b++) {
+        for (size_t i = b * RG_LANES; s->active[b] && i < (b + 1) * RG_LANES; i++) {
+            for (int k = 0; s->broken[i] && k < (b < t->sbegin ? 2 : 1); k++) {
+                s->cracked[t->begin + (size_t)s->domain->side[k][i] / (RG_FACES * RG_LANES)] = 1;
+            }
+        }
+    }
+}
+
+static void kick(rg_solver *s, size_t tile, const rg_workspace *w, const impulse *p, bool seams) {
+    const rg_tile *t = &s->domain->tile[tile];
+    size_t at = t->begin * RG_NODE_BLOCK;
+    rg_real *now = now_of(s, tile, p);
+    rg_kick_args args = {.lumped = s->lumped,
+                         .seams = seams,
+                         .dt = p->dt,
+                         .geom = s->domain->geom + t->begin * RG_GEOM_BLOCK,
+                         .force = w->force,
+                         .iforce = w->iforce,
+                         .turn = s->law.potential ? w->turn : NULL,
+                         .broken = s->broken + t->ibegin * RG_LANES,
+                         .interface = s->domain->interface + t->begin * RG_LINK_BLOCK,
+                         .velocity = p->velocity + at,
+                         .now = now == NULL ? NULL : now + at,
+                         .dt_now = 0.5 * s->dt};
+    for (size_t begin = 0, end; begin < rg_tile_eblocks(t); begin = end) {
+        end = rg_run_end(s->domain, t, begin);
+        args.density = rg_block_material(s, t, begin)->density;
+        s->kernels->kick(&args, begin, end);
+    }
+}
+
+static void touch(rg_solver *s, size_t tile, const impulse *p) {
+    rg_contact_kick k = {p->dt, 0.5 * s->dt, p->velocity, now_of(s, tile, p)};
+    rg_bodies_touch(s->bodies, tile, s->u, &k);
+}
+
+/* Largest value; not a number if one is not (a maximum forgets it). */
+static rg_real largest(const rg_real *x, size_t count) {
+    rg_real m = 0, bad = 0;
+    for (size_t i = 0; i < count; i++) {
+        m = x[i] > m ? x[i] : m;
+        bad += 0 * x[i];
+    }
+    return m + bad;
+}
+
+/* Bulk viscosity, on the forces of the bulk, of blocks that are of one material. */
+static void dampen(rg_solver *s, const rg_tile *t, const rg_bulk_args *bulk, size_t begin, size_t end) {
+    double b1 = s->input->viscosity.linear, b2 = s->input->viscosity.quadratic,
+           speed = rg_material_dilatational(&bulk->material);
+    double xi = s->damping * b1;
+    rg_viscosity_args args = {.bulk = bulk,
+                              .velocity = s->velocity + t->begin * RG_NODE_BLOCK,
+                              .linear = b1 * speed,
+                              .quadratic = b2 * b2,
+                              .damping = xi,
+                              .damping_rate = s->damping * b2 * b2 / speed,
+                              .allowed = sqrt(1 + xi * xi) - xi,
+                              .dt = s->dt,
+                              .heat = s->heat + t->begin * RG_LANES};
+    s->kernels->viscosity(&args, begin, end);
+}
+
+/* Elements and the interfaces inside: what they compute stays in the cache. */
+static void inside(rg_solver *s, size_t tile, const rg_workspace *w, const impulse *p) {
+    const rg_tile *t = &s->domain->tile[tile];
+    size_t blocks = rg_tile_eblocks(t);
+    rg_bulk_args bulk = rg_tile_bulk(s, t, w, 0);
+    bulk.advance = p->advance;
+    rg_interface_args interface = rg_tile_interfaces(s, t, w);
+    rg_trace_args traces = rg_tile_traces(s, t, w, false);
+    if (p->apart) {
+        memset(p->velocity + t->begin * RG_NODE_BLOCK, 0, blocks * RG_NODE_BLOCK * sizeof *p->velocity);
+    }
+    s->kernels->receive(&traces, 0, rg_tile_seams(t));
+    for (size_t begin = 0, end; begin < blocks; begin = end) {
+        end = rg_run_end(s->domain, t, begin);
+        bulk.material = *rg_block_material(s, t, begin);
+        s->kernels->bulk(&bulk, begin, end);
+        if (s->heat != NULL && p->constrain) {
+            dampen(s, t, &bulk, begin, end);
+        }
+    }
+    s->kernels->send_tractions(&traces, 0, rg_tile_seams(t));
+    s->kernels->interface(&interface, 0, rg_tile_inside(t));
+    mark_cracked(s, t, t->ibegin, t->sbegin);
+    kick(s, tile, w, p, false);
+    if (p->constrain) {
+        touch(s, tile, p);
+    }
+    s->tile_stiffening[tile] = largest(bulk.stiffening, blocks * RG_LANES);
+}
+
+static void drift(rg_solver *s, size_t tile, const rg_workspace *w) {
+    const rg_tile *t = &s->domain->tile[tile];
+    size_t at = t->begin * RG_NODE_BLOCK;
+    rg_drift_args args = {s->dt_next, s->velocity + at, s->u + at};
+    s->kernels->drift(&args, 0, rg_tile_eblocks(t));
+    rg_constraints_place(s->constraints, tile, s->u);
+    rg_trace_args traces = rg_tile_traces(s, t, w, true);
+    s->kernels->send(&traces, 0, rg_tile_seams(t));
+}
+
+/* The velocities of a tile are complete. */
+static void settle(rg_solver *s, size_t tile, const rg_workspace *w, const impulse *p) {
+    if (p->constrain) {
+        rg_constraints_kick(s->constraints, tile, p->velocity, now_of(s, tile, p));
+    }
+    if (s->watched[tile] && p->constrain) {
+        s->watch(s->watch_context, s, tile, w);
+    }
+    if (p->move) {
+        drift(s, tile, w);
+    }
+}
+
+/* Seams, once the tractions of all tiles are known. */
+static void across(rg_solver *s, size_t tile, const rg_workspace *w, const impulse *p) {
+    const rg_tile *t = &s->domain->tile[tile];
+    rg_interface_args interface = rg_tile_interfaces(s, t, w);
+    rg_tile_receive(s, t, w);
+    s->kernels->interface(&interface, rg_tile_inside(t), rg_tile_iblocks(t));
+    mark_cracked(s, t, t->sbegin, t->iend);
+    if (s->tile_pace != NULL && p->constrain) {
+        s->tile_pace[tile] = rg_pace_of_tile(s, t);
+    }
+    kick(s, tile, w, p, true);
+    if (p->apart) {
+        rg_assembly_sum(s->assembly, tile, p->velocity);
+    } else {
+        settle(s, tile, w, p);
+    }
+}
+
+/* The nodes that tiles share, once the sums of all of them are known; then the velocities. */
+static void assemble(rg_solver *s, size_t tile, const rg_workspace *w, const impulse *p) {
+    const rg_tile *t = &s->domain->tile[tile];
+    size_t at = t->begin * RG_NODE_BLOCK, blocks = rg_tile_eblocks(t);
+    rg_real *a = s->acceleration, *now = now_of(s, tile, p);
+    rg_assembly_gather(s->assembly, tile, a);
+    if (now != NULL) {
+        memcpy(now + at, p->velocity + at, blocks * RG_NODE_BLOCK * sizeof *now);
+        s->kernels->drift(&(rg_drift_args){0.5 * s->dt, a + at, now + at}, 0, blocks);
+    }
+    s->kernels->drift(&(rg_drift_args){p->dt, a + at, p->velocity + at}, 0, blocks);
+    if (s->watched[tile]) {
+        rg_tile_receive(s, t, w);
+    }
+    settle(s, tile, w, p);
+}
+
+static void assemble_inside(rg_solver *s, size_t tile, const rg_workspace *w, const impulse *p) {
+    if (!rg_assembly_waits(s->assembly, tile)) {
+        assemble(s, tile, w, p);
+    }
+}
+
+static void assemble_outside(rg_solver *s, size_t tile, const rg_workspace *w, const impulse *p) {
+    if (rg_assembly_waits(s->assembly, tile)) {
+        assemble(s, tile, w, p);
+    }
+}
+
+/* ---- Sweeps (inside a parallel region) ---- */
+
+typedef void tile_work(rg_solver *s, size_t tile, const rg_workspace *w, const impulse *p);
+
+static void sweep(rg_solver *s, tile_work *work, const impulse *p, size_t begin, size_t end, rg_halo *under) {
+    const rg_workspace *w = &s->work[omp_get_thread_num()];
+#pragma omp for schedule(static)
+    for (size_t t = begin; t < end; t++) {
+        double before = s->tile_seconds != NULL ? omp_get_wtime() : 0;
+        work(s, t, w, p);
+        if (s->tile_seconds != NULL) {
+            s->tile_seconds[t] += omp_get_wtime() - before;
+        }
+        if (under != NULL && omp_get_thread_num() == 0) {
+            rg_halo_poll(under);
+        }
+    }
+}
+
+static void mark(rg_solver *s, rg_phase phase) {
+#pragma omp master
+    rg_phases_mark(&s->phases, phase);
+}
+
+static void start(rg_solver *s, rg_halo *h) {
+    rg_halo_pack(h);
+    mark(s, RG_PHASE_PACK);
+#pragma omp master
+    rg_halo_start(h);
+    mark(s, RG_PHASE_EXCHANGE);
+}
+
+static void finish(rg_solver *s, rg_halo *h) {
+#pragma omp master
+    rg_halo_finish(h);
+    mark(s, RG_PHASE_WAIT);
+#pragma omp barrier
+}
+
+/* The largest stiffening of all ranks, for a time step to come: known when the sweeps are over. */
+static void start_stiffening(rg_solver *s) {
+#pragma omp master
+    {
+        double here = largest(s->tile_stiffening, s->domain->tiles);
+        s->here[0] = isfinite(here) ? here : INFINITY;
+        s->here[1] = rg_interrupt_wish();
+        MPI_Iallreduce(s->here, s->anywhere, 2, MPI_DOUBLE, MPI_MAX, s->comm, &s->stiffening_request);
+    }
+    mark(s, RG_PHASE_REDUCE);
+}
+
+/* The forces on the bodies, likewise. */
+static void start_bodies(rg_solver *s, const impulse *p) {
+#pragma omp master
+    if (p->constrain) {
+        rg_bodies_sum(s->bodies);
+    }
+    mark(s, RG_PHASE_REDUCE);
+}
+
+/* Shared nodes, from what the elements made for themselves; rows of other ranks arrive under the tiles that
+ * share no node with them. */
+static void assemble_all(rg_solver *s, const impulse *p) {
+    rg_halo *rows = rg_assembly_halo(s->assembly);
+    start(s, rows);
+    sweep(s, assemble_inside, p, 0, s->domain->tiles, rows);
+    mark(s, RG_PHASE_JUMP);
+    finish(s, rows);
+    sweep(s, assemble_outside, p, 0, s->domain->tiles, NULL);
+    mark(s, RG_PHASE_JUMP);
+}
+
+/* All forces. The traces of the displacement, sent at the end of the last drift, arrive under the first sweep
+ * of the tiles that touch no other rank; the tractions under the second. */
+static void evaluate(rg_solver *s, const impulse *whole) {
+    impulse apart = *whole;
+    const impulse *p = whole;
+    if (s->assembly != NULL) {
+        apart.velocity = s->acceleration;
+        apart.dt = 1;
+        apart.apart = true;
+        p = &apart;
+    }
+    size_t outer = s->domain->boundary_tiles, all = s->domain->tiles;
+    rg_halo *traces = s->halo_u[s->current], *next = s->halo_u[1 - s->current];
+    rg_phases_begin(&s->phases);
+#pragma omp parallel
+    {
+        sweep(s, inside, p, outer, all, traces);
+        mark(s, RG_PHASE_COMPUTE);
+        finish(s, traces);
+        sweep(s, inside, p, 0, outer, NULL);
+        mark(s, RG_PHASE_COMPUTE);
+        start(s, s->halo_t);
+        start_stiffening(s);
+        start_bodies(s, p);
+        sweep(s, across, p, outer, all, s->halo_t);
+        mark(s, RG_PHASE_JUMP);
+        finish(s, s->halo_t);
+        sweep(s, across, p, 0, outer, NULL);
+        mark(s, RG_PHASE_JUMP);
+        if (s->assembly != NULL) {
+            assemble_all(s, whole);
+        }
+        if (p->move) {
+            start(s, next);
+        }
+    }
+    MPI_Wait(&s->stiffening_request, MPI_STATUS_IGNORE);
+    s->stiffening_anywhere = s->anywhere[0];
+    s->wish = (int)s->anywhere[1];
+    if (s->tile_pace != NULL && p->constrain) {
+        rg_pace_agree(s);
+    }
+    if (p->constrain) {
+        rg_bodies_kick(s->bodies, s->time, s->dt, s->dt_next);
+    }
+    rg_phases_mark(&s->phases, RG_PHASE_REDUCE);
+}
+
+/* Sends the traces of the current displacement, once those of the last drift have arrived. */
+static void publish(rg_solver *s) {
+    const rg_domain *d = s->domain;
+    rg_halo_finish(s->halo_u[s->current]);
+#pragma omp parallel
+    {
+        const rg_workspace *w = &s->work[omp_get_thread_num()];
+#pragma omp for schedule(static)
+        for (size_t t = 0; t < d->tiles; t++) {
+            rg_trace_args traces = rg_tile_traces(s, &d->tile[t], w, false);
+            s->kernels->send(&traces, 0, rg_tile_seams(&d->tile[t]));
+        }
+        start(s, s->halo_u[s->current]);
+    }
+}
+
+void rg_solver_impulse(rg_solver *s, rg_real *velocity, double dt) {
+    publish(s);
+    evaluate(s, &(impulse){.velocity = velocity, .dt = dt});
+}
+
+/* ---- Time ---- */
+
+/* Value of an initial expression, 0 where there is none. */
+static double initial_value(const rg_expr *e, int which, const double x[3], rg_spot *bad) {
+    double value = e == NULL ? 0 : rg_expr_value(e, x, 0);
+    if (!isfinite(value)) {
+#pragma omp critical
+        rg_spot_note(bad, which, x, value);
+    }
+    return value;
+}
+
+static void refuse_initial(const rg_solver *s, rg_spot *bad) {
+    if (rg_spot_lowest(bad, s->comm)) {
+        int k = (int)bad->which % 3;
+        bool moves = bad->which >= 3;
+        rg_speak(s->comm);
+        rg_fatal(RG_USAGE, "%s: initial.%s.%c: %s is not finite at (%g, %g, %g)", s->input->path,
+                 moves ? "velocity" : "displacement", "xyz"[k],
+                 rg_expr_text((moves ? s->input->initial.velocity : s->input->initial.displacement)[k]),
+                 bad -> x[0], bad -> x[1], bad -> x[2]);
+    }
+}
+
+static void set_initial(rg_solver *s) {
+    rg_spot bad = {.which = RG_NOWHERE};
+#pragma omp parallel
+    {
+        rg_expr *u[3], *velocity[3]; /* this thread's own */
+        for (int k = 0; k < 3; k++) {
+            u[k] = rg_expr_copy(s->input->initial.displacement[k]);
+            velocity[k] = rg_expr_copy(s->input->initial.velocity[k]);
+        }
+#pragma omp for schedule(static)
+        for (size_t slot = 0; slot < s->domain->blocks * RG_LANES; slot++) {
+            for (int n = 0; s->domain->id[slot] >= 0 && n < RG_NODES; n++) {
+                double x[3];
+                rg_node_position(s->domain->corner + 12 * slot, n, x);
+                for (int k = 0; k < 3; k++) {
+                    s->u[rg_node_index(slot, n, k)] = (rg_real)initial_value(u[k], k, x, &bad);
+                    s->velocity[rg_node_index(slot, n, k)] =
+                        (rg_real)initial_value(velocity[k], 3 + k, x, &bad);
+                }
+            }
+        }
+        for (int k = 0; k < 3; k++) {
+            rg_expr_free(u[k]);
+            rg_expr_free(velocity[k]);
+        }
+    }
+    refuse_initial(s, &bad);
+}
+
+/* The stiffening of the initial state, with faces that cannot break yet. */
+static void measure(rg_solver *s) {
+    rg_cohesive law = s->law;
+    s->law.strength = law.intrinsic ? law.strength : INFINITY;
+    double begin = MPI_Wtime();
+    rg_solver_impulse(s, s->now, 0);
+    s->pass_seconds = MPI_Wtime() - begin;
+    s->law = law;
+}
+
+void rg_solver_start(rg_solver *s) {
+    set_initial(s);
+    rg_constraints_start(s->constraints, s->u, s->velocity, s->comm);
+    measure(s);
+}
+
+void rg_solver_resume(rg_solver *s) {
+    const rg_domain *d = s->domain;
+    memset(s->active, 0, d->iblocks);
+    memset(s->cracked, 0, d->blocks);
+    for (size_t i = 0; i < d->iblocks * RG_LANES; i++) {
+        s->active[i / RG_LANES] |= s->broken[i] != 0;
+    }
+    for (size_t t = 0; t < d->tiles; t++) {
+        mark_cracked(s, &d->tile[t], d->tile[t].ibegin, d->tile[t].iend);
+    }
+    publish(s);
+}
+
+/* What a kick with a step `dt` ahead of it does. */
+static impulse prepare(rg_solver *s, double dt) {
+    s->dt_next = dt;
+    for (int m = 0; s->dt > 0 && m < s->materials; m++) {
+        rg_material_prepare(&s->material[m], s->dt);
+    }
+    rg_constraints_set(s->constraints, s->time, dt, s->step > 0);
+    return (impulse){
+        .velocity = s->velocity, .dt = 0.5 * (s->dt + dt), .constrain = true, .advance = s->dt > 0};
+}
+
+/* The displacement has moved. */
+static void advance(rg_solver *s) {
+    rg_bodies_drift(s->bodies, s->dt_next);
+    s->current = 1 - s->current;
+    s->time += s->dt_next;
+    s->dt = s->dt_next;
+    s->step++;
+}
+
+void rg_solver_kick(rg_solver *s, double dt) {
+    impulse p = prepare(s, dt);
+    p.observe = true;
+    evaluate(s, &p);
+}
+
+void rg_solver_drift(rg_solver *s) {
+    const rg_domain *d = s->domain;
+    rg_phases_begin(&s->phases);
+#pragma omp parallel
+    {
+        const rg_workspace *w = &s->work[omp_get_thread_num()];
+#pragma omp for schedule(static)
+        for (size_t t = 0; t < d->tiles; t++) {
+            drift(s, t, w);
+        }
+        mark(s, RG_PHASE_JUMP);
+        start(s, s->halo_u[1 - s->current]);
+    }
+    advance(s);
+}
+
+void rg_solver_step(rg_solver *s, double dt) {
+    impulse p = prepare(s, dt);
+    p.move = true;
+    evaluate(s, &p);
+    advance(s);
+}
+
+void rg_solver_exchange(rg_solver *s) {
+#pragma omp parallel
+    {
+        start(s, s->halo_u[s->current]);
+        finish(s, s->halo_u[s->current]);
+        start(s, s->halo_t);
+        finish(s, s->halo_t);
+        if (s->assembly != NULL) {
+            start(s, rg_assembly_halo(s->assembly));
+            finish(s, rg_assembly_halo(s->assembly));
+        }
+    }
+}

@@ -1,0 +1,33 @@
+/* The passes over the fields: start, kick, drift. */
+#ifndef RG_STEP_H
+#define RG_STEP_H
+
+#include "solver/solver.h"
+
+/* Initial displacement and velocity, constraints, stiffening at t = 0. Collective. */
+void rg_solver_start(rg_solver *s);
+
+/* In its place where the state comes from a checkpoint (solver/state.h): makes what follows from that.
+ * Collective.
+ */
+void rg_solver_resume(rg_solver *s);
+
+/* Forces of the current displacement; velocities go on to the middle of a step `dt`, and `now` becomes the
+ * velocity at the current time everywhere, with the constraints. Collective. */
+void rg_solver_kick(rg_solver *s, double dt);
+
+/* The rest of the step. Collective. */
+void rg_solver_drift(rg_solver *s);
+
+/* Kick and drift at once, tile by tile; `now` is only known to the watcher. Collective. Allocates nothing. */
+void rg_solver_step(rg_solver *s, double dt);
+
+/* velocity += dt M^-1 (all forces of u), without constraints. The history stays. For
+ * the spectrum. Collective. */
+void rg_solver_impulse(rg_solver *s, rg_real *velocity, double dt);
+
+/* Both exchanges of a step with nothing to hide them, as a measurement: the rows are not of one state.
+ * Collective. */
+void rg_solver_exchange(rg_solver *s);
+
+#endif

@@ -1,0 +1,137 @@
+#include "solver/tile.h"
+
+#include <string.h>
+
+#include "base/mem.h"
+
+rg_trace_args rg_tile_traces(const rg_solver *s, const rg_tile *t, const rg_workspace *w, bool next) {
+    const rg_domain *d = s->domain;
+    rg_real *rows = s->rows[next ? 1 - s->current : s->current];
+    return (rg_trace_args){.u = s->u + t->begin * RG_NODE_BLOCK,
+                           .traction = w->traction,
+                           .side = d->side[0] + t->sbegin * RG_LANES,
+                           .other = d->side[1] + t->sbegin * RG_LANES,
+                           .rows = rows,
+                           .own_rows = rows + t->row * RG_TRACE_ROW,
+                           .own_tractions = s->tractions + t->row * RG_SEAM_ROW,
+                           .ghost = w->ghost};
+}
+
+static rg_real *history_of(const rg_solver *s, const rg_tile *t) {
+    return s->history == NULL ? NULL : s->history + t->begin * s->history_stride;
+}
+
+rg_bulk_args rg_tile_bulk(const rg_solver *s, const rg_tile *t, const rg_workspace *w, size_t block) {
+    const rg_domain *d = s->domain;
+    return (rg_bulk_args){.material = *rg_block_material(s, t, block),
+                          .lift = s->lift,
+                          .u = s->u + t->begin * RG_NODE_BLOCK,
+                          .ghost = w->ghost,
+                          .geom = d->geom + t->begin * RG_GEOM_BLOCK,
+                          .neighbour = d->neighbour + t->begin * RG_LINK_BLOCK,
+                          .interface = d->interface + t->begin * RG_LINK_BLOCK,
+                          .cracked = s->cracked + t->begin,
+                          .unlinked = s->unlinked + t->ibegin * RG_LANES,
+                          .history = history_of(s, t),
+                          .history_stride = s->history_stride,
+                          .force = w->force,
+                          .traction = w->traction,
+                          .stiffening = s->stiffening + t->begin * RG_LANES};
+}
+
+void rg_tile_state(const rg_solver *s, const rg_tile *t, const rg_workspace *w, double *energy,
+                   double *cauchy, double *internal) {
+    const size_t points = RG_GAUSS * RG_LANES;
+    rg_bulk_args bulk = rg_tile_bulk(s, t, w, 0);
+    for (size_t begin = 0, end; begin < rg_tile_eblocks(t); begin = end) {
+        end = rg_run_end(s->domain, t, begin);
+        bulk.material = *rg_block_material(s, t, begin);
+        rg_bulk_state_args args = {.bulk = &bulk,
+                                   .energy = energy == NULL ? NULL : energy + begin * RG_LANES,
+                                   .cauchy = cauchy == NULL ? NULL : cauchy + begin * points * 6,
+                                   .internal =
+                                       internal == NULL ? NULL : internal + begin * points * RG_INTERNAL};
+        s->kernels->bulk_state(&args, begin, end);
+        if (internal != NULL && rg_material_history(bulk.material.model) == 0) {
+            memset(args.internal, 0, (end - begin) * points * RG_INTERNAL * sizeof *internal);
+        }
+    }
+}
+
+rg_interface_args rg_tile_interfaces(const rg_solver *s, const rg_tile *t, const rg_workspace *w) {
+    const rg_domain *d = s->domain;
+    size_t first = t->ibegin * RG_LANES;
+    return (rg_interface_args){.law = s->law,
+                               .time = s->time,
+                               .step = s->dt,
+                               .u = s->u + t->begin * RG_NODE_BLOCK,
+                               .traction = w->traction,
+                               .first_seam = rg_tile_inside(t),
+                               .ghost = w->ghost,
+                               .own_tractions = s->tractions + t->row * RG_SEAM_ROW,
+                               .tractions = s->tractions,
+                               .side = {d->side[0] + first, d->side[1] + first},
+                               .geom = d->igeom + t->ibegin * RG_IGEOM_BLOCK,
+                               .scale = s->scale == NULL ? NULL : s->scale + t->ibegin * 2 * RG_LANES,
+                               .broken = s->broken + first,
+                               .unlinked = s->unlinked + first,
+                               .active = s->active + t->ibegin,
+                               .crack = s->crack + t->ibegin * s->crack_stride,
+                               .crack_stride = s->crack_stride,
+                               .force = w->iforce,
+                               .turn = w->turn};
+}
+
+double rg_separation(const rg_solver *s, size_t i) {
+    const rg_real *scale = s->scale == NULL ? NULL : s->scale + (i / RG_LANES * 2 + 1) * RG_LANES;
+    return s->law.separation * (scale == NULL ? 1 : scale[i % RG_LANES]);
+}
+
+bool rg_point_is_broken(const rg_solver *s, size_t i, int q) {
+    bool cohesive = s->broken[i] >> q & 1;
+    return cohesive &&
+           (!s->law.intrinsic || *rg_crack_value(s, i, q, RG_CRACK_OPENING) >= rg_separation(s, i));
+}
+
+bool rg_face_is_broken(const rg_solver *s, size_t i) {
+    for (int q = 0; s->broken[i] && q < RG_POINTS; q++) {
+        if (rg_point_is_broken(s, i, q)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+void rg_tile_receive(const rg_solver *s, const rg_tile *t, const rg_workspace *w) {
+    rg_trace_args traces = rg_tile_traces(s, t, w, false);
+    s->kernels->receive(&traces, 0, rg_tile_seams(t));
+}
+
+rg_workspace rg_workspace_make(const rg_domain *d) {
+    return (rg_workspace){.force = RG_NEW(rg_real, d->tile_blocks * RG_NODE_BLOCK),
+                          .traction = RG_NEW(rg_real, d->tile_blocks * RG_TRACTION_BLOCK),
+                          .iforce = RG_NEW(rg_real, d->tile_iblocks * RG_IFORCE_BLOCK),
+                          .turn = RG_NEW(rg_real, d->tile_iblocks * RG_IFORCE_BLOCK),
+                          .ghost = RG_NEW(rg_real, d->tile_sblocks * RG_GHOST_BLOCK)};
+}
+
+void rg_workspace_free(rg_workspace *w) {
+    rg_free(w->force);
+    rg_free(w->traction);
+    rg_free(w->iforce);
+    rg_free(w->turn);
+    rg_free(w->ghost);
+}
+
+rg_real rg_tile_trace(const rg_solver *s, const rg_tile *t, size_t i, int k, int a, int c) {
+    int32_t link = s->domain->side[k][i];
+    if (i >= t->sbegin * RG_LANES) {
+        int32_t other = s->domain->side[1][i];
+        if (k != other % 2) { /* not the own side */
+            return s->rows[s->current][(size_t)(other / 2) * RG_TRACE_ROW + (size_t)(3 * a + c)];
+        }
+        link = s->domain->side[0][i];
+    }
+    size_t element = t->begin * RG_LANES + (size_t)link / RG_FACES;
+    return s->u[rg_node_index(element, rg_face_node[link % RG_FACES][a], c)];
+}

@@ -1,0 +1,94 @@
+"""The planting of single faults: where each kind can be planted, what is left alone, and that a place is found again."""
+
+import sys
+
+import pytest
+from conftest import ROOT
+
+sys.path.insert(0, str(ROOT / "tests" / "mutation"))
+
+from faults import KINDS, faults_of  # noqa: E402
+from rooms import ROOMS, room_of, shares, touches  # noqa: E402
+
+
+def changed(kind, line, path="a.c", before=""):
+    """The line with each fault of a kind."""
+    text = f"{before}\n{line}\n"
+    return [fault.planted(text).split("\n")[1] for fault in faults_of(path, text)[kind]]
+
+
+@pytest.mark.parametrize("kind, line, expected", [
+    ("sign", "    a = b + c;", ["    a = b - c;"]),
+    ("sign", "    a -= -b;", ["    a += -b;", "    a -= b;"]),
+    ("factor", "    a = 0.5 * b;", ["    a = 1.0 * b;", "    a = 0.5 / b;"]),
+    ("factor", "    a = 3 * b / c;", ["    a = 3 / b / c;", "    a = 3 * b * c;", "    a = 4 * b / c;"]),
+    ("off by one", "    for (int i = 0; i < n; i++) {", ["    for (int i = 1; i < n; i++) {", "    for (int i = 0; i < n - 1; i++) {"]),
+    ("off by one", "    a = b[i + 1];", ["    a = b[i];"]),
+    ("exchanged index", "    a = b[i][j];", ["    a = b[j][i];", "    a = b[0][j];", "    a = b[i][0];"]),
+    ("exchanged index", "    f(a, b);", ["    f(b, a);"]),
+    ("exchanged index", "    a = strcmp(b, c) < 0;", ["    a = strcmp(c, b) < 0;"]),
+    ("exchanged index", "    a = strcmp(b, c) == 0 && memcmp(d, e, n) != 0;", []),
+    ("dropped term", "    a = b + c;", ["    a = b;", "    a = c;"]),
+    ("dropped term", "    if (a && !b) {", ["    if (a && b) {", "    if (a) {"]),
+    ("dropped line", "    a = b;", ["    ;"]),
+    ("relaxed bound", "    a = fmin(b, c);", ["    a = fmax(b, c);"]),
+    ("relaxed bound", "    if (a < 1e-9) {", ["    if (a < 1e-05) {", "    if (0 && (a < 1e-9)) {"]),
+])
+def test_kinds(kind, line, expected):
+    assert changed(kind, line, before="{") == expected
+
+
+def test_bounds_are_relaxed_between_whole_numbers_alone():
+    assert changed("relaxed bound", "    a = i < n;", before="int i, n; double x;") == ["    a = i <= n;"]
+    assert changed("relaxed bound", "    a = x < n;", before="int i, n; double x;") == []
+
+
+@pytest.mark.parametrize("line", [
+    "    /* a = b + 1; */", "    // a = b + 1;", '    f("a = b + 1");', "#define A (b + 1)", "    rg_free(a + 1);", "    int a;",
+    "    double a[N + 1];", "    static const char b[2 * N];", "    char c[N / 2][3] = {0};"])
+def test_left_alone(line):
+    faults = faults_of("a.c", f"{{\n{line}\n}}")
+    assert not [f for kind in KINDS if kind not in ("dropped line", "exchanged index") for f in faults[kind]]
+
+
+def test_what_gives_back_goes_on_doing_so():
+    text = "{\n    if (a != NULL) {\n        closedir(a);\n    }\n"
+    assert not faults_of("a.c", text)["relaxed bound"]
+
+
+def test_python_has_faults_outside_its_texts():
+    text = 'def f(a):\n    """a + 1"""\n    return a + 1\n'
+    faults = faults_of("bench/plot", text)
+    assert [f.planted(text).split("\n")[2] for f in faults["sign"]] == ["    return a - 1"]
+
+
+def test_texts_as_indices_stay_where_they_are():
+    assert changed("exchanged index", 'a = b["c"][i]', path="bench/plot") == ['a = b["c"][0]']
+
+
+def test_a_fault_is_found_again_in_a_file_that_has_moved():
+    text = "{\n    a = b + c;\n    d = 1;\n    a = b + c;\n"
+    second = faults_of("a.c", text)["sign"][1]
+    assert second.planted("\n\n" + text) == "\n\n" + text[: text.rindex("+")] + "-" + text[text.rindex("+") + 1 :]
+    assert second.planted("{\n    a = b + c;\n") is None
+
+
+def test_every_room_has_files_and_tests():
+    assert room_of("kernels/vec.h") == room_of("kernels/cohesive/linear.h") == "kernels" and room_of("src/mesh/import/inp_read.c") == "mesh/import"
+    assert room_of("bench/plot") == "plot" and room_of("README.md") is None
+    for room, (_, tests) in ROOMS.items():
+        for test in tests.split():
+            file = test if test.endswith(".py") else f"test_{test}.c"
+            assert any((ROOT / "tests").rglob(file)) or test.startswith("fuzz-"), test
+
+
+def test_a_test_that_no_row_names_touches_all_of_src():
+    assert touches("newcomer", "src/diagnostics/ledger.c") and not touches("newcomer", "kernels/vec.h")
+    assert not touches("test_count.py", "src/diagnostics/ledger.c")
+    assert touches("pace", "src/solver/pace.c") and not touches("pace", "src/case/case.c")
+    assert touches("test_plot.py", "bench/plot") and not touches("newcomer", "bench/plot")
+
+
+def test_shares_add_up():
+    share = shares({"a": 1000, "b": 10, "c": 400}, 100)
+    assert sum(share.values()) == 100 and share["b"] >= 8 and share["a"] > share["c"]

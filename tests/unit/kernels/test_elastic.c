@@ -1,0 +1,175 @@
+/* Points of the linear elastic and the St. Venant-Kirchhoff solid against theory: stress by hand, what a
+ * rotation does, the bound on the acoustic tensor. (test_reference.c differentiates their energies,
+ * test_kernels.c holds the kernels against these points.) */
+#include <stdarg.h>
+#include <stddef.h>
+#include <setjmp.h>
+#include <cmocka.h>
+#include <math.h>
+
+#include "reference/hencky.h"
+#include "reference/material.h"
+#include "support/dice.h"
+
+#define LAMBDA 77.8e9
+#define MU     107.4e9
+#define LARGE  (LAMBDA + 2 * MU)
+
+typedef struct {
+    rg_reference_law *law;
+    const char *name;
+} solid;
+
+static const solid solids[] = {{rg_reference_point_neo_hookean, "neo-Hookean"},
+                               {rg_reference_point_linear_elastic, "linear"},
+                               {rg_reference_point_st_venant_kirchhoff, "St. Venant-Kirchhoff"}};
+enum { NEO_HOOKEAN, LINEAR, KIRCHHOFF, SOLIDS };
+
+static rg_reference_point point(int which, double F[3][3], double P[3][3]) {
+    const rg_material m = {.lambda = LAMBDA, .mu = MU, .density = 3690};
+    rg_reference_point out = {0};
+    solids[which].law(&m, false, F, NULL, P, &out);
+    return out;
+}
+
+/* Tolerances are a few times what rounding leaves, with either compiler and on all instruction sets. */
+static void assert_near(const solid *s, double got, double expected, double tolerance) {
+    if (!(fabs(got - expected) <= tolerance))
+        fail_msg("%s: %.17g instead of %.17g", s->name, got, expected);
+}
+
+/* F = diag(a, 1, 1): P of both by hand, with its energy; a shear by g as well. */
+static void test_by_hand(void **state) {
+    const double stretch[3] = {0.6, 1.1, 3}, g = 0.3;
+    double P[3][3];
+    (void)state;
+    for (int k = 0; k < 3; k++) {
+        double a = stretch[k], F[3][3] = {{a, 0, 0}, {0, 1, 0}, {0, 0, 1}}, e = (a * a - 1) / 2;
+        rg_reference_point r = point(LINEAR, F, P);
+        assert_near(&solids[LINEAR], P[0][0], LARGE * (a - 1), 4e-15 * MU);
+        assert_near(&solids[LINEAR], P[1][1], LAMBDA * (a - 1), 4e-15 * MU);
+        assert_near(&solids[LINEAR], r.energy, LARGE * (a - 1) * (a - 1) / 2, 4e-15 * MU);
+        r = point(KIRCHHOFF, F, P);
+        assert_near(&solids[KIRCHHOFF], P[0][0], a * LARGE * e, 4e-15 * MU);
+        assert_near(&solids[KIRCHHOFF], P[1][1], LAMBDA * e, 4e-15 * MU);
+        assert_near(&solids[KIRCHHOFF], r.energy, LARGE * e * e / 2, 4e-15 * MU);
+    }
+    double F[3][3] = {{1, g, 0}, {0, 1, 0}, {0, 0, 1}};
+    point(LINEAR, F, P);
+    assert_near(&solids[LINEAR], P[0][1], MU * g, 4e-15 * MU);
+    assert_near(&solids[LINEAR], P[1][1], 0, 4e-15 * MU);
+    point(KIRCHHOFF, F, P); /* E_12 = g/2, E_22 = g^2/2 */
+    assert_near(&solids[KIRCHHOFF], P[1][1], LARGE * g * g / 2, 4e-15 * MU);
+    assert_near(&solids[KIRCHHOFF], P[0][1], MU * g + g * LARGE * g * g / 2, 4e-15 * MU);
+}
+
+static void random_gradient(dice *d, double size, double F[3][3]) {
+    for (int k = 0; k < 9; k++)
+        F[k / 3][k % 3] = (k % 4 == 0) + size * dice_sign(d);
+}
+
+/* P(QF) = Q P(F) where the solid is objective. The linear one is not: a turn by 0.01 rad makes strains of
+ * half its square, and the stress that goes with them. */
+static void test_rotation(void **state) {
+    dice d = {5, 0};
+    (void)state;
+    for (int n = 0; n < 1000; n++) {
+        double F[3][3], Q[3][3], QF[3][3], P[3][3], turned[3][3], expected[3][3];
+        random_gradient(&d, 0.3, F);
+        dice_rotation(&d, Q);
+        product(Q, F, QF);
+        for (int which = 0; which < SOLIDS; which += 2) {
+            rg_reference_point one = point(which, F, P), other = point(which, QF, turned);
+            product(Q, P, expected);
+            for (int k = 0; k < 9; k++)
+                assert_near(&solids[which], turned[k / 3][k % 3], expected[k / 3][k % 3], 1.5e-14 * MU);
+            assert_near(&solids[which], other.energy, one.energy, 8e-15 * MU);
+        }
+    }
+    const double c = cos(0.01), s = sin(0.01);
+    double Q[3][3] = {{c, -s, 0}, {s, c, 0}, {0, 0, 1}}, P[3][3];
+    point(LINEAR, Q, P);
+    assert_near(&solids[LINEAR], P[0][0], 2 * (LAMBDA + MU) * (c - 1), 4e-15 * MU);
+    assert_near(&solids[LINEAR], P[2][2], 2 * LAMBDA * (c - 1), 4e-15 * MU);
+    assert_true(P[0][0] < -1e-4 * MU);
+}
+
+/* At small strains all are the same to the first order: the difference falls as the square. */
+static void test_small_strains(void **state) {
+    const double size[2] = {1e-3, 1e-5};
+    double most[2] = {0, 0};
+    (void)state;
+    for (int k = 0; k < 2; k++) {
+        dice d = {6, 0};
+        for (int n = 0; n < 100; n++) {
+            double F[3][3], P[3][3], other[3][3];
+            random_gradient(&d, size[k], F);
+            point(NEO_HOOKEAN, F, P);
+            for (int which = LINEAR; which < SOLIDS; which++) {
+                point(which, F, other);
+                for (int i = 0; i < 9; i++)
+                    most[k] = fmax(most[k], fabs(other[i / 3][i % 3] - P[i / 3][i % 3]) / MU);
+            }
+        }
+    }
+    assert_true(most[0] > 1e-7 && fabs(most[0] / most[1] / 1e4 - 1) < 0.05);
+}
+
+/* Largest eigenvalue of the acoustic tensor dP_iJ/dF_kL N_J N_L, by central differences. */
+static double acoustic(int which, double F[3][3], const double N[3]) {
+    const double step = 1e-5;
+    double A[3][3], value[3], v[3][3];
+    for (int k = 0; k < 3; k++) {
+        double P[2][3][3];
+        for (int side = 0; side < 2; side++) {
+            double moved[3][3];
+            for (int i = 0; i < 9; i++)
+                moved[i / 3][i % 3] = F[i / 3][i % 3] + (i / 3 == k) * (side ? step : -step) * N[i % 3];
+            point(which, moved, P[side]);
+        }
+        for (int i = 0; i < 3; i++) {
+            A[i][k] = 0;
+            for (int j = 0; j < 3; j++)
+                A[i][k] += (P[1][i][j] - P[0][i][j]) / (2 * step) * N[j];
+        }
+    }
+    for (int i = 0; i < 3; i++) /* symmetric but for rounding */
+        for (int k = 0; k < i; k++)
+            A[i][k] = A[k][i] = (A[i][k] + A[k][i]) / 2;
+    rg_reference_eigen(A, value, v);
+    return fmax(value[0], fmax(value[1], value[2]));
+}
+
+/* The stiffening is a bound, it is 1 at rest, and never beyond three times what is met. */
+static void test_stiffening(void **state) {
+    dice d = {7, 0};
+    (void)state;
+    for (int which = 0; which < SOLIDS; which++) {
+        double F[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, P[3][3], loosest = 0;
+        assert_near(&solids[which], point(which, F, P).stiffening, 1, 1e-14);
+        for (int n = 0; n < 300; n++) {
+            double most = 0;
+            random_gradient(&d, n % 3 == 0 ? 0.02 : 0.3, F);
+            double bound = point(which, F, P).stiffening;
+            for (int k = 0; k < 40; k++) {
+                double R[3][3];
+                dice_rotation(&d, R);
+                most = fmax(most, acoustic(which, F, R[0]) / LARGE);
+            }
+            if (!(most <= bound * (1 + 1e-8)))
+                fail_msg("%s: stiffening %g, bound %g", solids[which].name, most, bound);
+            loosest = fmax(loosest, bound / most);
+        }
+        assert_true(loosest < (which == LINEAR ? 1 + 1e-2 : 3));
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_by_hand),
+        cmocka_unit_test(test_rotation),
+        cmocka_unit_test(test_small_strains),
+        cmocka_unit_test(test_stiffening),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,107 @@
+/* Which element is of which material, and what its neighbours are, on any number of ranks; against a loop
+ * over the whole mesh. Prints TAP from rank 0. */
+#include <mpi.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "base/mem.h"
+#include "case/expr.h"
+#include "partition/material_map.h"
+#include "support/tap.h"
+
+static const int64_t cells[3] = {4, 3, 7};
+static const double origin[3] = {0.5, -1, 2}, size[3] = {2, 3, 7};
+
+static void centroid(const rg_mesh *m, rg_gid e, double x[3]) {
+    for (int i = 0; i < 3; i++) {
+        x[i] = 0;
+        for (int k = 0; k < 4; k++) {
+            x[i] += m->x[3 * m->corner[4 * e + k] + i] / 4;
+        }
+    }
+}
+
+/* Material of an element: `low` has what is below x = 1.3, `set` volume set 1, `slab` what is between two
+ * planes, the last that claims one has it. */
+static int expected_material(const rg_mesh *m, rg_gid e) {
+    double x[3];
+    centroid(m, e, x);
+    return x[2] > 4.1 && x[1] < 0.7 ? 3 : m->region[e] == 1 ? 2 : x[0] < 1.3 ? 1 : 0;
+}
+
+static rg_mesh *make_mesh(void) {
+    static const char *const names[2] = {"core", "shell"};
+    rg_mesh *m = rg_mesh_box(cells, origin, size, 0.1, 3);
+    m->region = RG_NEW(int8_t, (size_t)m->elements);
+    m->regions = 2;
+    for (int r = 0; r < 2; r++) {
+        m->region_name[r] = RG_NEW(char, 8);
+        strcpy(m->region_name[r], names[r]);
+    }
+    for (rg_gid e = 0; e < m->elements; e++) {
+        m->region[e] = (int8_t)(e * e % 7 % 3 - 1);
+    }
+    return m;
+}
+
+static rg_expr *expression(const char *text) {
+    char *message = NULL;
+    return rg_expr_new(text, &message);
+}
+
+static void check_claims(const rg_mesh *m, int tile) {
+    rg_other_material other[3] = {{.where = expression("x < 1.3")},
+                                  {.set = (char[]){"shell"}},
+                                  {.where = expression("z > 4.1 && y < 0.7")}};
+    rg_case c = {.path = (char[]){"a.yaml"}, .others = 3, .other = other};
+    rg_part *part = rg_part_distribute(rank == 0 ? m : NULL, tile, MPI_COMM_WORLD);
+    bool own = true, beside = true;
+    int seen[4] = {0};
+    rg_materials_assign(&c, part, MPI_COMM_WORLD);
+    for (rg_lid i = 0; i < part->elements; i++) {
+        const rg_element *e = &part->element[i];
+        own = own && e->material == expected_material(m, e->id);
+        seen[expected_material(m, e->id)]++;
+        for (int f = 0; f < 4; f++) {
+            rg_gid other_id = m->neighbour[4 * e->id + f];
+            beside = beside && e->beside[f] == expected_material(m, other_id < 0 ? e->id : other_id);
+        }
+    }
+    MPI_Allreduce(MPI_IN_PLACE, seen, 4, MPI_INT, MPI_SUM, MPI_COMM_WORLD);
+    report(own && seen[0] > 0 && seen[1] > 0 && seen[2] > 0 && seen[3] > 0, "box", "materials");
+    report(beside, "box", "materials of neighbours");
+    report(rg_part_region(part, "core") == 0 && rg_part_region(part, "shell") == 1 &&
+               rg_part_region(part, "cor") == -1 && rg_part_set(part, "x-") == 0 &&
+               rg_part_set(part, "z+") == 5 && rg_part_set(part, "core") == -1,
+           "box", "sets by their names");
+    bool region = true;
+    for (rg_lid i = 0; i < part->elements; i++) {
+        region = region && part->element[i].region == m->region[part->element[i].id];
+    }
+    report(region && part->regions == 2, "box", "volume sets of elements");
+    rg_part_free(part);
+    part = rg_part_distribute(rank == 0 ? m : NULL, tile, MPI_COMM_WORLD);
+    c.others = 0;
+    rg_materials_assign(&c, part, MPI_COMM_WORLD);
+    bool none = true;
+    for (rg_lid i = 0; i < part->elements; i++) {
+        none = none && part->element[i].material == 0;
+    }
+    report(none, "box", "one material");
+    rg_part_free(part);
+    rg_expr_free(other[0].where);
+    rg_expr_free(other[2].where);
+}
+
+int main(int argc, char **argv) {
+    MPI_Init(&argc, &argv);
+    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+    rg_mesh *m = make_mesh();
+    check_claims(m, 4);
+    check_claims(m, 25);
+    rg_mesh_free(m);
+    return finish();
+}

@@ -1,0 +1,249 @@
+/* Parts read from a mesh file by each rank for itself, on any number of ranks. Prints TAP from rank 0. */
+#include <mpi.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "base/mem.h"
+#include "case/expr.h"
+#include "mesh/file.h"
+#include "mesh/mesh.h"
+#include "partition/mesh_case.h"
+#include "partition/tile_weight.h"
+#include "support/tap.h"
+
+static int ranks;
+static char path[] = "/tmp/rhegma-part-XXXXXX";
+
+static const struct box {
+    const char *name;
+    int64_t cells[3];
+    double origin[3], size[3], jitter;
+} boxes[] = {
+    {"three cells", {1, 1, 3}, {0, 0, 0}, {1, 1, 3}, 0},
+    {"bar", {3, 3, 30}, {-0.2e-3, -0.2e-3, -2e-3}, {0.4e-3, 0.4e-3, 4e-3}, 0.12},
+    {"block", {24, 22, 27}, {1, 2, 3}, {1.6, 1.2, 2.0}, 0.1}, /* more tiles than are read at once */
+};
+enum { BOXES = sizeof boxes / sizeof boxes[0], CHECKS = 12 };
+
+static bool same_counts(const rg_part *a, const rg_part *b) {
+    bool good = a->total == b->total && a->interfaces == b->interfaces && a->tile == b->tile &&
+                a->sets == b->sets && memcmp(a->box, b->box, sizeof a->box) == 0;
+    for (int s = 0; good && s < a->sets; s++) {
+        good = strcmp(a->set_name[s], b->set_name[s]) == 0;
+    }
+    for (int r = 0; good && r < 2; r++) {
+        good = a->regions == 2 && b->regions == 2 && strcmp(a->region_name[r], b->region_name[r]) == 0;
+    }
+    return good;
+}
+
+static bool same_part(const rg_part *a, const rg_part *b) {
+    return a->tiles == b->tiles && a->boundary == b->boundary && a->elements == b->elements &&
+           memcmp(a->tile_id, b->tile_id, (size_t)a->tiles * sizeof *a->tile_id) == 0 &&
+           memcmp(a->element, b->element, (size_t)a->elements * sizeof *a->element) == 0;
+}
+
+/* The same partition, counted face by face. */
+static bool quality_right(const rg_part *p) {
+    rg_gid faces = 0, most = p->elements;
+    int *beside = RG_NEW(int, (size_t)ranks), neighbours = 0, largest, all;
+    for (rg_lid i = 0; i < p->elements; i++) {
+        for (int f = 0; f < 4; f++) {
+            int32_t owner = p->element[i].owner[f];
+            faces += owner >= 0 && owner != rank;
+            neighbours += owner >= 0 && owner != rank && beside[owner]++ == 0;
+        }
+    }
+    rg_free(beside);
+    MPI_Allreduce(MPI_IN_PLACE, &faces, 1, MPI_INT64_T, MPI_SUM, MPI_COMM_WORLD);
+    MPI_Allreduce(MPI_IN_PLACE, &most, 1, MPI_INT64_T, MPI_MAX, MPI_COMM_WORLD);
+    MPI_Allreduce(&neighbours, &largest, 1, MPI_INT, MPI_MAX, MPI_COMM_WORLD);
+    MPI_Allreduce(&neighbours, &all, 1, MPI_INT, MPI_SUM, MPI_COMM_WORLD);
+    const rg_partition_quality *q = &p->quality;
+    double imbalance = q->imbalance - (double)(most * ranks) / (double)p->total;
+    return 2 * q->cut_faces == faces && imbalance * imbalance < 1e-24 && q->neighbours_max == largest &&
+           (int)(q->neighbours_mean * ranks + 0.5) == all;
+}
+
+static int32_t silly_owner(int64_t tile) {
+    return (int32_t)((tile + 1) % ranks);
+}
+
+/* Against all elements in order, as one rank alone has them: the same but for the owners of neighbours. */
+static bool silly_part_right(const rg_part *p, const rg_part *alone) {
+    bool good = p->elements > 0;
+    for (rg_lid i = 0; good && i < p->elements; i++) {
+        rg_element expected = alone->element[p->element[i].id];
+        for (int f = 0; f < 4; f++) {
+            rg_gid other = expected.neighbour[f];
+            expected.owner[f] = other < 0 ? -1 : silly_owner(other / p->tile);
+        }
+        good = silly_owner(expected.id / p->tile) == rank &&
+               memcmp(&expected, &p->element[i], sizeof expected) == 0;
+    }
+    return good;
+}
+
+static bool tiles_in_order(const rg_part *p) {
+    const rg_element *e = p->element;
+    bool good = true;
+    for (rg_lid t = 0; t < p->tiles; t++) {
+        bool shared = false;
+        for (rg_lid i = 0; i < rg_tile_size(p, p->tile_id[t]); i++, e++) {
+            good = good && e->id == p->tile_id[t] * p->tile + i;
+            for (int f = 0; f < 4; f++) {
+                shared = shared || (e->owner[f] >= 0 && e->owner[f] != rank);
+            }
+        }
+        good = good && shared == (t < p->boundary) &&
+               (t == 0 || t == p->boundary || p->tile_id[t - 1] < p->tile_id[t]);
+    }
+    return good && e == p->element + p->elements;
+}
+
+static void write_silly(int64_t tiles) {
+    int32_t *owner = RG_NEW(int32_t, (size_t)tiles);
+    for (int64_t t = 0; t < tiles; t++) {
+        owner[t] = silly_owner(t);
+    }
+    rg_mesh_file_add_partitions(path, 1, &(rg_tile_partition){ranks, owner});
+    rg_free(owner);
+}
+
+/* A box of which each third element is in no volume set. */
+static rg_mesh *make_mesh(const struct box *b) {
+    rg_mesh *mesh = rg_mesh_box(b->cells, b->origin, b->size, b->jitter, 5);
+    mesh->region = RG_NEW(int8_t, (size_t)mesh->elements);
+    mesh->regions = 2;
+    for (int r = 0; r < 2; r++) {
+        mesh->region_name[r] = RG_NEW(char, 8);
+        strcpy(mesh->region_name[r], r == 0 ? "core" : "shell");
+    }
+    for (rg_gid e = 0; e < mesh->elements; e++) {
+        mesh->region[e] = (int8_t)(e % 3 - 1);
+        mesh->original[e] = 2 * mesh->original[e] + 7;
+    }
+    return mesh;
+}
+
+/* Costs that rise along the curve; taken over by who partitions. */
+static double *make_weights(const rg_mesh *mesh, int tile) {
+    size_t tiles = (size_t)((mesh->elements + tile - 1) / tile);
+    double *weight = rank == 0 ? RG_NEW(double, tiles) : NULL;
+    for (size_t t = 0; rank == 0 && t < tiles; t++) {
+        weight[t] = 1 + 4.0 * (double)t / (double)tiles;
+    }
+    return weight;
+}
+
+static void check_weights(const struct box *b, const rg_mesh *mesh, int tile) {
+    double *weight = make_weights(mesh, tile);
+    rg_part *given = rg_part_distribute_weighted(rank == 0 ? mesh : NULL, tile, weight, MPI_COMM_WORLD);
+    rg_part *read =
+        rg_part_read(path, make_weights(mesh, tile), MPI_COMM_WORLD); /* the stored partition knows of none */
+    report(same_part(read, given), b->name, "parts by weight have the bits of those that rank 0 deals out");
+    const rg_partition_quality *q = &read->quality;
+    const rg_partition_quality *other = &given->quality;
+    report(q->imbalance == other->imbalance && q->cost_imbalance == other->cost_imbalance &&
+               q->cut_faces == other->cut_faces && q->neighbours_max == other->neighbours_max &&
+               q->neighbours_mean == other->neighbours_mean,
+           b->name, "the same quality");
+    report(mesh->elements < 1000 || q->cost_imbalance < 1.1, b->name, "the costs are balanced");
+    rg_part_free(given);
+    rg_part_free(read);
+}
+
+/* The parts of a case: by its weights, by costs that are known better, from its file or from its box. */
+static void check_case(const struct box *b, const rg_mesh *mesh, int tile) {
+    char *message = NULL;
+    rg_case c = {.path = (char[]){"a.yaml"}};
+    c.mesh.file = path;
+    c.mesh.weight = rg_expr_new("1 + z*z + abs(x)", &message);
+    memcpy(c.mesh.cells, b->cells, sizeof c.mesh.cells);
+    memcpy(c.mesh.origin, b->origin, sizeof c.mesh.origin);
+    memcpy(c.mesh.size, b->size, sizeof c.mesh.size);
+    c.mesh.jitter = b->jitter;
+    c.mesh.seed = 5;
+    size_t bytes = (size_t)((mesh->elements + tile - 1) / tile) * sizeof(double);
+    double *file = rg_tile_weights_of_file(&c, MPI_COMM_WORLD),
+           *memory = rg_tile_weights_of_mesh(&c, mesh, tile);
+    report(rank == 0 ? memcmp(file, memory, bytes) == 0 : file == NULL, b->name,
+           "weights of the file's tiles");
+    rg_part *expected = rg_part_read(path, file, MPI_COMM_WORLD),
+            *found = rg_part_of_case(&c, NULL, MPI_COMM_WORLD);
+    report(same_part(found, expected), b->name, "a case's parts by weight");
+    rg_part_free(expected);
+    rg_part_free(found);
+    expected = rg_part_read(path, make_weights(mesh, tile), MPI_COMM_WORLD);
+    found = rg_part_of_case(&c, make_weights(mesh, tile), MPI_COMM_WORLD);
+    report(same_part(found, expected), b->name, "its parts by costs that are known");
+    rg_part_free(expected);
+    rg_part_free(found);
+    c.mesh.file = NULL;
+    rg_mesh *plain = rg_mesh_box(b->cells, b->origin, b->size, b->jitter, 5);
+    rg_free(rank > 0 ? memory : NULL);
+    expected = rg_part_distribute_weighted(rank == 0 ? plain : NULL, tile, rank == 0 ? memory : NULL,
+                                           MPI_COMM_WORLD);
+    found = rg_part_of_case(&c, NULL, MPI_COMM_WORLD);
+    bool same = same_part(found, expected);
+    rg_part_free(expected);
+    rg_part_free(found);
+    expected =
+        rg_part_distribute_weighted(rank == 0 ? plain : NULL, tile, make_weights(mesh, tile), MPI_COMM_WORLD);
+    found = rg_part_of_case(&c, make_weights(mesh, tile), MPI_COMM_WORLD);
+    report(same && same_part(found, expected), b->name, "a box's parts by weight and by known costs");
+    rg_part_free(expected);
+    rg_part_free(found);
+    rg_mesh_free(plain);
+    rg_expr_free(c.mesh.weight);
+}
+
+static void check_box(const struct box *b) {
+    rg_mesh *mesh = make_mesh(b);
+    int tile = rg_tile_elements(mesh->elements);
+    if (rank == 0) {
+        rg_mesh_file_write(path, mesh, 0, NULL);
+    }
+    rg_part *given = rg_part_distribute(rank == 0 ? mesh : NULL, tile, MPI_COMM_WORLD);
+    rg_part *read = rg_part_read(path, NULL, MPI_COMM_WORLD);
+    report(same_counts(read, given), b->name, "counts, box and sets");
+    report(same_part(read, given), b->name, "parts have the bits of those that rank 0 deals out");
+    report(quality_right(read) && quality_right(given), b->name, "quality of the partition");
+    rg_part_free(given);
+    rg_part_free(read);
+    rg_part *alone = rg_part_distribute(mesh, tile, MPI_COMM_SELF);
+    if (rank == 0) {
+        write_silly((mesh->elements + tile - 1) / tile);
+    }
+    MPI_Barrier(MPI_COMM_WORLD);
+    read = rg_part_read(path, NULL, MPI_COMM_WORLD);
+    report(silly_part_right(read, alone) && tiles_in_order(read), b->name, "parts of a stored partition");
+    report(quality_right(read), b->name, "its quality");
+    rg_part_free(read);
+    rg_part_free(alone);
+    check_weights(b, mesh, tile);
+    check_case(b, mesh, tile);
+    rg_mesh_free(mesh);
+}
+
+int main(int argc, char **argv) {
+    MPI_Init(&argc, &argv);
+    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+    MPI_Comm_size(MPI_COMM_WORLD, &ranks);
+    if (rank == 0) {
+        printf("1..%d\n", BOXES * CHECKS);
+        close(mkstemp(path));
+    }
+    MPI_Bcast(path, sizeof path, MPI_CHAR, 0, MPI_COMM_WORLD);
+    for (int b = 0; b < BOXES; b++) {
+        check_box(&boxes[b]);
+    }
+    if (rank == 0) {
+        unlink(path);
+    }
+    MPI_Finalize();
+    return failures > 0;
+}

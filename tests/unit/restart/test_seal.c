@@ -1,0 +1,171 @@
+/* The seal of checkpoints, on any number of ranks: whatever bit is flipped, whatever is cut off or added, it
+ * is noticed. Prints TAP. */
+#include "restart/seal.h"
+
+#include <fcntl.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "base/hash.h"
+#include "base/mem.h"
+#include "support/tap.h"
+
+enum { PLANNED = 10, BYTES = RG_SEAL + 2 * (1 << 20) + 12345, RANDOM = 1000 };
+
+static int ranks;
+static char path[200], reason[300];
+static bool agreed = true;
+
+/* What rank 0 finds, so that all ranks go on alike; notes whether all found that. */
+static bool holds(void) {
+    MPI_Barrier(MPI_COMM_WORLD);
+    bool mine = rg_seal_holds(path, MPI_COMM_WORLD, reason, sizeof reason), good = mine;
+    MPI_Bcast(&good, 1, MPI_C_BOOL, 0, MPI_COMM_WORLD);
+    agreed = agreed && mine == good;
+    MPI_Barrier(MPI_COMM_WORLD);
+    return good;
+}
+
+static void flip(off_t position, int bit) {
+    if (rank == 0) {
+        unsigned char byte;
+        int file = open(path, O_RDWR);
+        bool good = pread(file, &byte, 1, position) == 1;
+        byte ^= (unsigned char)(1 << bit);
+        if (!good || pwrite(file, &byte, 1, position) != 1) {
+            printf("Bail out! %s cannot be changed\n", path);
+            MPI_Abort(MPI_COMM_WORLD, 1);
+        }
+        close(file);
+    }
+}
+
+/* Whether the file is refused for that reason on every rank. */
+static bool refused(const char *why) {
+    int good = !holds() && strcmp(reason, why) == 0, all;
+    if (!good) {
+        printf("# '%s', not '%s'\n", reason, why);
+    }
+    MPI_Allreduce(&good, &all, 1, MPI_INT, MPI_LAND, MPI_COMM_WORLD);
+    return all;
+}
+
+/* Whether the file is refused with this bit flipped, and taken once it is flipped back. */
+static bool noticed(off_t position, int bit) {
+    flip(position, bit);
+    bool good = !holds() && reason[0] != '\0';
+    flip(position, bit);
+    return good;
+}
+
+static void write_file(void) {
+    char *data = RG_NEW(char, BYTES);
+    for (size_t i = RG_SEAL; i < BYTES; i++) {
+        data[i] = (char)rg_mix(i / 3); /* also runs of the same byte */
+    }
+    int file = open(path, O_WRONLY | O_CREAT | O_TRUNC, 0666);
+    if (file < 0 || write(file, data, BYTES) != BYTES) {
+        printf("Bail out! %s cannot be written\n", path);
+        MPI_Abort(MPI_COMM_WORLD, 1);
+    }
+    close(file);
+    rg_free(data);
+}
+
+static void check_bits(void) {
+    bool head = true, body = true;
+    int every = ranks == 1 ? 1 : 32; /* several ranks: that they agree */
+    for (int bit = 0; bit < 8 * RG_SEAL; bit += every) {
+        head = noticed(bit / 8, bit % 8) && head;
+    }
+    report(head, "seal", "its bits: all of them, on one rank");
+    for (uint64_t i = 0; i < RANDOM; i += (uint64_t)every) {
+        uint64_t h = rg_hash(1, i);
+        off_t position = RG_SEAL + (off_t)(rg_hash_uniform(h) * (BYTES - RG_SEAL));
+        body = noticed(position, (int)(h % 8)) && body;
+    }
+    body = noticed(RG_SEAL, 0) && body;
+    body = noticed(BYTES - 1, 7) && body;
+    report(body, "seal", "bits of what it seals: 1,000 on one rank, and the first and the last");
+    report(holds(), "seal", "the file as it was");
+}
+
+static void check_length(void) {
+    bool good = true;
+    const off_t lengths[] = {0, 1, 100, RG_SEAL - 1, RG_SEAL, RG_SEAL + 1, BYTES / 2, BYTES - 1, BYTES + 1};
+    for (size_t i = 0; i < sizeof lengths / sizeof *lengths; i++) {
+        if (rank == 0) {
+            write_file();
+        }
+        MPI_Barrier(MPI_COMM_WORLD);
+        good = rg_seal_put(path, 77, MPI_COMM_WORLD) && holds() && good;
+        good = (rank != 0 || truncate(path, lengths[i]) == 0) && good;
+        char why[100];
+        snprintf(why, sizeof why, "it has %lld bytes and should have %d", (long long)lengths[i], BYTES);
+        good = refused(lengths[i] < 100 ? "its head is not that of a checkpoint" : why) && good;
+    }
+    report(good, "seal", "any other length");
+}
+
+/* What is written stays readable for later versions: of a file of 3 parts, by any number of ranks. */
+static void check_text(void) {
+    static const char wanted[] =
+        "rhegma checkpoint 1\nstep 77\nbytes 2110009\nsum 173403126ea03d38\ncheck 25686768156c05eb\n";
+    char found[RG_SEAL + 1] = {0};
+    bool good = true;
+    if (rank == 0) {
+        int file = open(path, O_RDONLY);
+        good = pread(file, found, RG_SEAL, 0) == RG_SEAL && strcmp(found, wanted) == 0;
+        for (size_t i = strlen(wanted); i < RG_SEAL; i++) {
+            good = good && found[i] == '\0';
+        }
+        close(file);
+    }
+    if (!good) {
+        printf("# %s", found);
+    }
+    report(good, "seal", "its text");
+}
+
+static void check_reasons(void) {
+    flip(3, 0);
+    bool good = refused("its head is not that of a checkpoint");
+    flip(3, 0);
+    flip(RG_SEAL - 1, 6);
+    good = refused("its head is damaged") && good;
+    flip(RG_SEAL - 1, 6);
+    flip(BYTES - 5, 2);
+    good = refused("its checksum is wrong: it is damaged") && good;
+    flip(BYTES - 5, 2);
+    report(good, "seal", "what is wrong");
+}
+
+int main(int argc, char **argv) {
+    MPI_Init(&argc, &argv);
+    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+    MPI_Comm_size(MPI_COMM_WORLD, &ranks);
+    if (rank == 0) {
+        printf("1..%d\n", PLANNED);
+        snprintf(path, sizeof path, "/tmp/test_seal.XXXXXX");
+        close(mkstemp(path));
+        write_file();
+    }
+    MPI_Bcast(path, sizeof path, MPI_CHAR, 0, MPI_COMM_WORLD);
+    report(!holds(), "seal", "a file without a seal");
+    report(rg_seal_put(path, 77, MPI_COMM_WORLD) && holds(), "seal", "a file with one");
+    check_text();
+    check_reasons();
+    check_bits();
+    check_length();
+    if (rank == 0) {
+        unlink(path);
+    }
+    MPI_Barrier(MPI_COMM_WORLD);
+    report(refused("cannot be read: No such file or directory") && !rg_seal_put(path, 77, MPI_COMM_WORLD),
+           "seal", "no file");
+    report(agreed, "seal", "all ranks find the same");
+    MPI_Finalize();
+    return failures > 0 || number != PLANNED;
+}
