@@ -3,9 +3,9 @@
  * A kernel works on whole blocks [begin, end) of RG_LANES elements or interfaces of one tile (layout.h); its
  * pointers are to the tile's first block. It reads where it must (its neighbours' traces) and writes only
  * what belongs to its own blocks. So loops over blocks and tiles need no colours, no atomics and no order:
- * each sum has the order that the mesh gives it (bulk, then the faces inside the tile, then its seams),
- * whatever the number of ranks and threads. Equations: A. N. Seagraves, MIT 2010, and the papers named at
- * each kernel. */
+ * each sum has the order that the mesh gives it (bulk, then the faces inside the tile, then its tile-boundary
+ * faces), whatever the number of ranks and threads. Equations: A. N. Seagraves, MIT 2010, and the papers
+ * named at each kernel. */
 #ifndef RG_KERNELS_H
 #define RG_KERNELS_H
 
@@ -13,13 +13,14 @@
 #include "layout.h"
 #include "materials.h"
 
-/* Traces: what seams tell each other. `send` writes the own traces as rows, `receive` collects those of the
- * other sides into ghosts, and traction rows likewise. Blocks are the tile's seam blocks. */
+/* Traces: what tile-boundary faces tell each other. `send` writes the own traces as rows, `receive` collects
+ * those of the other sides into ghosts, and traction rows likewise. Blocks are the tile's tile-boundary face
+ * blocks. */
 typedef struct {
     const rg_real *u;        /* displacement (m) */
     const rg_real *traction; /* area-weighted corner tractions (N) */
-    const int32_t *side;     /* [seam]: own face */
-    const int32_t *other;    /* [seam]: row of the other side */
+    const int32_t *side;     /* [tile face]: own face */
+    const int32_t *other;    /* [tile face]: row of the other side */
     const rg_real *rows;     /* all trace rows of this rank */
     rg_real *own_rows;       /* out: the tile's trace rows */
     rg_real *own_tractions;  /* out: the tile's traction rows */
@@ -60,9 +61,10 @@ enum {
     RG_LAW_MEMORY = 4, /* values that a point may remember besides its crack state */
 };
 
-/* Of a law whose opening the time step follows (RG_PACED, src/solver/pace.h): its parameter N, steps to climb
- * to the strength; and of a point's memory the last effective opening (m) and the pace (1/s). */
-enum { RG_PACE_STEPS = 1, RG_PACE_LAST = 0, RG_PACE_RATE = 1, RG_PACED_MEMORY = 2 };
+/* Of a law whose opening the time step follows (RG_LIMITS_STEP, src/solver/step_limiter.h): its parameter N,
+ * steps to climb to the strength; and of a point's memory the last effective opening (m) and the opening rate
+ * (1/s). */
+enum { RG_LIMITER_STEPS = 1, RG_LIMITER_LAST = 0, RG_LIMITER_RATE = 1, RG_LIMITER_MEMORY = 2 };
 
 /* Bulk viscosity (element/viscosity.c), after the bulk: adds to its forces, and to its stiffening what
  * damping takes from the step. */
@@ -106,11 +108,12 @@ typedef struct {
     double step;                  /* time since the state before (s) */
     const rg_real *u;             /* displacement (m) */
     const rg_real *traction;      /* area-weighted corner tractions of the tile's elements (N) */
-    size_t first_seam;            /* blocks from here on are seams */
-    const rg_real *ghost;         /* seams: trace of the other side (m) */
-    const rg_real *own_tractions; /* seams: the tile's traction rows (N) */
-    const rg_real *tractions;     /* seams: all traction rows of this rank (N) */
-    const int32_t *side[2]; /* [interface]: links of the minus and plus side; of a seam, `side` and `other` */
+    size_t first_tile_face;       /* blocks from here on are tile-boundary faces */
+    const rg_real *ghost;         /* tile-boundary faces: trace of the other side (m) */
+    const rg_real *own_tractions; /* tile-boundary faces: the tile's traction rows (N) */
+    const rg_real *tractions;     /* tile-boundary faces: all traction rows of this rank (N) */
+    const int32_t *side[2]; /* [interface]: links of the minus and plus side; of a tile-boundary face, `side`
+                               and `other` */
     const rg_real *geom;    /* interface geometry */
     const rg_real *scale; /* NULL: all faces alike; else [block][2][lane]: strength and critical opening over
                              those of the law */
@@ -127,12 +130,12 @@ typedef struct {
 } rg_interface_args;
 
 /* Central difference, in two parts: v += dt M^-1 (bulk force + interfaces inside the tile), and, once the
- * seams are known, v += dt M^-1 seams. */
+ * tile-boundary faces are known, v += dt M^-1 tile-boundary faces. */
 typedef struct {
     double density;
-    bool lumped; /* HRZ diagonal mass instead of the consistent one */
-    bool seams;  /* second part: seams alone, else bulk and inside */
-    double dt;   /* s */
+    bool lumped;     /* HRZ diagonal mass instead of the consistent one */
+    bool tile_faces; /* second part: tile-boundary faces alone, else bulk and inside */
+    double dt;       /* s */
     const rg_real *geom;
     const rg_real *force;     /* bulk; not read in the second part */
     const rg_real *iforce;    /* interface */
@@ -140,7 +143,8 @@ typedef struct {
     const uint8_t *broken;    /* [interface], read with `turn` */
     const int32_t *interface; /* links */
     rg_real *velocity;        /* in/out (m/s) */
-    rg_real *now; /* NULL, or out: first part v + dt_now M^-1 (...), second part += dt_now M^-1 (...) */
+    rg_real
+        *step_velocity; /* NULL, or out: first part v + dt_now M^-1 (...), second part += dt_now M^-1 (...) */
     double dt_now;
 } rg_kick_args;
 

@@ -7,14 +7,13 @@
  *   word          in case files
  *   forms         RG_FORMS_DG: starts rigid, at the strength;
  *                 RG_FORMS_INTRINSIC: starts with a slope, at zero; or both;
- *                 RG_PACED besides: memory and a parameter are those of rg_law_pace. To these a law may add
- *                 RG_NORMAL_MEASURE and RG_ENVELOPE (cohesive/facts.h)
- *   work          work of separation over strength times critical opening
- *   separation    effective opening of full separation over the critical opening
- *   normal_slope  bound on the stiffness of opening, in strength over critical opening;
- *                 0 for laws that start rigid. For the time step of the intrinsic form
- *   shear_slope   the same of sliding. Both may use shape[], the law's own parameters, and beta
- *   memory        values that a point remembers besides its largest opening
+ *                 RG_LIMITS_STEP besides: memory and a parameter are those of rg_law_opening_rate. To these a
+ * law may add RG_NORMAL_MEASURE and RG_ENVELOPE (cohesive/facts.h) work          work of separation over
+ * strength times critical opening separation    effective opening of full separation over the critical
+ * opening normal_slope  bound on the stiffness of opening, in strength over critical opening; 0 for laws that
+ * start rigid. For the time step of the intrinsic form shear_slope   the same of sliding. Both may use
+ * shape[], the law's own parameters, and beta memory        values that a point remembers besides its largest
+ * opening
  */
 #include "cohesive/linear.h"
 #include "cohesive/free.h"

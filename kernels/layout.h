@@ -3,9 +3,10 @@
  * The mesh is cut into tiles: runs of consecutive elements along a space-filling curve, small enough for the
  * cache. A kernel works on one tile; all its pointers are to the tile's first block, all numbers in it count
  * from the tile's first element or interface. A face between two elements of a tile is one interface inside
- * it; a face between tiles is a seam, of which each of the two tiles has its own copy, computed from the same
- * numbers to the same bits. What a seam must know of the other side travels as a row: the trace of the
- * displacement, then the corner tractions. Whether the other tile lies on the same rank makes no difference.
+ * it; a face between tiles is a tile-boundary face, of which each of the two tiles has its own copy, computed
+ * from the same numbers to the same bits. What a tile-boundary face must know of the other side travels as a
+ * row: the trace of the displacement, then the corner tractions. Whether the other tile lies on the same rank
+ * makes no difference.
  *
  * Every field is a structure of arrays in blocks of RG_LANES elements (or interfaces): the lane is the
  * fastest index, so a kernel loads a vector of elements with one aligned load, and every array is
@@ -22,7 +23,7 @@
  *   crack state                     [interface block]: [6 points][RG_CRACK][lane], then
  *                                   [6 points][memory of the law][lane], then, with friction,
  *                                   [6 points][RG_FRICTION][lane]
- *   ghost traces                    [seam block][6 nodes][3][lane]
+ *   ghost traces                    [tile face block][6 nodes][3][lane]
  *   trace rows, traction rows       [row][6 nodes][3], [row][3 corners][3]
  *
  * The face tractions are rows instead: their reader, an interface, finds the nine values of its face in two
@@ -108,7 +109,7 @@ enum { /* values per row, and per block */
        RG_CRACK_BLOCK = RG_POINTS * RG_CRACK * RG_LANES,
        RG_FRICTION_BLOCK = RG_POINTS * RG_FRICTION * RG_LANES,
        RG_TRACE_ROW = RG_FNODES * 3,
-       RG_SEAM_ROW = RG_FCORNERS * 3, /* tractions of one face */
+       RG_TILE_FACE_ROW = RG_FCORNERS * 3, /* tractions of one face */
        RG_GHOST_BLOCK = RG_TRACE_ROW * RG_LANES,
 };
 
@@ -172,13 +173,13 @@ static inline size_t rg_history_index(size_t e, size_t stride, size_t row) {
 /* Links are 32-bit numbers with a small code in the low bits.
  *
  * neighbour (element's face -> trace on its other side): 8 * element + local face of an element of the tile;
- * 8 * seam + RG_GHOST for a ghost trace; the own face where there is none.
- * interface (element's face -> interface): 4 * interface + side (0 minus, 1 plus), + RG_SEAM if it is one of
- * the tile's seams; negative where there is none: RG_NO_INTERFACE on the surface, RG_JOINED where both sides
- * share their nodes.
- * side (inside: minus and plus; seam: own): 4 * element + local face.
- * other (seam: the other side): 2 * row + (1 if the own element is on the plus side). */
-enum { RG_GHOST = RG_FACES, RG_SEAM = 2, RG_NO_INTERFACE = -1, RG_JOINED = -2 };
+ * 8 * tile face + RG_GHOST for a ghost trace; the own face where there is none.
+ * interface (element's face -> interface): 4 * interface + side (0 minus, 1 plus), + RG_TILE_FACE if it is
+ * one of the tile's tile-boundary faces; negative where there is none: RG_NO_INTERFACE on the surface,
+ * RG_JOINED where both sides share their nodes. side (inside: minus and plus; tile-boundary face: own): 4 *
+ * element + local face. other (tile-boundary face: the other side): 2 * row + (1 if the own element is on the
+ * plus side). */
+enum { RG_GHOST = RG_FACES, RG_TILE_FACE = 2, RG_NO_INTERFACE = -1, RG_JOINED = -2 };
 
 static inline int32_t rg_link(size_t number, int code, int base) {
     return (int32_t)number * base + code;

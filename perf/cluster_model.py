@@ -20,7 +20,7 @@ import numpy as np
 TILE = 256
 WARM, STEPS = 2, 2  # as perf/simulated_step.c, which perf/simulate runs for 2 steps
 TEAM_BARRIERS, BARRIER = 8, 1e-6  # of a step; seconds of one, where a rank has threads
-TRACE_BYTES, TRACTION_BYTES = 18 * 8, 9 * 8  # of a face and direction: RG_TRACE_ROW, RG_SEAM_ROW
+TRACE_BYTES, TRACTION_BYTES = 18 * 8, 9 * 8  # of a face and direction: RG_TRACE_ROW, RG_TILE_FACE_ROW
 
 
 @dataclasses.dataclass

@@ -1,6 +1,6 @@
 /* Who talks to whom, on any number of ranks: the communication of a run without the run. Orders the elements
- * of a box as the solver does, makes its tiles, partitions and deals them with the solver's own code, and
- * writes for each rank what it owns and shares. One process; the elements are never made, so that fifty
+ * of a box as the solver does, makes its tiles, partitions and distributes them with the solver's own code,
+ * and writes for each rank what it owns and shares. One process; the elements are never made, so that fifty
  * million take 3 GB. Where centroids lie on a border of the curve, rounding may order them otherwise than the
  * mesh does. */
 #include <errno.h>
@@ -15,7 +15,7 @@
 #include "base/mem.h"
 #include "layout.h"
 #include "mesh/tile_graph.h"
-#include "partition/deal.h"
+#include "partition/distribution.h"
 
 static const char usage[] =
     "usage: rhegma-pattern PREFIX X Y Z RANKS...\n"
@@ -143,7 +143,7 @@ typedef struct {
 } share;
 
 /* Counts a tile to its rank; the faces that it shares with other ranks. */
-static void add_tile(const rg_tile_graph *g, const rg_deal *d, int64_t t, bool inner, share *s) {
+static void add_tile(const rg_tile_graph *g, const rg_distribution *d, int64_t t, bool inner, share *s) {
     int64_t left = g->elements - t * g->tile, size = left < g->tile ? left : g->tile;
     s->tets += size;
     s->inner += inner ? size : 0;
@@ -154,7 +154,7 @@ static void add_tile(const rg_tile_graph *g, const rg_deal *d, int64_t t, bool i
     }
 }
 
-static void write_rank(const rg_tile_graph *g, const rg_deal *d, int rank, share *s, FILE *out) {
+static void write_rank(const rg_tile_graph *g, const rg_distribution *d, int rank, share *s, FILE *out) {
     int count = 0;
     s->tets = s->inner = 0;
     for (int64_t k = d->start[rank]; k < d->start[rank + 1]; k++) {
@@ -177,7 +177,7 @@ static void write_pattern(const rg_tile_graph *g, int ranks, const char *prefix)
     char path[1024];
     int32_t *owner = RG_NEW(int32_t, (size_t)g->tiles);
     rg_tile_graph_partition(g, ranks, owner);
-    rg_deal *d = rg_deal_make(g, owner, ranks);
+    rg_distribution *d = rg_distribution_make(g, owner, ranks);
     share s = {.faces = RG_NEW(int64_t, (size_t)ranks)};
     snprintf(path, sizeof path, "%s-%d.txt", prefix, ranks);
     FILE *out = fopen(path, "w");
@@ -195,7 +195,7 @@ static void write_pattern(const rg_tile_graph *g, int ranks, const char *prefix)
            (long long)d->quality.cut_faces, d->quality.neighbours_mean, d->quality.neighbours_max);
     fflush(stdout);
     rg_free(s.faces);
-    rg_deal_free(d);
+    rg_distribution_free(d);
 }
 
 int main(int argc, char **argv) {

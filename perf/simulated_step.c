@@ -71,7 +71,7 @@ static void read_part(const char *path, int rank, int ranks, rank_part *p) {
         size_t before = p->domain.shared, all = before + (size_t)faces;
         p->domain.shared_face = rg_realloc(p->domain.shared_face, all, sizeof *p->domain.shared_face);
         for (size_t i = before; i < all; i++) {
-            p->domain.shared_face[i] = (rg_shared_face){.rank = other, .seam = i};
+            p->domain.shared_face[i] = (rg_shared_face){.rank = other, .tile_face = i};
         }
         p->domain.shared = p->domain.own_rows = all;
     }
@@ -170,7 +170,7 @@ int main(int argc, char **argv) {
     p.inner = swept(p.inner, atoi(argv[7]));
     p.outer = swept(p.outer, atoi(argv[7]));
     p.traces = make_halo(&p, RG_TRACE_ROW, 1);
-    p.tractions = make_halo(&p, RG_SEAM_ROW, 2);
+    p.tractions = make_halo(&p, RG_TILE_FACE_ROW, 2);
     start(&p, p.traces, &c);
     for (int s = 0; s < WARM; s++) {
         step(&p, &c);

@@ -17,7 +17,7 @@
 #include "restart/restart.h"
 #include "restart/schedule.h"
 #include "solver/balance.h"
-#include "solver/pace.h"
+#include "solver/step_limiter.h"
 #include "solver/setup.h"
 #include "solver/step.h"
 #include "solver/spectrum.h"
@@ -49,17 +49,17 @@ typedef struct {
     bool restart;       /* goes on from a checkpoint */
     bool cut;           /* the last step was another than it would have been without time.end */
     bool stopped;       /* asked to, with a checkpoint */
-    bool uneven;        /* stopped with a checkpoint to deal the tiles anew */
+    bool uneven;        /* stopped with a checkpoint to repartition the mesh */
     double setup;       /* wall time of the last set-up (s) */
     char failure[RG_FAILURE_WORDS];
 } run;
 
-/* Time step for the current stiffening and pace, in steps of 9 % so that it seldom changes (a leapfrog
- * conserves energy at a constant step). */
+/* Time step for the current stiffening and opening rate, in steps of 9 % so that it seldom changes (a
+ * leapfrog conserves energy at a constant step). */
 static double stable_step(const run *r, double stiffening) {
     double dt = r->dt_reference;
     dt = stiffening > RG_STIFFENING_FREE ? dt / sqrt(exp2(ceil(4 * log2(stiffening)) / 4)) : dt;
-    return rg_pace_step(r->solver, dt);
+    return rg_limited_step(r->solver, dt);
 }
 
 /* The step that would be next if the run had no end. */
@@ -190,16 +190,16 @@ static bool save(run *r) {
     if (r->cut) {
         return false;
     }
-    bool end = done(r) || (s->wish < RG_WISH_STOP && cut_next(r));
+    bool end = done(r) || (s->stop_request < RG_REQUEST_STOP && cut_next(r));
     bool due = rg_schedule_due(&r->schedule, s, end);
-    r->uneven = s->wish < RG_WISH_STOP && uneven(r);
+    r->uneven = s->stop_request < RG_REQUEST_STOP && uneven(r);
     if (!due && !r->uneven) {
         return false;
     }
     rg_restart_settle(&r->keep, s, r->energy, r->probes, r->fragments, r->snapshots);
     rg_checkpoint_write(&r->checkpoints, (int)r->input->checkpoint.keep);
     rg_schedule_done(&r->schedule, s, r->checkpoints.slowest);
-    r->stopped = s->wish >= RG_WISH_STOP;
+    r->stopped = s->stop_request >= RG_REQUEST_STOP;
     return r->stopped || r->uneven;
 }
 
@@ -422,7 +422,7 @@ static void begin(run *r, MPI_Comm comm) {
 
 /* The run goes on from the checkpoint just written, in the same files, on a partition by what the tiles cost.
  */
-static void deal_anew(run *r, MPI_Comm comm) {
+static void repartition(run *r, MPI_Comm comm) {
     double started = MPI_Wtime(), *cost = rg_balance_costs(r->solver), before = r->balance.now;
     rg_phases phases = r->solver->phases;
     close_outputs(r);
@@ -440,7 +440,7 @@ static void deal_anew(run *r, MPI_Comm comm) {
     r->summary.setup_seconds += r->setup;
     rg_progress_say(&r->progress,
                     "step %" PRId64 ": the ranks' work was uneven (most %.2f of the mean), the mesh is "
-                    "dealt anew (by cost, most %.2f of the mean) in %.2f s",
+                    "repartitioned (by cost, most %.2f of the mean) in %.2f s",
                     r->solver->step, before, r->solver->part->quality.cost_imbalance, r->setup);
 }
 
@@ -453,7 +453,8 @@ static int conclude(run *r) {
             fprintf(stderr,
                     "rhegma: stopped with a checkpoint at step %" PRId64 ", time %.6g s, %s; goes on with: "
                     "rhegma run --restart %s\n",
-                    s->step, s->time, s->wish == RG_WISH_STOP ? "by a signal" : "before the wall-time limit",
+                    s->step, s->time,
+                    s->stop_request == RG_REQUEST_STOP ? "by a signal" : "before the wall-time limit",
                     r->input->output.dir);
         }
         return RG_INTERRUPTED;
@@ -477,7 +478,7 @@ int rg_run(const rg_case *c, MPI_Comm comm, const rg_run_options *options) {
     begin(r, comm);
     time_loop(r);
     while (r->uneven) {
-        deal_anew(r, comm);
+        repartition(r, comm);
         time_loop(r);
     }
     rg_progress_end(&r->progress);

@@ -101,7 +101,7 @@ static rg_interface_args interface_args(const job *j) {
     return (rg_interface_args){.law = p->law,
                                .u = p->u,
                                .traction = p->itraction,
-                               .first_seam = p->domain->iblocks,
+                               .first_tile_face = p->domain->iblocks,
                                .side = {p->domain->side[0], p->domain->side[1]},
                                .geom = p->domain->igeom,
                                .broken = p->broken,
@@ -381,8 +381,8 @@ void bench_print_costs(void) {
     }
     for (int lift = 1; lift >= 0; lift--) {
         rg_cost_variant v = large_mesh((rg_cost_variant){.lift = lift}, false);
-        v.interfaces = 2.46; /* seams belong to both their tiles */
-        v.seams = 0.93;
+        v.interfaces = 2.46; /* tile-boundary faces belong to both their tiles */
+        v.tile_faces = 0.93;
         rg_cost cost = rg_cost_step(&v);
         print_cost(lift ? "step variational" : "step incomplete", &cost);
     }

@@ -246,13 +246,13 @@ void bench_problem_reset(bench_problem *p, int percent, bench_state state) {
 rg_cost_variant bench_mesh_state(const rg_domain *d, const uint8_t *active, const uint8_t *unlinked,
                                  rg_cost_variant flags, bool by_interface) {
     rg_cost_variant v = flags;
-    size_t faces = 0, broken = 0, seams = 0;
+    size_t faces = 0, broken = 0, tile_faces = 0;
     for (size_t t = 0; t < d->tiles; t++) {
         const rg_tile *tile = &d->tile[t];
         for (size_t b = tile->begin; b < tile->end; b++) {
             faces += (size_t)bench_unlinked_faces(d, unlinked + tile->ibegin * RG_LANES, b);
         }
-        seams += tile->iend - tile->sbegin;
+        tile_faces += tile->iend - tile->sbegin;
     }
     for (size_t b = 0; b < d->iblocks; b++) {
         broken += active[b];
@@ -261,7 +261,7 @@ rg_cost_variant bench_mesh_state(const rg_domain *d, const uint8_t *active, cons
     v.damaged = (double)broken / (double)d->iblocks;
     v.points = RG_POINTS;
     v.interfaces = (double)d->iblocks / (double)d->blocks;
-    v.seams = (double)seams / (double)d->blocks;
+    v.tile_faces = (double)tile_faces / (double)d->blocks;
     v.fill = by_interface ? (double)d->interfaces / (double)(d->iblocks * RG_LANES)
                           : (double)d->elements / (double)(d->blocks * RG_LANES);
     return v;

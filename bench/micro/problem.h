@@ -57,7 +57,8 @@ rg_cost_variant bench_mesh_state(const rg_domain *d, const uint8_t *active, cons
 /* Faces of element block `b` with unlinked points in some lane; `unlinked` of the block's tile. */
 int bench_unlinked_faces(const rg_domain *d, const uint8_t *unlinked, size_t b);
 
-/* Whether interface i of tile t is among the `percent` that are broken: the same for both copies of a seam.
+/* Whether interface i of tile t is among the `percent` that are broken: the same for both copies of a
+ * tile-boundary face.
  */
 bool bench_is_broken(const rg_domain *d, const rg_tile *t, size_t i, int percent);
 

@@ -108,7 +108,7 @@ void bench_spall_reset(rg_solver *s, const rg_kernels *set, int percent) {
     s->step = 0;
     set_motion(s);
     break_faces(s, percent);
-    rg_solver_impulse(s, s->now, 0);
+    rg_solver_impulse(s, s->step_velocity, 0);
 }
 
 void bench_spall_steps(void *context, int calls) {

@@ -5,7 +5,7 @@
  * Rule of thumb (Espinosa & Zavattieri): slope >= 10 E/h. Work of separation G_c = sigma_c delta_c / 2.
  *
  * `steps` is N of the adaptive time step (3.14): the number of steps in which x goes from 0 to a; 0: not
- * asked for. Memory: that of rg_law_pace.
+ * asked for. Memory: that of rg_law_opening_rate.
  *
  * Unloading: towards the origin, so reversible up to a. Closure: contact alone bears the normal part; sliding
  * goes on as before. */
@@ -22,8 +22,8 @@ RG_INLINE rg_vec rg_bilinear_secant(const rg_law_point *p, rg_vec x) {
 
 RG_INLINE void rg_bilinear_respond(const rg_law_point *p, rg_law_state *state, rg_law_response *r) {
     rg_law_by_secant(p, rg_bilinear_secant(p, state->largest * p->inverse), r);
-    if (p->law->shape[RG_PACE_STEPS] > 0) {
-        rg_law_pace(p, p->law->shape[0], state);
+    if (p->law->shape[RG_LIMITER_STEPS] > 0) {
+        rg_law_opening_rate(p, p->law->shape[0], state);
     }
 }
 
@@ -47,16 +47,16 @@ static void rg_bilinear_reference(const rg_law_query *p, double state[], rg_law_
         t = p->strength * (1 - x) / (1 - rise);
     rg_reference_secant(p, x > 0 ? t / state[0] : p->strength / (rise * p->opening), a);
     a->dissipated = p->strength * p->opening / 2 * fmin(1, fmax(0, (x - rise) / (1 - rise)));
-    if (p->shape[RG_PACE_STEPS] > 0)
-        rg_reference_pace(p, rise, state);
+    if (p->shape[RG_LIMITER_STEPS] > 0)
+        rg_reference_opening_rate(p, rise, state);
 }
 #endif
 
 #ifdef RG_LAW
-RG_LAW(BILINEAR, bilinear, "bilinear", RG_FORMS_INTRINSIC | RG_PACED, 0.5, 1, 1 / shape[0],
-       beta *beta / shape[0], RG_PACED_MEMORY)
+RG_LAW(BILINEAR, bilinear, "bilinear", RG_FORMS_INTRINSIC | RG_LIMITS_STEP, 0.5, 1, 1 / shape[0],
+       beta *beta / shape[0], RG_LIMITER_MEMORY)
 #endif
 #ifdef RG_LAW_PARAMETER
 RG_LAW_PARAMETER(BILINEAR, 0, "interface.bilinear.ascent", NULL, 1e-6, 0.999, 0.01)
-RG_LAW_PARAMETER(BILINEAR, RG_PACE_STEPS, "interface.bilinear.steps", NULL, 0, 1e6, 0)
+RG_LAW_PARAMETER(BILINEAR, RG_LIMITER_STEPS, "interface.bilinear.steps", NULL, 0, 1e6, 0)
 #endif

@@ -57,13 +57,13 @@ RG_INLINE rg_vec rg_law_stored(const rg_law_point *p, rg_vec secant) {
 
 /* How fast a point goes through its law (3.15): |dx|/dt over the part of x, the opening over the critical
  * one, that it is in: `ascent` below the strength, 1 - ascent beyond it; 0 once separated. */
-RG_INLINE void rg_law_pace(const rg_law_point *p, double ascent, rg_law_state *state) {
+RG_INLINE void rg_law_opening_rate(const rg_law_point *p, double ascent, rg_law_state *state) {
     double per_second = p->step > 0 ? 1 / p->step : 0;
-    rg_vec x = p->effective * p->inverse, moved = rg_abs(p->effective - state->memory[RG_PACE_LAST]);
+    rg_vec x = p->effective * p->inverse, moved = rg_abs(p->effective - state->memory[RG_LIMITER_LAST]);
     rg_vec beyond = rg_select(x < 1.0, rg_splat(per_second / (1 - ascent)), rg_splat(0.0));
     rg_vec part = rg_select(x < rg_splat(ascent), rg_splat(per_second / ascent), beyond);
-    state->memory[RG_PACE_RATE] = moved * p->inverse * part;
-    state->memory[RG_PACE_LAST] = p->effective;
+    state->memory[RG_LIMITER_RATE] = moved * p->inverse * part;
+    state->memory[RG_LIMITER_LAST] = p->effective;
 }
 
 #define RG_LAW_FUNCTIONS

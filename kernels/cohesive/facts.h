@@ -8,7 +8,7 @@ enum {
     RG_FORMS_DG = 1,
     RG_FORMS_INTRINSIC = 2,
     RG_NORMAL_MEASURE = 4, /* the law's history is that of the normal opening alone */
-    RG_PACED = 8,          /* the time step can follow its opening */
+    RG_LIMITS_STEP = 8,    /* the time step can follow its opening */
     RG_ENVELOPE =
         16, /* unloads to the origin; its secant falls only while the largest opening grows, and is that
               of strength times (1 - x) where it does so slowly: fit for a conserving activation */

@@ -186,8 +186,8 @@ enum {
     NODAL = RG_NODES * 3,
     TRACTION = RG_FACES * RG_FCORNERS * 3,
     FACE = RG_FNODES * 3,
-    SEAM_TRACTION = RG_FCORNERS * 3,
-    SIDES_TRACTION = 2 * SEAM_TRACTION,
+    TILE_FACE_TRACTION = RG_FCORNERS * 3,
+    SIDES_TRACTION = 2 * TILE_FACE_TRACTION,
     HISTORY = RG_CRACK_TIME, /* of a broken point: opening and origin; the time is not read */
     STRESSES = RG_GAUSS * 6,
     WIDE = sizeof(double) / sizeof(rg_real), /* of a row of doubles: energies and stresses */
@@ -279,10 +279,11 @@ rg_cost rg_cost_block(rg_cost_kernel kernel, const rg_cost_variant *v) {
 rg_cost rg_cost_step(const rg_cost_variant *v) {
     rg_cost bulk = rg_cost_block(RG_COST_BULK, v), interface = rg_cost_block(RG_COST_INTERFACE, v),
             kick = rg_cost_block(RG_COST_KICK, v), drift = rg_cost_block(RG_COST_DRIFT, v);
-    double again = v->seams > 0 ? kick.flops : 0; /* at most: blocks without seams are left out */
+    double again =
+        v->tile_faces > 0 ? kick.flops : 0; /* at most: blocks without tile-boundary faces are left out */
     double faces = v->interfaces * (RG_IGEOM + v->damaged * HISTORY * RG_POINTS);
-    double first = NODAL + 2 * NODAL + RG_GEOM + v->seams * (FACE + 2 * SEAM_TRACTION);
-    double second = 2 * NODAL + 2 * NODAL + 1 + v->seams * (FACE + 2 * SEAM_TRACTION + 2 * FACE);
+    double first = NODAL + 2 * NODAL + RG_GEOM + v->tile_faces * (FACE + 2 * TILE_FACE_TRACTION);
+    double second = 2 * NODAL + 2 * NODAL + 1 + v->tile_faces * (FACE + 2 * TILE_FACE_TRACTION + 2 * FACE);
     double index = (2 + 1) * LINKS + v->interfaces * (SIDES + 1);
     return (rg_cost){.flops = bulk.flops + v->interfaces * interface.flops + kick.flops + again + drift.flops,
                      .minimal = ROW * v->fill * (2 * 2 * NODAL + RG_GEOM + v->interfaces * RG_IGEOM),

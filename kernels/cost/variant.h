@@ -20,7 +20,7 @@ typedef struct {
     double damaged;  /* interface, interface_state: share of the blocks in which some point is broken */
     double points;   /* interface: broken points (0 to 6) of such a block */
     double interfaces; /* blocks of interfaces per block of elements; 2 in one large tile */
-    double seams;      /* step: blocks of seams among them, each face counted on both sides */
+    double tile_faces; /* step: blocks of tile-boundary faces among them, each face counted on both sides */
     double fill;       /* share of the lanes that carry an element or interface; the rest is padding */
 } rg_cost_variant;
 

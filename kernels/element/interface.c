@@ -1,6 +1,6 @@
 /* The 12-node interface kernel: DG traction, fracture, cohesive law and contact at the six points of a face.
  *
- * The same code does the faces inside a tile and its seams (element/interface_face.h).
+ * The same code does the faces inside a tile and its tile-boundary faces (element/interface_face.h).
  *
  * A face without damage costs only the DG terms and a bound on its traction; the normal of the deformed
  * mid-surface, the criterion and the cohesive law are computed, out of line, where a lane needs them; that
@@ -444,9 +444,9 @@ static __attribute__((noinline)) void friction_energy(const interface *s, rg_vec
     }
 }
 
-RG_INLINE void interface_vector(const rg_interface_args *args, size_t block, int lane, bool seam) {
+RG_INLINE void interface_vector(const rg_interface_args *args, size_t block, int lane, bool tile_face) {
     interface s;
-    load_interface(&s, args, block, lane, seam);
+    load_interface(&s, args, block, lane, tile_face);
     jump_at_points(&s);
     mean_traction(&s);
     dg_traction(&s);
@@ -474,7 +474,7 @@ void RG_ISA_NAME(rg_interface)(const rg_interface_args *args, size_t begin, size
     for (size_t b = begin; b < end; b++) {
         prefetch_cracks(args, b + 1, end);
         for (int lane = 0; lane < RG_LANES; lane += RG_VLEN) {
-            if (b < args->first_seam) {
+            if (b < args->first_tile_face) {
                 interface_vector(args, b, lane, false);
             } else {
                 interface_vector(args, b, lane, true);
@@ -550,7 +550,7 @@ static void (*const energy_by_law[][2])(interface *s, rg_vec sum[RG_E_INTERFACE]
 
 RG_INLINE void state_vector(const rg_interface_state_args *args, size_t block, size_t row, int lane) {
     interface s;
-    load_interface(&s, args->interface, block, lane, block >= args->interface->first_seam);
+    load_interface(&s, args->interface, block, lane, block >= args->interface->first_tile_face);
     jump_at_points(&s);
     rg_vec sum[RG_E_INTERFACE] = {{0}};
     const uint8_t *unlinked = s.args->unlinked + block * RG_LANES + lane;

@@ -1,9 +1,9 @@
 /* A face as the interface kernel finds it: geometry, jumps and tractions of both sides, the forces of the DG
  * terms, the deformed mid-surface. Vectors of faces at once.
  *
- * A seam knows the other side by a ghost trace and a row of tractions; it turns differences into the
- * direction from minus to plus, so that both tiles get the same bits. All tractions are area-weighted: they
- * carry the reference area of the face as a factor (N). */
+ * A tile-boundary face knows the other side by a ghost trace and a row of tractions; it turns differences
+ * into the direction from minus to plus, so that both tiles get the same bits. All tractions are
+ * area-weighted: they carry the reference area of the face as a factor (N). */
 #ifndef RG_INTERFACE_FACE_H
 #define RG_INTERFACE_FACE_H
 
@@ -17,7 +17,7 @@ typedef struct {
     const rg_interface_args *args;
     size_t block;
     int lane;
-    bool seam;
+    bool tile_face;
     vec3 edge[2], normal; /* normal: area vector A */
     rg_vec area_square, area, pen_iso, pen_norm;
     vec3 jump[RG_POINTS];                                    /* [u] */
@@ -31,11 +31,11 @@ RG_INLINE const int32_t *side(const interface *s, int k) {
 }
 
 RG_INLINE void load_interface(interface *s, const rg_interface_args *args, size_t block, int lane,
-                              bool seam) {
+                              bool tile_face) {
     s->args = args;
     s->block = block;
     s->lane = lane;
-    s->seam = seam;
+    s->tile_face = tile_face;
     const rg_real *geom = args->geom + block * RG_IGEOM_BLOCK + lane;
     for (int k = 0; k < 2; k++) {
         for (int c = 0; c < 3; c++) {
@@ -63,11 +63,11 @@ RG_INLINE rg_vec direction(const interface *s) {
 /* Displacement on both sides: minus and plus, or own and other. */
 RG_INLINE void traces(const interface *s, vec3 one[RG_FNODES], vec3 two[RG_FNODES]) {
     rg_gather_face(s->args->u, side(s, 0), one);
-    if (!s->seam) {
+    if (!s->tile_face) {
         rg_gather_face(s->args->u, side(s, 1), two);
         return;
     }
-    const rg_real *ghost = s->args->ghost + (s->block - s->args->first_seam) * RG_GHOST_BLOCK + s->lane;
+    const rg_real *ghost = s->args->ghost + (s->block - s->args->first_tile_face) * RG_GHOST_BLOCK + s->lane;
     for (int a = 0; a < RG_FNODES; a++) {
         for (int c = 0; c < 3; c++) {
             two[a][c] = rg_load(ghost + (a * 3 + c) * RG_LANES);
@@ -81,7 +81,7 @@ RG_INLINE void jump_at_points(interface *s) {
     for (int a = 0; a < RG_FNODES; a++) {
         for (int c = 0; c < 3; c++) {
             two[a][c] -= one[a][c];
-            if (s->seam) {
+            if (s->tile_face) {
                 two[a][c] *= direction(s);
             }
         }
@@ -90,29 +90,29 @@ RG_INLINE void jump_at_points(interface *s) {
 }
 
 /* Corner tractions of side k, each with its own outward normal. */
-RG_INLINE void tractions(const interface *s, int k, rg_vec t[RG_SEAM_ROW]) {
+RG_INLINE void tractions(const interface *s, int k, rg_vec t[RG_TILE_FACE_ROW]) {
     rg_lanes at;
     for (int l = 0; l < RG_VLEN; l++) {
-        if (!s->seam) { /* a side link is the number of a face: 4 * element + face */
-            at.lane[l] = s->args->traction + (size_t)side(s, k)[l] * RG_SEAM_ROW;
+        if (!s->tile_face) { /* a side link is the number of a face: 4 * element + face */
+            at.lane[l] = s->args->traction + (size_t)side(s, k)[l] * RG_TILE_FACE_ROW;
         } else if (k == 0) {
-            size_t seam = (s->block - s->args->first_seam) * RG_LANES + (size_t)(s->lane + l);
-            at.lane[l] = s->args->own_tractions + seam * RG_SEAM_ROW;
+            size_t tile_face = (s->block - s->args->first_tile_face) * RG_LANES + (size_t)(s->lane + l);
+            at.lane[l] = s->args->own_tractions + tile_face * RG_TILE_FACE_ROW;
         } else {
-            at.lane[l] = s->args->tractions + (size_t)((uint32_t)side(s, 1)[l] / 2) * RG_SEAM_ROW;
+            at.lane[l] = s->args->tractions + (size_t)((uint32_t)side(s, 1)[l] / 2) * RG_TILE_FACE_ROW;
         }
     }
-    rg_load_rows(&at, RG_SEAM_ROW, t);
+    rg_load_rows(&at, RG_TILE_FACE_ROW, t);
 }
 
 /* <P> A at the points. */
 RG_INLINE void mean_traction(interface *s) {
-    rg_vec t[2][RG_SEAM_ROW];
+    rg_vec t[2][RG_TILE_FACE_ROW];
     tractions(s, 0, t[0]);
     tractions(s, 1, t[1]);
-    for (int i = 0; i < RG_SEAM_ROW; i++) {
+    for (int i = 0; i < RG_TILE_FACE_ROW; i++) {
         t[0][i] = 0.5 * (t[0][i] - t[1][i]);
-        if (s->seam) {
+        if (s->tile_face) {
             t[0][i] *= direction(s);
         }
     }

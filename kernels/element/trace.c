@@ -1,23 +1,23 @@
-/* Rows that seams exchange: a row is contiguous, so the other side finds all of it in two or three cache
- * lines, where the lanes of a block would spread it over eighteen. */
+/* Rows that tile-boundary faces exchange: a row is contiguous, so the other side finds all of it in two or
+ * three cache lines, where the lanes of a block would spread it over eighteen. */
 #include "isa.h"
 #include "tet10.h"
 
 void RG_ISA_NAME(rg_send)(const rg_trace_args *args, size_t begin, size_t end) {
     for (size_t b = begin; b < end; b++) {
         for (int lane = 0; lane < RG_LANES; lane += RG_VLEN) {
-            size_t seam = b * RG_LANES + (size_t)lane;
+            size_t tile_face = b * RG_LANES + (size_t)lane;
             rg_vec trace[RG_FNODES][3];
-            rg_gather_face(args->u, args->side + seam, trace);
-            rg_store_rows(args->own_rows + seam * RG_TRACE_ROW, RG_TRACE_ROW, RG_TRACE_ROW, trace[0]);
+            rg_gather_face(args->u, args->side + tile_face, trace);
+            rg_store_rows(args->own_rows + tile_face * RG_TRACE_ROW, RG_TRACE_ROW, RG_TRACE_ROW, trace[0]);
         }
     }
 }
 
 void RG_ISA_NAME(rg_send_tractions)(const rg_trace_args *args, size_t begin, size_t end) {
     for (size_t s = begin * RG_LANES; s < end * RG_LANES; s++) {
-        memcpy(args->own_tractions + s * RG_SEAM_ROW, args->traction + (size_t)args->side[s] * RG_SEAM_ROW,
-               RG_SEAM_ROW * sizeof(rg_real));
+        memcpy(args->own_tractions + s * RG_TILE_FACE_ROW,
+               args->traction + (size_t)args->side[s] * RG_TILE_FACE_ROW, RG_TILE_FACE_ROW * sizeof(rg_real));
     }
 }
 

@@ -10,13 +10,13 @@ static const int edge_corner[6][2] = {{0, 1}, {1, 2}, {0, 2}, {0, 3}, {1, 3}, {2
 static const int edge_opposite[6] = {5, 3, 4, 1, 2, 0};
 
 /* Adds the interface forces of face k, if it is one of the kind asked for. */
-RG_INLINE void add_face(const rg_kick_args *args, const int32_t link[RG_VLEN], int k, bool seams,
+RG_INLINE void add_face(const rg_kick_args *args, const int32_t link[RG_VLEN], int k, bool tile_faces,
                         rg_vec f[3][RG_NODES]) {
     static _Alignas(64) const rg_real none[RG_IFORCE_BLOCK];
     rg_lanes at;
     rg_vec sign;
     for (int l = 0; l < RG_VLEN; l++) {
-        bool there = link[l] >= 0 && ((link[l] & RG_SEAM) != 0) == seams;
+        bool there = link[l] >= 0 && ((link[l] & RG_TILE_FACE) != 0) == tile_faces;
         at.lane[l] = there ? rg_first_value(args->iforce, (uint32_t)link[l] / 4, RG_IFORCE_BLOCK) : none;
         sign[l] = (rg_real)(1 - 2 * (link[l] & 1));
     }
@@ -28,14 +28,14 @@ RG_INLINE void add_face(const rg_kick_args *args, const int32_t link[RG_VLEN], i
 }
 
 /* Adds what turns the mid-surface of face k, which is the same for both sides. */
-RG_INLINE void add_turn(const rg_kick_args *args, const int32_t link[RG_VLEN], int k, bool seams,
+RG_INLINE void add_turn(const rg_kick_args *args, const int32_t link[RG_VLEN], int k, bool tile_faces,
                         rg_vec f[3][RG_NODES]) {
     static _Alignas(64) const rg_real none[RG_IFORCE_BLOCK];
     rg_lanes at;
     bool any = false;
     for (int l = 0; l < RG_VLEN; l++) {
-        bool there =
-            link[l] >= 0 && ((link[l] & RG_SEAM) != 0) == seams && args->broken[(uint32_t)link[l] / 4];
+        bool there = link[l] >= 0 && ((link[l] & RG_TILE_FACE) != 0) == tile_faces &&
+                     args->broken[(uint32_t)link[l] / 4];
         at.lane[l] = there ? rg_first_value(args->turn, (uint32_t)link[l] / 4, RG_IFORCE_BLOCK) : none;
         any |= there;
     }
@@ -48,19 +48,20 @@ RG_INLINE void add_turn(const rg_kick_args *args, const int32_t link[RG_VLEN], i
 
 /* Nodal forces: bulk, then the faces in their local order. The order is the mesh's, so the sum has the same
  * bits however the mesh is distributed. */
-RG_INLINE void sum_force(const rg_kick_args *args, size_t block, int lane, bool seams,
+RG_INLINE void sum_force(const rg_kick_args *args, size_t block, int lane, bool tile_faces,
                          rg_vec f[3][RG_NODES]) {
     for (int n = 0; n < RG_NODES; n++) {
         for (int c = 0; c < 3; c++) {
-            f[c][n] = seams ? rg_splat(0.0)
-                            : rg_load(args->force + block * RG_NODE_BLOCK + (n * 3 + c) * RG_LANES + lane);
+            f[c][n] = tile_faces
+                          ? rg_splat(0.0)
+                          : rg_load(args->force + block * RG_NODE_BLOCK + (n * 3 + c) * RG_LANES + lane);
         }
     }
     for (int k = 0; k < RG_FACES; k++) {
         const int32_t *link = args->interface + block * RG_LINK_BLOCK + k * RG_LANES + lane;
-        add_face(args, link, k, seams, f);
+        add_face(args, link, k, tile_faces, f);
         if (args->turn != NULL) {
-            add_turn(args, link, k, seams, f);
+            add_turn(args, link, k, tile_faces, f);
         }
     }
 }
@@ -94,13 +95,13 @@ RG_INLINE void solve_lumped(rg_vec f[RG_NODES]) {
     }
 }
 
-/* Adds dt M^-1 f to the velocity; dt_now M^-1 f leads to the velocity now, at the time of the forces. */
-RG_INLINE void kick_vector(const rg_kick_args *args, size_t block, int lane, bool lumped, bool seams) {
+/* Adds dt M^-1 f to the velocity; dt_now M^-1 f leads to the velocity at the step, the time of the forces. */
+RG_INLINE void kick_vector(const rg_kick_args *args, size_t block, int lane, bool lumped, bool tile_faces) {
     rg_vec mass = rg_splat(args->density) *
                   rg_load(args->geom + block * RG_GEOM_BLOCK + RG_GEOM_VOLUME * RG_LANES + lane);
     rg_vec scale = rg_splat(args->dt) / mass, scale_now = rg_splat(args->dt_now) / mass;
     rg_vec f[3][RG_NODES];
-    sum_force(args, block, lane, seams, f);
+    sum_force(args, block, lane, tile_faces, f);
     for (int c = 0; c < 3; c++) {
         if (lumped) {
             solve_lumped(f[c]);
@@ -110,29 +111,30 @@ RG_INLINE void kick_vector(const rg_kick_args *args, size_t block, int lane, boo
         for (int n = 0; n < RG_NODES; n++) {
             size_t at = block * RG_NODE_BLOCK + (size_t)((n * 3 + c) * RG_LANES + lane);
             rg_vec v = rg_load(args->velocity + at);
-            if (args->now != NULL) {
-                rg_store(args->now + at, (seams ? rg_load(args->now + at) : v) + scale_now * f[c][n]);
+            if (args->step_velocity != NULL) {
+                rg_store(args->step_velocity + at,
+                         (tile_faces ? rg_load(args->step_velocity + at) : v) + scale_now * f[c][n]);
             }
             rg_store(args->velocity + at, v + scale * f[c][n]);
         }
     }
 }
 
-static bool has_seam(const int32_t *link) {
+static bool has_tile_face(const int32_t *link) {
     int32_t any = 0;
     for (int k = 0; k < RG_LINK_BLOCK; k++) {
         any |= link[k] >= 0 ? link[k] : 0;
     }
-    return (any & RG_SEAM) != 0;
+    return (any & RG_TILE_FACE) != 0;
 }
 
 void RG_ISA_NAME(rg_kick)(const rg_kick_args *args, size_t begin, size_t end) {
     for (size_t b = begin; b < end; b++) {
-        if (args->seams && !has_seam(args->interface + b * RG_LINK_BLOCK)) {
+        if (args->tile_faces && !has_tile_face(args->interface + b * RG_LINK_BLOCK)) {
             continue;
         }
         for (int lane = 0; lane < RG_LANES; lane += RG_VLEN) {
-            if (args->seams) {
+            if (args->tile_faces) {
                 kick_vector(args, b, lane, args->lumped, true);
             } else if (args->lumped) {
                 kick_vector(args, b, lane, true, false);

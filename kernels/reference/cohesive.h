@@ -27,13 +27,13 @@ static inline void rg_reference_secant(const rg_law_query *p, double secant, rg_
     a->stored = secant * p->effective * p->effective / 2;
 }
 
-/* Pace of a point (3.15), into the memory behind state[0]. */
-static inline void rg_reference_pace(const rg_law_query *p, double ascent, double state[]) {
-    double x = p->effective / p->opening, last = state[1 + RG_PACE_LAST] / p->opening, pace = 0;
+/* Opening rate of a point (3.15), into the memory behind state[0]. */
+static inline void rg_reference_opening_rate(const rg_law_query *p, double ascent, double state[]) {
+    double x = p->effective / p->opening, last = state[1 + RG_LIMITER_LAST] / p->opening, opening_rate = 0;
     if (p->step > 0 && x < 1)
-        pace = fabs(x - last) / p->step / (x < ascent ? ascent : 1 - ascent);
-    state[1 + RG_PACE_RATE] = pace;
-    state[1 + RG_PACE_LAST] = p->effective;
+        opening_rate = fabs(x - last) / p->step / (x < ascent ? ascent : 1 - ascent);
+    state[1 + RG_LIMITER_RATE] = opening_rate;
+    state[1 + RG_LIMITER_LAST] = p->effective;
 }
 
 /* Answer of a law. state: largest effective opening (this state included), then the law's memory, which is

@@ -29,9 +29,10 @@ typedef struct {
     rg_real *state[RG_CRACK], *memory[RG_LAW_MEMORY], *friction[RG_FRICTION];
 } crack;
 
-/* Whether side k of interface i is what `side[0]` names: the minus side, or the own one of a seam. */
+/* Whether side k of interface i is what `side[0]` names: the minus side, or the own one of a tile-boundary
+ * face. */
 static bool is_first(const rg_interface_args *args, size_t i, int k) {
-    bool plus_is_own = i / RG_LANES >= args->first_seam && args->side[1][i] % 2 == 1;
+    bool plus_is_own = i / RG_LANES >= args->first_tile_face && args->side[1][i] % 2 == 1;
     return (k == 0) != plus_is_own;
 }
 
@@ -42,19 +43,19 @@ static double element_value(const rg_interface_args *args, int32_t link, int a, 
 static double side_value(const rg_interface_args *args, size_t i, int side, int a, int c) {
     if (is_first(args, i, side))
         return element_value(args, args->side[0][i], a, c);
-    if (i / RG_LANES >= args->first_seam)
-        return args->ghost[rg_iforce_index(i - args->first_seam * RG_LANES, a, c)];
+    if (i / RG_LANES >= args->first_tile_face)
+        return args->ghost[rg_iforce_index(i - args->first_tile_face * RG_LANES, a, c)];
     return element_value(args, args->side[1][i], a, c);
 }
 
 static double side_traction(const rg_interface_args *args, size_t i, int side, int corner, int c) {
     size_t place = (size_t)(3 * corner + c);
     bool first = is_first(args, i, side);
-    if (i / RG_LANES < args->first_seam)
-        return args->traction[(size_t)args->side[first ? 0 : 1][i] * RG_SEAM_ROW + place];
+    if (i / RG_LANES < args->first_tile_face)
+        return args->traction[(size_t)args->side[first ? 0 : 1][i] * RG_TILE_FACE_ROW + place];
     if (first)
-        return args->own_tractions[(i - args->first_seam * RG_LANES) * RG_SEAM_ROW + place];
-    return args->tractions[(size_t)(args->side[1][i] / 2) * RG_SEAM_ROW + place];
+        return args->own_tractions[(i - args->first_tile_face * RG_LANES) * RG_TILE_FACE_ROW + place];
+    return args->tractions[(size_t)(args->side[1][i] / 2) * RG_TILE_FACE_ROW + place];
 }
 
 /* Derivatives of the shape functions by xi and eta, l = (1 - xi - eta, xi, eta). */

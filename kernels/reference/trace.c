@@ -1,4 +1,4 @@
-/* Reference rows of seams. */
+/* Reference rows of tile-boundary faces. */
 #include "reference/reference.h"
 
 void rg_reference_send(const rg_trace_args *args, size_t begin, size_t end) {
@@ -12,9 +12,9 @@ void rg_reference_send(const rg_trace_args *args, size_t begin, size_t end) {
 
 void rg_reference_send_tractions(const rg_trace_args *args, size_t begin, size_t end) {
     for (size_t s = begin * RG_LANES; s < end * RG_LANES; s++)
-        for (int k = 0; k < RG_SEAM_ROW; k++) {
+        for (int k = 0; k < RG_TILE_FACE_ROW; k++) {
             int32_t own = args->side[s];
-            args->own_tractions[s * RG_SEAM_ROW + (size_t)k] =
+            args->own_tractions[s * RG_TILE_FACE_ROW + (size_t)k] =
                 args->traction[rg_traction_index((size_t)own / 4, own % 4, k / 3, k % 3)];
         }
 }

@@ -76,14 +76,15 @@ static void invert(double m[RG_NODES][RG_NODES], double inv[RG_NODES][RG_NODES])
     }
 }
 
-/* Bulk force plus the forces of the interfaces inside the tile, by side; or those of the seams alone. */
+/* Bulk force plus the forces of the interfaces inside the tile, by side; or those of the tile-boundary faces
+ * alone. */
 static void total_force(const rg_kick_args *args, size_t e, double f[RG_NODES][3]) {
     for (int a = 0; a < RG_NODES; a++)
         for (int c = 0; c < 3; c++)
-            f[a][c] = args->seams ? 0 : args->force[rg_node_index(e, a, c)];
+            f[a][c] = args->tile_faces ? 0 : args->force[rg_node_index(e, a, c)];
     for (int face = 0; face < RG_FACES; face++) {
         int32_t link = args->interface[rg_link_index(e, face)];
-        if (link < 0 || (link % 4 >= RG_SEAM) != args->seams)
+        if (link < 0 || (link % 4 >= RG_TILE_FACE) != args->tile_faces)
             continue;
         double sign = link % 2 == 1 ? -1 : 1;
         for (int a = 0; a < RG_FNODES; a++)
@@ -110,9 +111,10 @@ void rg_reference_kick(const rg_kick_args *args, size_t begin, size_t end) {
                 for (int b = 0; b < RG_NODES; b++)
                     acceleration += inv[a][b] * f[b][c] / mass;
                 size_t k = rg_node_index(e, a, c);
-                if (args->now)
-                    args->now[k] = (rg_real)((args->seams ? args->now[k] : args->velocity[k]) +
-                                             args->dt_now * acceleration);
+                if (args->step_velocity)
+                    args->step_velocity[k] =
+                        (rg_real)((args->tile_faces ? args->step_velocity[k] : args->velocity[k]) +
+                                  args->dt_now * acceleration);
                 args->velocity[k] = (rg_real)(args->velocity[k] + args->dt * acceleration);
             }
     }

@@ -225,7 +225,7 @@ void rg_h5_put(rg_h5_file *f, hid_t dataset, const rg_h5_slab *s, const void *da
 }
 
 void rg_h5_start_sync(const rg_h5_file *f) {
-    sync_file_range(f->disk, 0, 0, SYNC_FILE_RANGE_WRITE); /* a wish: rg_h5_finish tells of failures */
+    sync_file_range(f->disk, 0, 0, SYNC_FILE_RANGE_WRITE); /* a hint: rg_h5_finish tells of failures */
 }
 
 void rg_h5_write(rg_h5_file *f, hid_t place, const rg_h5_slab *s, const char *unit, const void *data) {

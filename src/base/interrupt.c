@@ -69,15 +69,15 @@ void rg_interrupt_clock(double stop, double next) {
     checkpoint_at = next;
 }
 
-int rg_interrupt_wish(void) {
+int rg_interrupt_request(void) {
     double now = isfinite(stop_at) || isfinite(checkpoint_at) ? rg_interrupt_now() : 0;
     if (now >= stop_at) {
-        return RG_WISH_TIME_UP;
+        return RG_REQUEST_TIME_UP;
     }
     if (wants_stop) {
-        return RG_WISH_STOP;
+        return RG_REQUEST_STOP;
     }
-    return wants_checkpoint || now >= checkpoint_at ? RG_WISH_CHECKPOINT : RG_WISH_NONE;
+    return wants_checkpoint || now >= checkpoint_at ? RG_REQUEST_CHECKPOINT : RG_REQUEST_NONE;
 }
 
 void rg_interrupt_answered(void) {

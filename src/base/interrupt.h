@@ -5,7 +5,7 @@
  *   SIGHUP                    the same, of a lost terminal; unless it was ignored from the start (nohup)
  *   the wall-time limit       write a checkpoint and stop, in time
  *
- * A signal to any one rank is enough: wishes travel with the time step's reduction (solver/step.c). (mpirun
+ * A signal to any one rank is enough: requests travel with the time step's reduction (solver/step.c). (mpirun
  * passes SIGUSR1 and SIGUSR2 on; on SIGTERM and SIGINT it ends the ranks within a second, so it is SIGUSR2
  * that asks a large run under mpirun to stop.) */
 #ifndef RG_INTERRUPT_H
@@ -13,10 +13,10 @@
 
 #include <stdbool.h>
 
-enum { RG_WISH_NONE, RG_WISH_CHECKPOINT, RG_WISH_STOP, RG_WISH_TIME_UP };
+enum { RG_REQUEST_NONE, RG_REQUEST_CHECKPOINT, RG_REQUEST_STOP, RG_REQUEST_TIME_UP };
 
-/* From now on signals are wishes, and writing beyond a limit of file size, or to a pipe that nobody reads any
- * more, is an error like a full disk. The clock of the wall-time limit starts. */
+/* From now on signals are requests, and writing beyond a limit of file size, or to a pipe that nobody reads
+ * any more, is an error like a full disk. The clock of the wall-time limit starts. */
 void rg_interrupt_listen(void);
 
 /* From now on signals end the program as they do others: for what has nothing to save. */
@@ -33,8 +33,8 @@ void rg_interrupt_clock(double stop, double next);
 /* Seconds since rg_interrupt_listen. */
 double rg_interrupt_now(void);
 
-/* The largest wish of this rank. */
-int rg_interrupt_wish(void);
+/* The largest request of this rank. */
+int rg_interrupt_request(void);
 
 /* A checkpoint was written: SIGUSR1 is answered. */
 void rg_interrupt_answered(void);

@@ -62,7 +62,7 @@ void *rg_alloc(size_t count, size_t size) {
     if (raw == MAP_FAILED) {
         exhausted(count, size);
     }
-    madvise(raw, mapped, MADV_HUGEPAGE); /* a wish; refused it costs nothing */
+    madvise(raw, mapped, MADV_HUGEPAGE); /* a hint; refused it costs nothing */
     return place(raw, (header){raw, bytes, mapped});
 }
 

@@ -105,7 +105,7 @@ typedef struct {
         int64_t seed;
         char *file;       /* a mesh file (mesh/file.h), as an absolute path; NULL: built-in box */
         rg_expr *weight;  /* cost of an element at x, y, z over that of others; NULL: all the same */
-        double rebalance; /* most over mean work of ranks from which tiles are dealt anew; 0: never */
+        double rebalance; /* most over mean work of ranks from which the mesh is repartitioned; 0: never */
     } mesh;
     rg_material_input material; /* of all elements that no other one claims */
     int others;

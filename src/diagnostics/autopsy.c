@@ -10,7 +10,7 @@
 #include "base/mem.h"
 #include "base/vector.h"
 #include "quadrature.h"
-#include "solver/pace.h"
+#include "solver/step_limiter.h"
 #include "solver/spectrum.h"
 
 /* One element, as doubles: they travel as one message. */
@@ -165,7 +165,7 @@ static rg_gid find_worst(const rg_solver *s, finding *f) {
 }
 
 static const char *limited_by(const rg_solver *s) {
-    return rg_pace_limits(s)                             ? "the pace of the opening"
+    return rg_step_limiter_acts(s)                       ? "the rate of opening"
            : s->stiffening_anywhere < RG_STIFFENING_FREE ? "the spectrum at rest"
                                                          : "the stiffening of the element";
 }

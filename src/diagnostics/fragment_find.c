@@ -12,7 +12,7 @@ typedef struct {
     const rg_solver *s;
     const rg_domain *d;
     rg_lid *parent;   /* [slots]: union-find */
-    rg_lid *row_slot; /* [own rows]: element of a seam */
+    rg_lid *row_slot; /* [own rows]: element of a tile-boundary face */
     size_t count;     /* components */
     rg_lid *of;       /* [slots]: component, -1 in padding */
     rg_fragment_label *label;
@@ -52,7 +52,7 @@ static rg_lid side_slot(const rg_domain *d, const rg_tile *t, size_t i, int k) {
     return (rg_lid)(t->begin * RG_LANES) + d->side[k][i] / RG_FACES;
 }
 
-/* Row in which seam i finds its other side. */
+/* Row in which tile-boundary face i finds its other side. */
 static size_t other_row(const rg_domain *d, size_t i) {
     return (size_t)d->side[1][i] / 2;
 }
@@ -69,20 +69,20 @@ static void list_rows(finder *f) {
 
 static void join_tile(finder *f, const rg_tile *t) {
     for (size_t i = t->ibegin * RG_LANES; i < t->iend * RG_LANES; i++) {
-        bool seam = i >= t->sbegin * RG_LANES;
-        bool elsewhere = seam && other_row(f->d, i) >= f->d->own_rows;
+        bool tile_face = i >= t->sbegin * RG_LANES;
+        bool elsewhere = tile_face && other_row(f->d, i) >= f->d->own_rows;
         if (f->d->counted[i] && !elsewhere && holds(f->s, i)) {
-            rg_lid other = seam ? f->row_slot[other_row(f->d, i)] : side_slot(f->d, t, i, 1);
+            rg_lid other = tile_face ? f->row_slot[other_row(f->d, i)] : side_slot(f->d, t, i, 1);
             join(f->parent, side_slot(f->d, t, i, 0), other);
         }
     }
 }
 
 /* Elements that share nodes hang together. */
-static void join_joints(finder *f) {
-    for (size_t k = 0; f->s->joints != NULL && k < f->s->joints->count; k++) {
-        const rg_joint *joint = &f->s->joints->joint[k];
-        join(f->parent, joint->slot[0], joint->slot[1]);
+static void join_conforming_faces(finder *f) {
+    for (size_t k = 0; f->s->conforming_faces != NULL && k < f->s->conforming_faces->count; k++) {
+        const rg_conforming_face *conforming_face = &f->s->conforming_faces->conforming_face[k];
+        join(f->parent, conforming_face->slot[0], conforming_face->slot[1]);
     }
 }
 
@@ -127,7 +127,8 @@ static void label_components(finder *f) {
 
 /* ---- Across ranks ---- */
 
-/* Faces between ranks, in the order in which the other side lists them too, of one kind: seams or joints. */
+/* Faces between ranks, in the order in which the other side lists them too, of one kind: tile-boundary faces
+ * or shared-node faces. */
 typedef struct {
     rg_exchange *x;
     rg_lid *bridge; /* the component on this side of each that holds; -1 where it does not */
@@ -139,7 +140,7 @@ static void cross(finder *f, bridges *b, size_t at, rg_lid component) {
     f->shared[component < 0 ? f->count : (size_t)component] = 1;
 }
 
-static void list_seams(finder *f, bridges *b) {
+static void list_tile_faces(finder *f, bridges *b) {
     for (size_t t = 0; t < f->d->boundary_tiles; t++) {
         const rg_tile *tile = &f->d->tile[t];
         for (size_t i = tile->sbegin * RG_LANES; i < tile->iend * RG_LANES; i++) {
@@ -151,9 +152,9 @@ static void list_seams(finder *f, bridges *b) {
     }
 }
 
-static void list_joints(finder *f, bridges *b) {
+static void list_conforming_faces(finder *f, bridges *b) {
     for (size_t k = 0; k < b->x->count; k++) {
-        cross(f, b, k, f->of[f->s->joints->far[k].slot]);
+        cross(f, b, k, f->of[f->s->conforming_faces->far[k].slot]);
     }
 }
 
@@ -186,17 +187,17 @@ static bool spread(finder *f, bridges *b) {
 }
 
 static void label_across(finder *f) {
-    const rg_joints *joints = f->s->joints;
+    const rg_conforming_faces *conforming_faces = f->s->conforming_faces;
     int *to = RG_NEW(int, f->d->shared);
     for (size_t k = 0; k < f->d->shared; k++) {
         to[k] = f->d->shared_face[k].rank;
     }
     bridges kind[2] = {make_bridges(f, to, f->d->shared)};
-    int kinds = joints == NULL ? 1 : 2, changed = f->s->ranks > 1;
-    list_seams(f, &kind[0]);
+    int kinds = conforming_faces == NULL ? 1 : 2, changed = f->s->ranks > 1;
+    list_tile_faces(f, &kind[0]);
     if (kinds == 2) {
-        kind[1] = make_bridges(f, joints->far_rank, joints->fars);
-        list_joints(f, &kind[1]);
+        kind[1] = make_bridges(f, conforming_faces->far_rank, conforming_faces->fars);
+        list_conforming_faces(f, &kind[1]);
     }
     while (changed) {
         changed = 0;
@@ -276,7 +277,7 @@ rg_fragment_parts *rg_fragments_find(const rg_solver *s) {
     for (size_t t = 0; t < d->tiles; t++) {
         join_tile(&f, &d->tile[t]);
     }
-    join_joints(&f);
+    join_conforming_faces(&f);
     number_components(&f);
     label_components(&f);
     label_across(&f);

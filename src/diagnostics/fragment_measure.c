@@ -53,7 +53,7 @@ static void load_nodes(const rg_solver *s, size_t slot, const double anchor[3], 
         rg_node_position(s->domain->corner + 12 * slot, n, x[n]);
         for (int c = 0; c < 3; c++) {
             x[n][c] += s->u[rg_node_index(slot, n, c)] - anchor[c];
-            v[n][c] = s->now[rg_node_index(slot, n, c)];
+            v[n][c] = s->step_velocity[rg_node_index(slot, n, c)];
         }
     }
 }

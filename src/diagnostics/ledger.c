@@ -36,7 +36,7 @@ static void add_all(rg_exact_sum *sum, const double *x, size_t count) {
  * nodes. */
 static void add_momentum(rg_exact_sum *sum, const rg_solver *s, size_t slot) {
     double mv[RG_NODES][3], p[3] = {0, 0, 0}, l[3] = {0, 0, 0};
-    rg_mass_times(s->lumped, rg_element_mass(s->domain, s->material, slot), s->now, slot, mv);
+    rg_mass_times(s->lumped, rg_element_mass(s->domain, s->material, slot), s->step_velocity, slot, mv);
     for (int n = 0; n < RG_NODES; n++) {
         double x[3];
         rg_node_position(s->domain->corner + 12 * slot, n, x);
@@ -65,7 +65,7 @@ static void add_released(rg_exact_sum *sum, const rg_solver *s, size_t slot) {
 static void kinetic_energies(const rg_solver *s, const rg_tile *t, double *energy) {
     rg_kinetic_args kinetic = {.lumped = s->lumped,
                                .geom = s->domain->geom + t->begin * RG_GEOM_BLOCK,
-                               .velocity = s->now + t->begin * RG_NODE_BLOCK};
+                               .velocity = s->step_velocity + t->begin * RG_NODE_BLOCK};
     for (size_t begin = 0, end; begin < rg_tile_eblocks(t); begin = end) {
         end = rg_run_end(s->domain, t, begin);
         kinetic.density = rg_block_material(s, t, begin)->density;
@@ -113,7 +113,7 @@ static void add_friction(rg_exact_sum sum[SUMS], const rg_solver *s, size_t i) {
     }
 }
 
-/* Of the two copies of a seam one is counted. */
+/* Of the two copies of a tile-boundary face one is counted. */
 static void interface_energies(rg_solver *s, const rg_tile *t, const rg_workspace *w, double *energy,
                                rg_exact_sum sum[SUMS]) {
     rg_interface_args interface = rg_tile_interfaces(s, t, w);

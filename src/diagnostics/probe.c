@@ -9,7 +9,7 @@
 #include "base/error.h"
 #include "base/files.h"
 #include "base/mem.h"
-#include "base/spot.h"
+#include "base/first_bad.h"
 #include "domain/element.h"
 #include "quadrature.h"
 #include "solver/tile.h"
@@ -99,7 +99,7 @@ static void sample(const rg_solver *s, const rg_workspace *w, size_t slot, const
         out[c] = out[3 + c] = 0;
         for (int n = 0; n < RG_NODES; n++) {
             out[c] += N[n] * s->u[rg_node_index(slot, n, c)];
-            out[3 + c] += N[n] * s->now[rg_node_index(slot, n, c)];
+            out[3 + c] += N[n] * s->step_velocity[rg_node_index(slot, n, c)];
         }
     }
     stress_at(s, w, slot, l, out + 6);

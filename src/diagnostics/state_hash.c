@@ -10,7 +10,7 @@ static uint64_t element_hash(const rg_solver *s, size_t slot) {
     uint64_t h = rg_hash(1, (uint64_t)s->domain->id[slot]);
     for (int k = 0; k < 3 * RG_NODES; k++) {
         size_t at = rg_node_index(slot, k / 3, k % 3);
-        h = rg_hash_double(rg_hash_double(h, s->u[at]), s->now[at]);
+        h = rg_hash_double(rg_hash_double(h, s->u[at]), s->step_velocity[at]);
     }
     size_t rows = rg_history_rows(rg_material_history(rg_material_of(s, slot)->model));
     for (size_t row = 0; row < rows; row++) {

@@ -143,7 +143,7 @@ static void weigh(rg_assembly *a, const rg_material *material) {
     rg_free(mass);
 }
 
-rg_assembly *rg_assembly_make(const rg_domain *d, const rg_joints *j, const rg_material *material,
+rg_assembly *rg_assembly_make(const rg_domain *d, const rg_conforming_faces *j, const rg_material *material,
                               MPI_Comm comm) {
     rg_assembly *a = RG_NEW(rg_assembly, 1);
     *a = (rg_assembly){.domain = d, .plan = rg_assembly_plan_make(d, j, comm)};

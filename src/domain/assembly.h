@@ -1,4 +1,4 @@
-/* Assembly: the copies of a shared node move as one (domain/joint.h).
+/* Assembly: the copies of a shared node move as one (domain/conforming.h).
  *
  * With a diagonal mass the acceleration of a node is sum f / sum m over its copies, which is the mean of the
  * accelerations f/m of the copies, each weighed by its mass: the projection of a field that each element has
@@ -14,14 +14,14 @@
 #include <mpi.h>
 
 #include "domain/halo.h"
-#include "domain/joint.h"
+#include "domain/conforming.h"
 #include "materials.h"
 
 typedef struct rg_assembly rg_assembly;
 
 /* For the HRZ mass of the elements (kernels/element/update.c), of materials material[]. Keeps a reference to
  * `d`. Collective; free with rg_assembly_free. */
-rg_assembly *rg_assembly_make(const rg_domain *d, const rg_joints *j, const rg_material *material,
+rg_assembly *rg_assembly_make(const rg_domain *d, const rg_conforming_faces *j, const rg_material *material,
                               MPI_Comm comm);
 
 /* The mean over the copies, in place, of `field` (laid out as the velocity): first for each tile `sum`, which

@@ -8,12 +8,12 @@
 
 enum { CROSSES = 1, SHARED = 2 }; /* a node with copies in other tiles, on other ranks */
 
-/* Copies are numbered RG_NODES * slot + node. Those that joints connect here are a component, known by its
- * root; a node is one or, connected by way of other ranks, several of them. What identifies it everywhere is
- * its lowest RG_NODES * element number + node, and the rank where that is. */
+/* Copies are numbered RG_NODES * slot + node. Those that shared-node faces connect here are a component,
+ * known by its root; a node is one or, connected by way of other ranks, several of them. What identifies it
+ * everywhere is its lowest RG_NODES * element number + node, and the rank where that is. */
 typedef struct {
     const rg_domain *d;
-    const rg_joints *j;
+    const rg_conforming_faces *j;
     MPI_Comm comm;
     int rank;
     rg_lid *parent; /* [copies]: union-find */
@@ -39,10 +39,10 @@ static rg_lid copy_at(rg_lid slot, int face, int a) {
 
 static void connect(builder *b) {
     for (size_t k = 0; k < b->j->count; k++) {
-        const rg_joint *joint = &b->j->joint[k];
+        const rg_conforming_face *conforming_face = &b->j->conforming_face[k];
         for (int a = 0; a < RG_FNODES; a++) {
-            rg_lid one = root_of(b, copy_at(joint->slot[0], joint->face[0], a));
-            rg_lid two = root_of(b, copy_at(joint->slot[1], joint->face[1], a));
+            rg_lid one = root_of(b, copy_at(conforming_face->slot[0], conforming_face->face[0], a));
+            rg_lid two = root_of(b, copy_at(conforming_face->slot[1], conforming_face->face[1], a));
             b->parent[one < two ? two : one] = one < two ? one : two;
         }
     }
@@ -62,13 +62,13 @@ static void identify(builder *b) {
 
 static void flag(builder *b) {
     for (size_t k = 0; k < b->j->count; k++) {
-        const rg_joint *joint = &b->j->joint[k];
+        const rg_conforming_face *conforming_face = &b->j->conforming_face[k];
         const rg_tile *tile[2];
         for (int side = 0; side < 2; side++) {
-            tile[side] = rg_tile_of(b->d, (size_t)joint->slot[side]);
+            tile[side] = rg_tile_of(b->d, (size_t)conforming_face->slot[side]);
         }
         for (int a = 0; tile[0] != tile[1] && a < RG_FNODES; a++) {
-            b->flags[b->parent[copy_at(joint->slot[0], joint->face[0], a)]] |= CROSSES;
+            b->flags[b->parent[copy_at(conforming_face->slot[0], conforming_face->face[0], a)]] |= CROSSES;
         }
     }
     for (size_t k = 0; k < b->j->fars; k++) {
@@ -78,7 +78,7 @@ static void flag(builder *b) {
     }
 }
 
-/* What two ranks tell each other of the nodes of a joint between them. */
+/* What two ranks tell each other of the nodes of a shared-node face between them. */
 typedef struct {
     rg_gid key[RG_FNODES];
     int32_t owner[RG_FNODES];
@@ -405,7 +405,7 @@ static void join_rows(builder *b, records *own) {
     rg_free(others.row);
 }
 
-rg_assembly_plan *rg_assembly_plan_make(const rg_domain *d, const rg_joints *j, MPI_Comm comm) {
+rg_assembly_plan *rg_assembly_plan_make(const rg_domain *d, const rg_conforming_faces *j, MPI_Comm comm) {
     builder b = {.d = d, .j = j, .comm = comm, .plan = RG_NEW(rg_assembly_plan, 1)};
     records own = {0};
     MPI_Comm_rank(comm, &b.rank);

@@ -5,7 +5,7 @@
 #include <mpi.h>
 
 #include "domain/halo.h"
-#include "domain/joint.h"
+#include "domain/conforming.h"
 
 /* Nodes of a tile: those that it alone holds, then, from `border` on, those of which others have copies too,
  * with one row each from `row` on. */
@@ -30,7 +30,7 @@ typedef struct {
 } rg_assembly_plan;
 
 /* Collective; free with rg_assembly_plan_free. */
-rg_assembly_plan *rg_assembly_plan_make(const rg_domain *d, const rg_joints *j, MPI_Comm comm);
+rg_assembly_plan *rg_assembly_plan_make(const rg_domain *d, const rg_conforming_faces *j, MPI_Comm comm);
 
 void rg_assembly_plan_free(rg_assembly_plan *p);
 

@@ -2,10 +2,10 @@
  * links and geometry. Knows the mesh, no physics and no messages.
  *
  * Tiles are the mesh's; those that touch another rank come first. Each has its elements, the interfaces
- * inside it and its seams, padded to whole blocks. Its elements lie by material, each of them padded, and of
- * each by number: every block is of one material. A seam has a row by which the other side finds its trace
- * and its tractions; the rows of other ranks' seams come behind the own ones, in the order in which they
- * arrive. */
+ * inside it and its tile-boundary faces, padded to whole blocks. Its elements lie by material, each of them
+ * padded, and of each by number: every block is of one material. A tile-boundary face has a row by which the
+ * other side finds its trace and its tractions; the rows of other ranks' tile-boundary faces come behind the
+ * own ones, in the order in which they arrive. */
 #ifndef RG_DOMAIN_H
 #define RG_DOMAIN_H
 
@@ -19,16 +19,16 @@
 typedef struct {
     rg_gid first;                /* global number of its first element */
     size_t begin, end;           /* element blocks */
-    size_t ibegin, sbegin, iend; /* interface blocks: inside, then seams */
-    size_t row;                  /* row of the first seam */
+    size_t ibegin, sbegin, iend; /* interface blocks: inside, then tile-boundary faces */
+    size_t row;                  /* row of the first tile-boundary face */
 } rg_tile;
 
 /* A face shared with another rank, from this rank's point of view. */
 typedef struct {
-    int32_t rank;   /* the other rank */
-    rg_gid tile[2]; /* global numbers, the lower one first */
-    rg_gid key;     /* the same on both ranks: 4 * lower element number + its local face */
-    size_t seam;    /* its row here */
+    int32_t rank;     /* the other rank */
+    rg_gid tile[2];   /* global numbers, the lower one first */
+    rg_gid key;       /* the same on both ranks: 4 * lower element number + its local face */
+    size_t tile_face; /* its row here */
 } rg_shared_face;
 
 typedef struct {
@@ -45,13 +45,14 @@ typedef struct {
     rg_gid tile_elements; /* of every tile but the mesh's last one */
     size_t tiles, boundary_tiles;
     rg_tile *tile;
-    size_t tile_blocks, tile_iblocks, tile_sblocks; /* largest of a tile: all, interfaces, seams */
+    size_t tile_blocks, tile_iblocks,
+        tile_sblocks; /* largest of a tile: all, interfaces, tile-boundary faces */
 
     int32_t *side[2]; /* links of the interfaces */
     rg_real *igeom;
     uint8_t (*beside)[2]; /* [interface]: materials of both sides, the lower first; NULL: there is but one */
     uint8_t *counted; /* [interface]: 1 where this copy speaks for the face (owns the lower-numbered side) */
-    size_t own_rows;  /* of the seams, padding included; `shared` more come behind */
+    size_t own_rows;  /* of the tile-boundary faces, padding included; `shared` more come behind */
     size_t shared;
     rg_shared_face *shared_face; /* sorted by rank, tiles and key: the order in which rows are exchanged */
 } rg_domain;
@@ -65,8 +66,8 @@ typedef struct {
 } rg_interface_material;
 
 /* Builds the domain of rank `rank` from its part. Bit f of joined[i] is set where the elements on both sides
- * of face f of element i share their nodes (domain/joint.h), so that it carries no interface; NULL: nowhere.
- * The caller owns the result. */
+ * of face f of element i share their nodes (domain/conforming.h), so that it carries no interface; NULL:
+ * nowhere. The caller owns the result. */
 rg_domain *rg_domain_build(const rg_part *part, const uint8_t *joined, int rank,
                            const rg_interface_material *m);
 

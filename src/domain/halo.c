@@ -56,7 +56,7 @@ rg_halo *rg_halo_make(const rg_domain *d, int values, rg_real *rows, int tag, MP
     rg_halo_row *send = RG_NEW(rg_halo_row, d->shared + 1);
     int32_t *from = RG_NEW(int32_t, d->shared + 1);
     for (size_t i = 0; i < d->shared; i++) {
-        send[i] = (rg_halo_row){d->shared_face[i].rank, d->shared_face[i].seam};
+        send[i] = (rg_halo_row){d->shared_face[i].rank, d->shared_face[i].tile_face};
         from[i] = d->shared_face[i].rank;
     }
     rg_halo_plan plan = {send, d->shared, from, d->shared, d->own_rows};

@@ -1,5 +1,5 @@
-/* Halo exchange: rows of the seams that lie between ranks, in messages that run under other work. Knows
- * neither physics nor what is in a row.
+/* Halo exchange: rows of the tile-boundary faces that lie between ranks, in messages that run under other
+ * work. Knows neither physics nor what is in a row.
  *
  * One exchange is: pack, start, other work (poll now and then), finish; then the rows of the other ranks lie
  * behind the own ones. Pack is a worksharing loop: call it from all threads of a parallel region, or from
@@ -34,7 +34,7 @@ typedef struct {
  * a reference to `rows`, none to the plan. Collective; free with rg_halo_free. */
 rg_halo *rg_halo_plan_make(const rg_halo_plan *plan, int values, rg_real *rows, int tag, MPI_Comm comm);
 
-/* The same of the seams that a domain shares: rows[own rows and shared][values]. */
+/* The same of the tile-boundary faces that a domain shares: rows[own rows and shared][values]. */
 rg_halo *rg_halo_make(const rg_domain *d, int values, rg_real *rows, int tag, MPI_Comm comm);
 
 void rg_halo_pack(rg_halo *h);

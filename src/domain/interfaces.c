@@ -13,7 +13,7 @@ typedef struct {
     const uint8_t *joined;            /* bits of faces without an interface; NULL: none */
     int rank;
     const rg_interface_material *material;
-    size_t *inside, *seams; /* [tiles]: interfaces */
+    size_t *inside, *tile_faces; /* [tiles]: interfaces */
 } builder;
 
 /* Real elements of tile t. */
@@ -86,7 +86,7 @@ static void count(builder *b, size_t t) {
         for (int f = 0; f < RG_FACES; f++) {
             bool here = has_interface(b, e, f), inside = here && in_tile(b, t, e->neighbour[f]);
             b->inside[t] += inside && e->neighbour[f] < e->id;
-            b->seams[t] += here && !inside;
+            b->tile_faces[t] += here && !inside;
         }
     }
 }
@@ -101,12 +101,12 @@ static void place_tiles(builder *b) {
         rg_tile *tile = &d->tile[t];
         tile->ibegin = d->iblocks;
         tile->sbegin = tile->ibegin + whole_blocks(b->inside[t]);
-        tile->iend = d->iblocks = tile->sbegin + whole_blocks(b->seams[t]);
+        tile->iend = d->iblocks = tile->sbegin + whole_blocks(b->tile_faces[t]);
         tile->row = d->own_rows;
         d->own_rows += (tile->iend - tile->sbegin) * RG_LANES;
-        size_t all = tile->iend - tile->ibegin, seams = tile->iend - tile->sbegin;
+        size_t all = tile->iend - tile->ibegin, tile_faces = tile->iend - tile->sbegin;
         d->tile_iblocks = all > d->tile_iblocks ? all : d->tile_iblocks;
-        d->tile_sblocks = seams > d->tile_sblocks ? seams : d->tile_sblocks;
+        d->tile_sblocks = tile_faces > d->tile_sblocks ? tile_faces : d->tile_sblocks;
     }
 }
 
@@ -138,8 +138,8 @@ static void add_inside(const builder *b, size_t t, size_t i, int f, size_t at) {
     d->interface[rg_link_index(first + other, face)] = rg_link(number, !plus, 4);
 }
 
-/* A seam of tile t. Its `other` link waits for the rows: until then it holds the side alone. */
-static void add_seam(const builder *b, size_t t, size_t i, int f, size_t at) {
+/* A tile-boundary face of tile t. Its `other` link waits for the rows: until then it holds the side alone. */
+static void add_tile_face(const builder *b, size_t t, size_t i, int f, size_t at) {
     rg_domain *d = b->domain;
     const rg_tile *tile = &d->tile[t];
     const rg_element *e = &b->element[t][i];
@@ -149,19 +149,19 @@ static void add_seam(const builder *b, size_t t, size_t i, int f, size_t at) {
     d->side[1][at] = plus;
     d->counted[at] = e->id < e->neighbour[f];
     d->neighbour[rg_link_index(slot, f)] = rg_neighbour_link(at - tile->sbegin * RG_LANES, RG_GHOST);
-    d->interface[rg_link_index(slot, f)] = rg_link(at - tile->ibegin * RG_LANES, RG_SEAM + plus, 4);
+    d->interface[rg_link_index(slot, f)] = rg_link(at - tile->ibegin * RG_LANES, RG_TILE_FACE + plus, 4);
 }
 
-/* A seam before it has its place. */
+/* A tile-boundary face before it has its place. */
 typedef struct {
     rg_gid tile, key; /* the other tile; the face's key, the same on both sides */
     int32_t own;      /* 4 * element of the tile + face */
-} seam;
+} tile_face;
 
-/* Seams with one other tile lie side by side and in the same order on both sides, so their rows are read as a
- * stream. */
+/* Tile-boundary faces with one other tile lie side by side and in the same order on both sides, so their rows
+ * are read as a stream. */
 static int by_tile_and_key(const void *a, const void *b) {
-    const seam *p = a, *q = b;
+    const tile_face *p = a, *q = b;
     if (p->tile != q->tile) {
         return p->tile < q->tile ? -1 : 1;
     }
@@ -173,16 +173,16 @@ static rg_gid face_key(const rg_element *e, int f) {
     return e->id < other ? RG_FACES * e->id + f : RG_FACES * other + e->face[f];
 }
 
-static void add_seams(const builder *b, size_t t, const seam *list) {
+static void add_tile_faces(const builder *b, size_t t, const tile_face *list) {
     size_t at = b->domain->tile[t].sbegin * RG_LANES;
-    for (size_t k = 0; k < b->seams[t]; k++) {
-        add_seam(b, t, (size_t)list[k].own / RG_FACES, list[k].own % RG_FACES, at + k);
+    for (size_t k = 0; k < b->tile_faces[t]; k++) {
+        add_tile_face(b, t, (size_t)list[k].own / RG_FACES, list[k].own % RG_FACES, at + k);
     }
 }
 
-static void fill_tile(const builder *b, size_t t, seam *list) {
+static void fill_tile(const builder *b, size_t t, tile_face *list) {
     const rg_domain *d = b->domain;
-    size_t inside = d->tile[t].ibegin * RG_LANES, seams = 0;
+    size_t inside = d->tile[t].ibegin * RG_LANES, tile_faces = 0;
     for (size_t i = 0; i < tile_elements(b, t); i++) {
         const rg_element *e = &b->element[t][i];
         for (int f = 0; f < RG_FACES; f++) {
@@ -191,21 +191,22 @@ static void fill_tile(const builder *b, size_t t, seam *list) {
                 continue;
             }
             if (!in_tile(b, t, other)) {
-                list[seams++] = (seam){other / d->tile_elements, face_key(e, f), rg_side_link(i, f)};
+                list[tile_faces++] =
+                    (tile_face){other / d->tile_elements, face_key(e, f), rg_side_link(i, f)};
             } else if (other < e->id) {
                 add_inside(b, t, i, f, inside++);
             }
         }
     }
-    qsort(list, seams, sizeof *list, by_tile_and_key);
-    add_seams(b, t, list);
+    qsort(list, tile_faces, sizeof *list, by_tile_and_key);
+    add_tile_faces(b, t, list);
 }
 
 static void fill_tiles(const builder *b) {
     const rg_domain *d = b->domain;
 #pragma omp parallel
     {
-        seam *list = RG_NEW(seam, d->tile_sblocks * RG_LANES);
+        tile_face *list = RG_NEW(tile_face, d->tile_sblocks * RG_LANES);
 #pragma omp for schedule(static)
         for (size_t t = 0; t < d->tiles; t++) {
             fill_tile(b, t, list);
@@ -214,18 +215,18 @@ static void fill_tiles(const builder *b) {
     }
 }
 
-/* Row of seam i of the domain, which lies in tile t. */
+/* Row of tile-boundary face i of the domain, which lies in tile t. */
 static size_t row_of(const rg_tile *tile, size_t i) {
     return tile->row + (i - tile->sbegin * RG_LANES);
 }
 
-/* Row of the seam at face f of element e, in an own tile. */
+/* Row of the tile-boundary face at face f of element e, in an own tile. */
 static size_t find_row(const rg_domain *d, const rg_tile *tile, rg_gid e, int f) {
     size_t slot = tile->begin * RG_LANES + rg_slot_in(d, tile, e);
     return tile->row + (size_t)d->neighbour[rg_link_index(slot, f)] / 8;
 }
 
-static const rg_element *seam_element(const builder *b, size_t t, size_t i) {
+static const rg_element *tile_face_element(const builder *b, size_t t, size_t i) {
     const rg_tile *tile = &b->domain->tile[t];
     rg_gid id = b->domain->id[tile->begin * RG_LANES + (size_t)b->domain->side[0][i] / RG_FACES];
     return &b->element[t][id - tile->first];
@@ -237,8 +238,8 @@ static void join_tile(const builder *b, size_t t, const rg_gid_map *number) {
     size_t first = tile->sbegin * RG_LANES;
     for (size_t i = first; i < tile->iend * RG_LANES; i++) {
         size_t row = row_of(tile, i); /* padding: its own */
-        if (i < first + b->seams[t]) {
-            const rg_element *e = seam_element(b, t, i);
+        if (i < first + b->tile_faces[t]) {
+            const rg_element *e = tile_face_element(b, t, i);
             int f = d->side[0][i] % RG_FACES;
             if (e->owner[f] != b->rank) {
                 continue;
@@ -250,7 +251,7 @@ static void join_tile(const builder *b, size_t t, const rg_gid_map *number) {
     }
 }
 
-/* Seams between own tiles find each other's rows. */
+/* Tile-boundary faces between own tiles find each other's rows. */
 static void join_own(const builder *b) {
     rg_domain *d = b->domain;
     rg_gid_map number = rg_gid_map_make(d->tiles);
@@ -281,8 +282,8 @@ static size_t collect_shared(const builder *b, rg_shared_face *list) {
     size_t n = 0;
     for (size_t t = 0; t < d->boundary_tiles; t++) {
         size_t first = d->tile[t].sbegin * RG_LANES;
-        for (size_t i = first; i < first + b->seams[t]; i++) {
-            const rg_element *e = seam_element(b, t, i);
+        for (size_t i = first; i < first + b->tile_faces[t]; i++) {
+            const rg_element *e = tile_face_element(b, t, i);
             int f = d->side[0][i] % RG_FACES;
             if (e->owner[f] == b->rank) {
                 continue;
@@ -292,7 +293,7 @@ static size_t collect_shared(const builder *b, rg_shared_face *list) {
                 list[n] = (rg_shared_face){.rank = e->owner[f],
                                            .tile = {here < there ? here : there, here < there ? there : here},
                                            .key = face_key(e, f),
-                                           .seam = i};
+                                           .tile_face = i};
             }
             n++;
         }
@@ -300,7 +301,7 @@ static size_t collect_shared(const builder *b, rg_shared_face *list) {
     return n;
 }
 
-static const rg_tile *tile_of_seam(const rg_domain *d, size_t i) {
+static const rg_tile *tile_of_tile_face(const rg_domain *d, size_t i) {
     size_t low = 0, high = d->boundary_tiles;
     while (high - low > 1) {
         size_t middle = low + (high - low) / 2;
@@ -309,8 +310,8 @@ static const rg_tile *tile_of_seam(const rg_domain *d, size_t i) {
     return &d->tile[low];
 }
 
-/* Seams shared with other ranks: their rows arrive behind the own ones, in the order of rank, tiles and key,
- * which is that in which a tile reads them. */
+/* Tile-boundary faces shared with other ranks: their rows arrive behind the own ones, in the order of rank,
+ * tiles and key, which is that in which a tile reads them. */
 static void join_shared(const builder *b) {
     rg_domain *d = b->domain;
     d->shared = collect_shared(b, NULL);
@@ -318,9 +319,9 @@ static void join_shared(const builder *b) {
     collect_shared(b, d->shared_face);
     qsort(d->shared_face, d->shared, sizeof *d->shared_face, by_rank_and_tiles);
     for (size_t k = 0; k < d->shared; k++) {
-        size_t i = d->shared_face[k].seam;
+        size_t i = d->shared_face[k].tile_face;
         d->side[1][i] += 2 * (int32_t)(d->own_rows + k);
-        d->shared_face[k].seam = row_of(tile_of_seam(d, i), i);
+        d->shared_face[k].tile_face = row_of(tile_of_tile_face(d, i), i);
     }
 }
 
@@ -340,5 +341,5 @@ void rg_interfaces_build(rg_domain *d, const rg_element *const element[], const 
         d->interfaces += d->counted[i];
     }
     rg_free(b.inside);
-    rg_free(b.seams);
+    rg_free(b.tile_faces);
 }

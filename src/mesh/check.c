@@ -42,13 +42,13 @@ static bool has_volume(const double *x) {
 
 bool rg_tet_sound(const double *x, const rg_gid corner[4], rg_gid name, char *what) {
     if (!(corner[0] < corner[1] && corner[1] < corner[2] && corner[2] < corner[3])) {
-        snprintf(what, RG_FAULT_WORDS,
+        snprintf(what, RG_INPUT_ERROR_WORDS,
                  "element %" PRId64
                  ": its corners must be four different vertices in ascending order; they are "
                  "%" PRId64 ", %" PRId64 ", %" PRId64 ", %" PRId64,
                  name, corner[0], corner[1], corner[2], corner[3]);
     } else if (!has_volume(x)) {
-        snprintf(what, RG_FAULT_WORDS,
+        snprintf(what, RG_INPUT_ERROR_WORDS,
                  "element %" PRId64 " at (%g, %g, %g) m has no volume: %g m3 with edges of up to %g m", name,
                  x[0], x[1], x[2], fabs(rg_tet_volume(x, x + 3, x + 6, x + 9)), rg_tet_longest_edge(x));
     } else {
@@ -57,24 +57,24 @@ bool rg_tet_sound(const double *x, const rg_gid corner[4], rg_gid name, char *wh
     return false;
 }
 
-static void check_element(const rg_mesh *mesh, rg_faults *faults, rg_gid e) {
+static void check_element(const rg_mesh *mesh, rg_input_errors *input_errors, rg_gid e) {
     const rg_gid *c = mesh->corner + 4 * e;
     double x[12] = {0};
-    char what[RG_FAULT_WORDS];
+    char what[RG_INPUT_ERROR_WORDS];
     for (int i = 0; i < 4; i++) {
         if (c[i] < 0 || c[i] >= mesh->vertices) {
-            rg_faults_add(faults, e, 0, "element %" PRId64 ": there is no vertex %" PRId64,
-                          rg_mesh_original(mesh, e), c[i]);
+            rg_input_errors_add(input_errors, e, 0, "element %" PRId64 ": there is no vertex %" PRId64,
+                                rg_mesh_original(mesh, e), c[i]);
             return;
         }
         memcpy(x + 3 * i, corner(mesh, e, i), 3 * sizeof *x);
     }
     if (!rg_tet_sound(x, c, rg_mesh_original(mesh, e), what)) {
-        rg_faults_add(faults, e, 0, "%s", what);
+        rg_input_errors_add(input_errors, e, 0, "%s", what);
     }
 }
 
-static void check_neighbour(const rg_mesh *mesh, rg_faults *faults, rg_gid e, int f) {
+static void check_neighbour(const rg_mesh *mesh, rg_input_errors *input_errors, rg_gid e, int f) {
     rg_gid other = mesh->neighbour[4 * e + f];
     if (other < 0) {
         return;
@@ -86,22 +86,22 @@ static void check_neighbour(const rg_mesh *mesh, rg_faults *faults, rg_gid e, in
         agree = mesh->corner[4 * e + rg_face_node[f][i]] == mesh->corner[4 * other + rg_face_node[g][i]];
     }
     if (!agree) {
-        rg_faults_add(faults, e, 1 + f,
-                      "neighbour: element %" PRId64 " takes element %" PRId64
-                      " for its neighbour across face %d, but they do not share it",
-                      rg_mesh_original(mesh, e),
-                      other < mesh->elements ? rg_mesh_original(mesh, other) : other, f);
+        rg_input_errors_add(input_errors, e, 1 + f,
+                            "neighbour: element %" PRId64 " takes element %" PRId64
+                            " for its neighbour across face %d, but they do not share it",
+                            rg_mesh_original(mesh, e),
+                            other < mesh->elements ? rg_mesh_original(mesh, other) : other, f);
     }
 }
 
-static void check_use(const rg_mesh *mesh, rg_faults *faults) {
+static void check_use(const rg_mesh *mesh, rg_input_errors *input_errors) {
     int8_t *used = RG_NEW(int8_t, (size_t)mesh->vertices);
     for (rg_gid i = 0; i < 4 * mesh->elements; i++) {
         used[mesh->corner[i]] = 1;
     }
     for (rg_gid v = 0; v < mesh->vertices; v++) {
         if (!used[v]) {
-            rg_faults_add(faults, mesh->elements + v, 0, "no element uses vertex %" PRId64, v);
+            rg_input_errors_add(input_errors, mesh->elements + v, 0, "no element uses vertex %" PRId64, v);
         }
     }
     rg_free(used);
@@ -128,13 +128,13 @@ static rg_gid element_of(const rg_mesh *mesh, rg_gid vertex) {
 }
 
 /* twin[v]: the lowest vertex at the place of v, below v; -1 if there is none. */
-static void check_twins(const rg_mesh *mesh, const rg_gid *twin, rg_faults *faults) {
+static void check_twins(const rg_mesh *mesh, const rg_gid *twin, rg_input_errors *input_errors) {
     for (rg_gid v = 0; v < mesh->vertices; v++) {
-        char *words = twin[v] >= 0 ? rg_faults_place(faults, v, 0) : NULL;
+        char *words = twin[v] >= 0 ? rg_input_errors_place(input_errors, v, 0) : NULL;
         if (words != NULL) {
             const double *x = mesh->x + 3 * v;
             snprintf(
-                words, RG_FAULT_WORDS,
+                words, RG_INPUT_ERROR_WORDS,
                 "elements %" PRId64 " and %" PRId64
                 " have different vertices at the same place (%.9g, %.9g, %.9g) m: the mesh is open there; "
                 "merge its duplicate nodes",
@@ -143,7 +143,7 @@ static void check_twins(const rg_mesh *mesh, const rg_gid *twin, rg_faults *faul
     }
 }
 
-static void check_places(const rg_mesh *mesh, rg_faults *faults) {
+static void check_places(const rg_mesh *mesh, rg_input_errors *input_errors) {
     static const double line[3] = {0.5257311, 0.6360098, 0.5648217}; /* of length 1 */
     struct projected *p = RG_NEW(struct projected, (size_t)mesh->vertices);
     rg_gid *twin = RG_NEW(rg_gid, (size_t)mesh->vertices);
@@ -164,18 +164,18 @@ static void check_places(const rg_mesh *mesh, rg_faults *faults) {
             }
         }
     }
-    check_twins(mesh, twin, faults);
+    check_twins(mesh, twin, input_errors);
     rg_free(twin);
     rg_free(p);
 }
 
-static void check_hanging(const rg_mesh *mesh, rg_faults *faults) {
+static void check_hanging(const rg_mesh *mesh, rg_input_errors *input_errors) {
     rg_gid *face = rg_mesh_hanging(mesh);
     for (rg_gid v = 0; v < mesh->vertices; v++) {
-        char *words = face[v] >= 0 ? rg_faults_place(faults, v, 0) : NULL;
+        char *words = face[v] >= 0 ? rg_input_errors_place(input_errors, v, 0) : NULL;
         if (words != NULL) {
             const double *x = mesh->x + 3 * v;
-            snprintf(words, RG_FAULT_WORDS,
+            snprintf(words, RG_INPUT_ERROR_WORDS,
                      "a vertex of element %" PRId64
                      " at (%.9g, %.9g, %.9g) m lies on a face of element %" PRId64
                      " without being its corner (a hanging node): the mesh is open there",
@@ -186,33 +186,33 @@ static void check_hanging(const rg_mesh *mesh, rg_faults *faults) {
 }
 
 void rg_mesh_check_elements(const rg_mesh *mesh, const char *name) {
-    rg_faults faults = {.name = name};
+    rg_input_errors input_errors = {.name = name};
     for (rg_gid e = 0; e < mesh->elements; e++) {
-        check_element(mesh, &faults, e);
+        check_element(mesh, &input_errors, e);
     }
-    rg_faults_end(&faults);
+    rg_input_errors_end(&input_errors);
 }
 
-void rg_mesh_check_surface(const rg_mesh *mesh, rg_faults *faults) {
-    int64_t before = faults->count;
-    check_places(mesh, faults);
-    if (faults->count == before) { /* each copy of a corner would hang */
-        check_hanging(mesh, faults);
+void rg_mesh_check_surface(const rg_mesh *mesh, rg_input_errors *input_errors) {
+    int64_t before = input_errors->count;
+    check_places(mesh, input_errors);
+    if (input_errors->count == before) { /* each copy of a corner would hang */
+        check_hanging(mesh, input_errors);
     }
 }
 
 void rg_mesh_check(const rg_mesh *mesh, const char *name) {
-    rg_faults faults = {.name = name};
+    rg_input_errors input_errors = {.name = name};
     rg_mesh_check_elements(mesh, name);
     for (rg_gid e = 0; e < mesh->elements; e++) {
         for (int f = 0; f < 4; f++) {
-            check_neighbour(mesh, &faults, e, f);
+            check_neighbour(mesh, &input_errors, e, f);
         }
     }
-    check_use(mesh, &faults);
-    rg_faults_end(&faults);
-    rg_mesh_check_surface(mesh, &faults);
-    rg_faults_end(&faults);
+    check_use(mesh, &input_errors);
+    rg_input_errors_end(&input_errors);
+    rg_mesh_check_surface(mesh, &input_errors);
+    rg_input_errors_end(&input_errors);
 }
 
 /* ---- parts ---- */

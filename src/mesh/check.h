@@ -4,11 +4,11 @@
 
 #include <stdbool.h>
 
-#include "base/faults.h"
+#include "base/input_errors.h"
 #include "mesh/mesh.h"
 
-/* Ends the run (RG_USAGE) with messages (base/faults.h) that begin with `name` and name elements by their
- * numbers in the input, if the mesh, sorted or not but connected, has
+/* Ends the run (RG_USAGE) with messages (base/input_errors.h) that begin with `name` and name elements by
+ * their numbers in the input, if the mesh, sorted or not but connected, has
  *   - a position that is not finite, or a vertex that no element uses,
  *   - an element whose corners are not ascending, or without volume (below 1e-12 of its longest edge cubed),
  *   - neighbours that do not agree on their common face,
@@ -22,12 +22,12 @@ void rg_mesh_check(const rg_mesh *mesh, const char *name);
 /* The part of this that concerns elements by themselves: corners and volume. Needs no connection. */
 void rg_mesh_check_elements(const rg_mesh *mesh, const char *name);
 
-/* The part that concerns the vertices of the surface: adds those at one place to `faults`, and if there are
- * none hanging nodes, each vertex once. Looks at `x`, `corner` and where `neighbour` is -1. */
-void rg_mesh_check_surface(const rg_mesh *mesh, rg_faults *faults);
+/* The part that concerns the vertices of the surface: adds those at one place to `input_errors`, and if there
+ * are none hanging nodes, each vertex once. Looks at `x`, `corner` and where `neighbour` is -1. */
+void rg_mesh_check_surface(const rg_mesh *mesh, rg_input_errors *input_errors);
 
 /* Whether an element can be computed on: its corners, at x[4][3] (m), are ascending, and it has a volume. If
- * not, what[RG_FAULT_WORDS] says so of element `name`. */
+ * not, what[RG_INPUT_ERROR_WORDS] says so of element `name`. */
 bool rg_tet_sound(const double *x, const rg_gid corner[4], rg_gid name, char *what);
 
 /* The longest edge of the element with corners x[4][3] (m). */

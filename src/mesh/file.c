@@ -26,7 +26,7 @@ struct rg_mesh_file {
 
 enum { WHY = RG_H5_REASON + 80 };
 
-/* Datasets with rows for each tile, in the order in which the faults of an element are told. */
+/* Datasets with rows for each tile, in the order in which the input errors of an element are told. */
 enum { CORNER, NEIGHBOUR, FACE, SET, REGION, ORIGINAL, VERTEX_START, VERTEX, X, PARTS };
 static const rg_rows *const part[PARTS] = {[CORNER] = &rg_rows_corner,
                                            [NEIGHBOUR] = &rg_rows_neighbour,
@@ -263,21 +263,21 @@ static void read_header(rg_mesh_file *f) {
 }
 
 /* A file whose header has not been read yet. */
-static rg_mesh_file *open_file(const char *path, rg_faults *faults) {
+static rg_mesh_file *open_file(const char *path, rg_input_errors *input_errors) {
     rg_mesh_file *f = RG_NEW(rg_mesh_file, 1);
     f->path = RG_NEW(char, strlen(path) + 1);
     strcpy(f->path, path);
     FILE *probe = rg_open_input(path); /* for the reason, which HDF5 does not tell */
     if (probe == NULL) {
-        rg_faults_add(faults, 0, 0, "cannot be read: %s", strerror(errno));
+        rg_input_errors_add(input_errors, 0, 0, "cannot be read: %s", strerror(errno));
         return f;
     }
     fclose(probe);
     rg_h5_listen(f->reason);
     f->file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
     if (f->file < 0) {
-        rg_faults_add(
-            faults, 0, 0,
+        rg_input_errors_add(
+            input_errors, 0, 0,
             "not a mesh file of Rhegma, or a damaged one: %s; 'rhegma mesh IN -o OUT.h5' makes one of "
             "a mesh that Gmsh reads",
             f->reason);
@@ -286,17 +286,17 @@ static rg_mesh_file *open_file(const char *path, rg_faults *faults) {
 }
 
 rg_mesh_file *rg_mesh_file_open(const char *path) {
-    rg_faults faults = {.name = path};
-    rg_mesh_file *f = open_file(path, &faults);
-    rg_faults_end(&faults);
+    rg_input_errors input_errors = {.name = path};
+    rg_mesh_file *f = open_file(path, &input_errors);
+    rg_input_errors_end(&input_errors);
     read_header(f);
     return f;
 }
 
 rg_mesh_file *rg_mesh_file_open_on_all(const char *path, MPI_Comm comm) {
-    rg_faults faults = {.name = path};
-    rg_mesh_file *f = open_file(path, &faults);
-    rg_faults_agree(&faults, comm);
+    rg_input_errors input_errors = {.name = path};
+    rg_mesh_file *f = open_file(path, &input_errors);
+    rg_input_errors_agree(&input_errors, comm);
     read_header(f);
     return f;
 }
@@ -330,11 +330,11 @@ typedef struct {
     const rg_mesh_file *file;
     rg_mesh_slab *slab;
     stretch elements, vertices;
-    rg_faults *faults; /* NULL: nobody wants to know them */
+    rg_input_errors *input_errors; /* NULL: nobody wants to know them */
     bool good;
 } reading;
 
-/* A fault of dataset k, in element `element`. */
+/* An input error of dataset k, in element `element`. */
 static void complain(reading *r, rg_gid element, int k, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
 
@@ -345,8 +345,8 @@ static void complain(reading *r, rg_gid element, int k, const char *format, ...)
     vsnprintf(what, sizeof what, format, args);
     va_end(args);
     r->good = false;
-    if (r->faults != NULL) {
-        rg_faults_add(r->faults, element, k, "%s: %s", part[k]->name, what);
+    if (r->input_errors != NULL) {
+        rg_input_errors_add(r->input_errors, element, k, "%s: %s", part[k]->name, what);
     }
 }
 
@@ -487,7 +487,7 @@ static void locate_corners(reading *r) {
 
 static void check_shapes(reading *r) {
     const rg_mesh_slab *slab = r->slab;
-    char what[RG_FAULT_WORDS];
+    char what[RG_INPUT_ERROR_WORDS];
     for (rg_gid e = 0; e < slab->elements; e++) {
         double x[4][3];
         for (int i = 0; i < 4; i++) {
@@ -495,15 +495,15 @@ static void check_shapes(reading *r) {
         }
         if (!rg_tet_sound(x[0], slab->corner + 4 * e, slab->original[e], what)) {
             r->good = false;
-            if (r->faults != NULL) {
-                rg_faults_add(r->faults, slab->first + e, PARTS, "%s", what);
+            if (r->input_errors != NULL) {
+                rg_input_errors_add(r->input_errors, slab->first + e, PARTS, "%s", what);
             }
         }
     }
 }
 
-/* NULL: there are faults. */
-static rg_mesh_slab *read_run(rg_mesh_file *f, int64_t begin, int64_t end, rg_faults *faults) {
+/* NULL: there are input errors. */
+static rg_mesh_slab *read_run(rg_mesh_file *f, int64_t begin, int64_t end, rg_input_errors *input_errors) {
     const rg_mesh_header *h = &f->head;
     rg_mesh_slab *slab = RG_NEW(rg_mesh_slab, 1);
     int64_t *start = RG_NEW(int64_t, (size_t)(end - begin) + 1), rows = count_rows(f, &rg_rows_vertex);
@@ -517,7 +517,7 @@ static rg_mesh_slab *read_run(rg_mesh_file *f, int64_t begin, int64_t end, rg_fa
     reading r = {.file = f,
                  .slab = slab,
                  .elements = {h->elements, h->tiles, begin, end, start},
-                 .faults = faults,
+                 .input_errors = input_errors,
                  .good = true};
     take_all(&r, rows);
     void (*const next[])(reading *) = {check_vertices, check_values, locate_corners, check_shapes};
@@ -532,23 +532,24 @@ static rg_mesh_slab *read_run(rg_mesh_file *f, int64_t begin, int64_t end, rg_fa
     return r.good ? slab : NULL;
 }
 
-/* NULL: there are faults, told tile by tile, so that they are the same whichever tiles are read at once.
- * Halves that are sound are not looked at again: a fault among many tiles is soon found. */
-static rg_mesh_slab *read_or_tell(rg_mesh_file *f, int64_t begin, int64_t end, rg_faults *faults) {
+/* NULL: there are input errors, told tile by tile, so that they are the same whichever tiles are read at
+ * once. Halves that are sound are not looked at again: an input error among many tiles is soon found. */
+static rg_mesh_slab *read_or_tell(rg_mesh_file *f, int64_t begin, int64_t end,
+                                  rg_input_errors *input_errors) {
     bool several = end - begin > 1;
-    rg_mesh_slab *slab = read_run(f, begin, end, several ? NULL : faults);
+    rg_mesh_slab *slab = read_run(f, begin, end, several ? NULL : input_errors);
     if (slab == NULL && several) {
         int64_t middle = begin + (end - begin) / 2;
-        rg_mesh_slab_free(read_or_tell(f, begin, middle, faults));
-        rg_mesh_slab_free(read_or_tell(f, middle, end, faults));
+        rg_mesh_slab_free(read_or_tell(f, begin, middle, input_errors));
+        rg_mesh_slab_free(read_or_tell(f, middle, end, input_errors));
     }
     return slab;
 }
 
-rg_mesh_slab *rg_mesh_file_slab(rg_mesh_file *f, int64_t begin, int64_t end, rg_faults *faults) {
-    int64_t before = faults->count;
-    rg_mesh_slab *slab = read_or_tell(f, begin, end, faults);
-    if (slab == NULL && faults->count == before) {
+rg_mesh_slab *rg_mesh_file_slab(rg_mesh_file *f, int64_t begin, int64_t end, rg_input_errors *input_errors) {
+    int64_t before = input_errors->count;
+    rg_mesh_slab *slab = read_or_tell(f, begin, end, input_errors);
+    if (slab == NULL && input_errors->count == before) {
         refuse(f, "tiles", "%" PRId64 " to %" PRId64 " cannot be read at once", begin, end - 1);
     }
     return slab;
@@ -642,7 +643,8 @@ int rg_mesh_file_partitions(rg_mesh_file *f, int **parts) {
 /* ---- the whole ---- */
 
 /* One position for each vertex from those that the tiles list, [vertices][3]. */
-static double *merge_positions(const rg_mesh_file *f, const rg_mesh_slab *slab, rg_faults *faults) {
+static double *merge_positions(const rg_mesh_file *f, const rg_mesh_slab *slab,
+                               rg_input_errors *input_errors) {
     double *x = RG_NEW(double, 3 * (size_t)f->head.vertices);
     int8_t *seen = RG_NEW(int8_t, (size_t)f->head.vertices);
     rg_gid used = 0;
@@ -652,14 +654,14 @@ static double *merge_positions(const rg_mesh_file *f, const rg_mesh_slab *slab, 
             memcpy(x + 3 * v, slab->x + 3 * i, 3 * sizeof *x);
             used++;
         } else if (seen[v] == 1 && memcmp(x + 3 * v, slab->x + 3 * i, 3 * sizeof *x) != 0) {
-            rg_faults_add(faults, v, 0, "x: vertex %" PRId64 " is at two places", v);
+            rg_input_errors_add(input_errors, v, 0, "x: vertex %" PRId64 " is at two places", v);
             seen[v] = 2;
         }
         seen[v] = seen[v] == 2 ? 2 : 1;
     }
     if (used != f->head.vertices) {
-        rg_faults_add(faults, -1, 0, "vertices: %" PRId64 ", but the elements use %" PRId64, f->head.vertices,
-                      used);
+        rg_input_errors_add(input_errors, -1, 0, "vertices: %" PRId64 ", but the elements use %" PRId64,
+                            f->head.vertices, used);
     }
     rg_free(seen);
     return x;
@@ -699,12 +701,12 @@ static void check_box(const rg_mesh_file *f, const rg_mesh *mesh) {
 }
 
 rg_mesh *rg_mesh_file_read(const char *path) {
-    rg_faults faults = {.name = path};
+    rg_input_errors input_errors = {.name = path};
     rg_mesh_file *f = rg_mesh_file_open(path);
-    rg_mesh_slab *slab = rg_mesh_file_slab(f, 0, f->head.tiles, &faults);
-    rg_faults_end(&faults);
-    double *x = merge_positions(f, slab, &faults);
-    rg_faults_end(&faults);
+    rg_mesh_slab *slab = rg_mesh_file_slab(f, 0, f->head.tiles, &input_errors);
+    rg_input_errors_end(&input_errors);
+    double *x = merge_positions(f, slab, &input_errors);
+    rg_input_errors_end(&input_errors);
     rg_mesh *mesh = adopt(slab, x, &f->head);
     check_box(f, mesh);
     rg_mesh_check(mesh, path);

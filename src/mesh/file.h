@@ -40,13 +40,13 @@
  * Vertices keep the numbers of the input, since these orient all faces.
  *
  * Errors end the run with status RG_USAGE and a message that names file and dataset; of the rows of tiles all
- * that is wrong is told at once (base/faults.h). */
+ * that is wrong is told at once (base/input_errors.h). */
 #ifndef RG_MESH_FILE_H
 #define RG_MESH_FILE_H
 
 #include <stdbool.h>
 
-#include "base/faults.h"
+#include "base/input_errors.h"
 #include "mesh/mesh.h"
 #include "mesh/tile_graph.h"
 
@@ -91,8 +91,9 @@ rg_mesh_file *rg_mesh_file_open_on_all(const char *path, MPI_Comm comm);
 const rg_mesh_header *rg_mesh_file_header(const rg_mesh_file *f);
 
 /* Tiles begin .. end - 1, checked against their checksums, for indices out of range, and each element by
- * itself (rg_tet_sound). Caller frees. NULL: something is wrong, and `faults` has it, told tile by tile. */
-rg_mesh_slab *rg_mesh_file_slab(rg_mesh_file *f, int64_t begin, int64_t end, rg_faults *faults);
+ * itself (rg_tet_sound). Caller frees. NULL: something is wrong, and `input_errors` has it, told tile by
+ * tile. */
+rg_mesh_slab *rg_mesh_file_slab(rg_mesh_file *f, int64_t begin, int64_t end, rg_input_errors *input_errors);
 void rg_mesh_slab_free(rg_mesh_slab *slab);
 
 /* The number that element `element` had in the input, for messages; its number in the file if that cannot be

@@ -4,7 +4,7 @@
 #include <stdbool.h>
 #include <stdlib.h>
 
-#include "base/faults.h"
+#include "base/input_errors.h"
 #include "base/mem.h"
 #include "layout.h"
 
@@ -72,22 +72,23 @@ static long long name(const rg_mesh *mesh, rg_gid slot) {
     return (long long)rg_mesh_original(mesh, slot / 4);
 }
 
-static void tell_third(const rg_mesh *mesh, rg_gid low, const struct face *face, rg_faults *faults) {
-    rg_faults_add(faults, face[0].slot, face[2].slot,
-                  "elements %lld, %lld and %lld share the face with vertices %lld, %lld and %lld",
-                  name(mesh, face[0].slot), name(mesh, face[1].slot), name(mesh, face[2].slot),
-                  (long long)low, (long long)face[0].middle, (long long)face[0].high);
+static void tell_third(const rg_mesh *mesh, rg_gid low, const struct face *face,
+                       rg_input_errors *input_errors) {
+    rg_input_errors_add(input_errors, face[0].slot, face[2].slot,
+                        "elements %lld, %lld and %lld share the face with vertices %lld, %lld and %lld",
+                        name(mesh, face[0].slot), name(mesh, face[1].slot), name(mesh, face[2].slot),
+                        (long long)low, (long long)face[0].middle, (long long)face[0].high);
 }
 
 /* Joins the faces of lowest vertex `low` that are equal; the others are on the surface. */
-static void match(rg_mesh *mesh, rg_gid low, struct bundle *b, rg_faults *faults) {
+static void match(rg_mesh *mesh, rg_gid low, struct bundle *b, rg_input_errors *input_errors) {
     qsort(b->face, b->count, sizeof *b->face, by_vertices);
     for (size_t i = 0; i < b->count; i++) {
         const struct face *f = b->face + i;
         size_t left = b->count - i;
         if (left > 1 && same_vertices(f, f + 1)) {
             if (left > 2 && same_vertices(f, f + 2)) {
-                tell_third(mesh, low, f, faults);
+                tell_third(mesh, low, f, input_errors);
             }
             join(mesh, f[0].slot, f[1].slot);
             join(mesh, f[1].slot, f[0].slot);
@@ -102,16 +103,16 @@ static void match(rg_mesh *mesh, rg_gid low, struct bundle *b, rg_faults *faults
 void rg_mesh_connect(rg_mesh *mesh) {
     rg_gid *head = list_faces(mesh);
     struct bundle bundle = {0};
-    rg_faults faults = {.name = "mesh"};
+    rg_input_errors input_errors = {.name = "mesh"};
     for (rg_gid v = 0; v < mesh->vertices; v++) {
         if (head[v] >= 0) {
             collect(mesh, head[v], &bundle);
-            match(mesh, v, &bundle, &faults);
+            match(mesh, v, &bundle, &input_errors);
         }
     }
     rg_free(bundle.face);
     rg_free(head);
-    rg_faults_end(&faults);
+    rg_input_errors_end(&input_errors);
 }
 
 void rg_mesh_free(rg_mesh *mesh) {

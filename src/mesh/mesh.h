@@ -129,7 +129,7 @@ rg_part *rg_part_distribute_weighted(const rg_mesh *mesh, int tile, double *weig
  * rg_part_distribute of the whole mesh with the same partition. Ends the run (RG_USAGE) if the file is
  * damaged, an element has no volume, elements on both sides of a face do not agree about it, graph, counts or
  * box are not those of the elements, or the surface is not closed (partition/part_check.h): with messages
- * that do not depend on the number of ranks (base/faults.h). The caller owns the result. */
+ * that do not depend on the number of ranks (base/input_errors.h). The caller owns the result. */
 rg_part *rg_part_read(const char *path, double *weight, MPI_Comm comm);
 
 /* Number of the surface set or volume set of that name; -1 if the mesh has none. */

@@ -5,7 +5,7 @@
 
 #include "base/error.h"
 #include "base/mem.h"
-#include "base/spot.h"
+#include "base/first_bad.h"
 #include "mesh/info.h"
 #include "output/snapshot.h"
 #include "partition/material.h"

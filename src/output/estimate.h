@@ -21,7 +21,7 @@ typedef struct {
 /* Collective; needs rg_spectrum to have run. */
 rg_estimate rg_estimate_run(const rg_solver *s);
 
-/* Warns of materials without elements (rank 0 only): once a run, which may deal its tiles anew. */
+/* Warns of materials without elements (rank 0 only): once a run, which may repartition the mesh. */
 void rg_estimate_warn(const rg_case *c, const rg_estimate *e);
 
 /* Prints it for a person, with a warning where numbers look as if they were not in SI units (rank 0 only). */

@@ -7,7 +7,7 @@
 #include "base/error.h"
 #include "base/mem.h"
 #include "base/principal.h"
-#include "base/spot.h"
+#include "base/first_bad.h"
 #include "diagnostics/crack_surface.h"
 #include "domain/element.h"
 #include "solver/tile.h"
@@ -124,14 +124,14 @@ static void find_region(rg_snapshots *w, const rg_solver *s) {
     rg_cell_source cells = cells_of(&x);
     double *record = RG_NEW(double, cells.cells *NODAL);
     size_t *row = RG_NEW(size_t, w->slab->count);
-    rg_spot bad = {.which = RG_NOWHERE};
+    rg_first_bad bad = {.which = RG_NOWHERE};
     for (size_t k = 0; k < cells.windows; k++) {
         size_t n = cells.get(&x, k, record);
         for (size_t i = 0; i < n; i++) {
             double centre[3]; /* of the corners */
             double here = region_at(s->input->output.region, record + i * NODAL, 4, centre);
             if (!isfinite(here)) {
-                rg_spot_note(&bad, 0, centre, here);
+                rg_first_bad_note(&bad, 0, centre, here);
             }
             if (here != 0) {
                 row[w->written++] = k * x.rows + i;
@@ -140,7 +140,7 @@ static void find_region(rg_snapshots *w, const rg_solver *s) {
     }
     w->row = row;
     rg_free(record);
-    if (rg_spot_lowest(&bad, s->comm)) {
+    if (rg_first_bad_lowest(&bad, s->comm)) {
         rg_speak(s->comm);
         rg_fatal(RG_USAGE, "%s: output.region: %s is not finite at (%g, %g, %g)", s->input->path,
                  rg_expr_text(s->input->output.region), bad.x[0], bad.x[1], bad.x[2]);
@@ -425,7 +425,7 @@ void rg_snapshots_write(rg_snapshots *w, rg_solver *s, const rg_fragment_parts *
         write_nodal(w, s, "displacement", "m", s->u);
     }
     if (w->fields & RG_FIELD_VELOCITY) {
-        write_nodal(w, s, "velocity", "m/s", s->now);
+        write_nodal(w, s, "velocity", "m/s", s->step_velocity);
     }
     write_states(w, s);
     if (w->fields & RG_FIELD_RANK) {

@@ -82,7 +82,7 @@ static void write_physics(FILE *f, const rg_summary *m, const rg_ledger *l) {
     rg_json_number(f, "broken_area_m2", l->last.broken_area);
     rg_json_number(f, "failed_area_m2", l->last.failed_area);
     rg_json_number(f, "halo_doubles_per_face",
-                   (RG_TRACE_ROW + RG_SEAM_ROW) * (double)sizeof(rg_real) / sizeof(double));
+                   (RG_TRACE_ROW + RG_TILE_FACE_ROW) * (double)sizeof(rg_real) / sizeof(double));
     rg_json_vector(f, "momentum", l->last.momentum);
     rg_json_vector(f, "angular_momentum", l->last.angular_momentum);
     rg_json_text(f, "status", m->failure[0] == '\0' ? "completed" : m->failure);

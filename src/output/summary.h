@@ -8,13 +8,13 @@
 
 typedef struct {
     rg_estimate estimate;
-    int64_t first_step;        /* that this program did: not 0 after a restart */
-    int partitions;            /* of the mesh, in this program: 1, and one more each time it was dealt anew */
-    double dt_first;           /* s */
-    double setup_seconds;      /* wall time before the time loop */
-    double loop_seconds;       /* wall time of the time loop without output */
-    double output_seconds;     /* wall time of output within the time loop */
-    int checkpoints;           /* written */
+    int64_t first_step;    /* that this program did: not 0 after a restart */
+    int partitions;        /* of the mesh, in this program: 1, and one more each time it was repartitioned */
+    double dt_first;       /* s */
+    double setup_seconds;  /* wall time before the time loop */
+    double loop_seconds;   /* wall time of the time loop without output */
+    double output_seconds; /* wall time of output within the time loop */
+    int checkpoints;       /* written */
     double checkpoint_seconds; /* wall time of that */
     double checkpoint_median;  /* of one of them, on the last partition that wrote any (s) */
     double halo_wait_seconds;  /* longest wait for messages on any rank; filled by rg_summary_write */

@@ -8,7 +8,7 @@
 #include "base/error.h"
 #include "base/exchange.h"
 #include "base/mem.h"
-#include "base/spot.h"
+#include "base/first_bad.h"
 #include "case/problem.h"
 #include "mesh/gid_map.h"
 
@@ -55,7 +55,7 @@ static void find_centroid(const rg_element *e, double x[3]) {
 }
 
 /* Asks all entries for element k; where[i] are a thread's own expressions. */
-static void claim(map *m, rg_lid k, rg_expr *const where[], int64_t claimed[], rg_spot *bad) {
+static void claim(map *m, rg_lid k, rg_expr *const where[], int64_t claimed[], rg_first_bad *bad) {
     rg_element *e = &m->part->element[k];
     double x[3];
     find_centroid(e, x);
@@ -63,7 +63,7 @@ static void claim(map *m, rg_lid k, rg_expr *const where[], int64_t claimed[], r
         double here = where[i] != NULL ? rg_expr_value(where[i], x, 0) : e->region == m->region[i];
         if (!isfinite(here)) {
 #pragma omp critical
-            rg_spot_note(bad, i, x, here);
+            rg_first_bad_note(bad, i, x, here);
         } else if (here != 0) {
             e->material = (uint8_t)(i + 1);
             claimed[i]++;
@@ -72,8 +72,8 @@ static void claim(map *m, rg_lid k, rg_expr *const where[], int64_t claimed[], r
 }
 
 /* Of all entries and ranks the lowest place is told. */
-static void refuse_values(const map *m, rg_spot *bad) {
-    if (rg_spot_lowest(bad, m->comm)) {
+static void refuse_values(const map *m, rg_first_bad *bad) {
+    if (rg_first_bad_lowest(bad, m->comm)) {
         rg_speak(m->comm);
         rg_fatal(RG_USAGE, "%s: materials[%d].where: %s is %g at (%g, %g, %g), the centroid of an element",
                  m->c->path, (int)bad->which, rg_expr_text(m->c->other[bad->which].where), bad->value,
@@ -82,7 +82,7 @@ static void refuse_values(const map *m, rg_spot *bad) {
 }
 
 static void claim_all(map *m) {
-    rg_spot bad = {.which = RG_NOWHERE};
+    rg_first_bad bad = {.which = RG_NOWHERE};
 #pragma omp parallel
     {
         rg_expr *where[RG_MAX_MATERIALS];

@@ -1,4 +1,4 @@
-/* Distribution: rank 0 deals out the tiles and sends each rank the elements of its own, tile by tile, so that
+/* Rank 0 distributes the tiles and sends each rank the elements of its own, tile by tile, so that
  * the whole mesh never exists twice. */
 #include "mesh/mesh.h"
 
@@ -8,12 +8,12 @@
 #include "base/error.h"
 #include "base/mem.h"
 #include "base/tet.h"
-#include "partition/deal.h"
+#include "partition/distribution.h"
 
 /* What rank 0 packs from. */
 struct source {
     const rg_mesh *mesh;
-    const rg_deal *deal;
+    const rg_distribution *distribution;
     double *volume; /* [elements] m^3, computed once so that all ranks see the same bits */
 };
 
@@ -49,7 +49,7 @@ static void pack_element(const struct source *s, rg_gid e, rg_element *out) {
         memcpy(out->x[f], corner(s->mesh, e, f), sizeof out->x[f]);
         out->neighbour[f] = other;
         out->other_volume[f] = s->volume[other >= 0 ? other : e];
-        out->owner[f] = other >= 0 ? s->deal->owner[other / s->deal->tile] : -1;
+        out->owner[f] = other >= 0 ? s->distribution->owner[other / s->distribution->tile] : -1;
         out->face[f] = s->mesh->face[4 * e + f];
         out->set[f] = s->mesh->set[4 * e + f];
     }
@@ -58,7 +58,7 @@ static void pack_element(const struct source *s, rg_gid e, rg_element *out) {
 
 /* Packs tile t to `out`; returns its number of elements. */
 static rg_lid pack_tile(const struct source *s, int64_t t, rg_element *out) {
-    rg_gid begin = t * s->deal->tile, end = begin + s->deal->tile;
+    rg_gid begin = t * s->distribution->tile, end = begin + s->distribution->tile;
     end = end < s->mesh->elements ? end : s->mesh->elements;
     for (rg_gid e = begin; e < end; e++) {
         pack_element(s, e, out + (e - begin));
@@ -68,7 +68,7 @@ static rg_lid pack_tile(const struct source *s, int64_t t, rg_element *out) {
 
 /* One message a tile: of bounded size, whatever the mesh. */
 static void send_parts(const struct source *s, MPI_Comm comm) {
-    const rg_deal *d = s->deal;
+    const rg_distribution *d = s->distribution;
     rg_element *buffer = RG_NEW(rg_element, (size_t)d->tile);
     for (int64_t k = d->start[1]; k < d->start[d->ranks]; k++) {
         rg_lid count = pack_tile(s, d->list[k], buffer);
@@ -108,21 +108,21 @@ static void share_names(char *const from[], int *count, char *name[], int rank, 
 }
 
 /* Rank 0's side: packs and sends what the other ranks wait for, and its own part. */
-static void hand_out(const rg_mesh *mesh, const rg_deal *deal, rg_part *own, MPI_Comm comm) {
-    struct source s = {mesh, deal, compute_volumes(mesh)};
+static void hand_out(const rg_mesh *mesh, const rg_distribution *distribution, rg_part *own, MPI_Comm comm) {
+    struct source s = {mesh, distribution, compute_volumes(mesh)};
     send_parts(&s, comm);
     pack_own(&s, own);
     rg_free(s.volume);
 }
 
-static rg_deal *deal_mesh(const rg_mesh *mesh, int tile, double *weight, int ranks) {
+static rg_distribution *distribute_mesh(const rg_mesh *mesh, int tile, double *weight, int ranks) {
     rg_tile_graph *g = rg_tile_graph_make(mesh, tile);
     g->weight = weight;
     int32_t *owner = RG_NEW(int32_t, (size_t)g->tiles);
     rg_tile_graph_partition(g, ranks, owner);
-    rg_deal *deal = rg_deal_make(g, owner, ranks);
+    rg_distribution *distribution = rg_distribution_make(g, owner, ranks);
     rg_tile_graph_free(g);
-    return deal;
+    return distribution;
 }
 
 rg_part *rg_part_distribute_weighted(const rg_mesh *mesh, int tile, double *weight, MPI_Comm comm) {
@@ -130,22 +130,22 @@ rg_part *rg_part_distribute_weighted(const rg_mesh *mesh, int tile, double *weig
     MPI_Comm_rank(comm, &rank);
     MPI_Comm_size(comm, &ranks);
     rg_part *own = RG_NEW(rg_part, 1);
-    rg_deal *deal = NULL;
+    rg_distribution *distribution = NULL;
     if (rank == 0) {
         own->interfaces = count_interfaces(mesh);
         own->sets = mesh->sets;
         own->regions = mesh->regions;
         rg_mesh_box_around(mesh, own->box);
-        deal = deal_mesh(mesh, tile, weight, ranks);
+        distribution = distribute_mesh(mesh, tile, weight, ranks);
     }
-    rg_deal_share(deal, own, comm);
+    rg_distribution_share(distribution, own, comm);
     MPI_Bcast(&own->interfaces, 1, MPI_INT64_T, 0, comm);
     MPI_Bcast(own->box, 6, MPI_DOUBLE, 0, comm);
     share_names(rank == 0 ? mesh->set_name : NULL, &own->sets, own->set_name, rank, comm);
     share_names(rank == 0 ? mesh->region_name : NULL, &own->regions, own->region_name, rank, comm);
     if (rank == 0) {
-        hand_out(mesh, deal, own, comm);
-        rg_deal_free(deal);
+        hand_out(mesh, distribution, own, comm);
+        rg_distribution_free(distribution);
     } else {
         receive_part(own, comm);
     }

@@ -125,7 +125,8 @@ static int by_elements(const void *a, const void *b) {
 }
 
 /* Two elements may share several faces in place: they are told once. */
-static void check_pairs(const face *all, int64_t faces, const rg_mesh_file *file, rg_faults *faults) {
+static void check_pairs(const face *all, int64_t faces, const rg_mesh_file *file,
+                        rg_input_errors *input_errors) {
     pair *found = RG_NEW(pair, (size_t)faces + 1);
     size_t pairs = 0;
     for (int64_t i = 1; i < faces; i++) {
@@ -137,9 +138,9 @@ static void check_pairs(const face *all, int64_t faces, const rg_mesh_file *file
     for (size_t i = 0; i < pairs; i++) {
         const rg_gid *e = found[i].element;
         bool told = i > 0 && by_elements(&found[i - 1], &found[i]) == 0;
-        char *words = told ? NULL : rg_faults_place(faults, e[0], e[1]);
+        char *words = told ? NULL : rg_input_errors_place(input_errors, e[0], e[1]);
         if (words != NULL) {
-            snprintf(words, RG_FAULT_WORDS,
+            snprintf(words, RG_INPUT_ERROR_WORDS,
                      "elements %" PRId64 " and %" PRId64
                      " have a face at the same place, but are not neighbours: the mesh is open there",
                      rg_mesh_file_original(file, e[0]), rg_mesh_file_original(file, e[1]));
@@ -187,15 +188,16 @@ static rg_mesh *surface_mesh(const outer *list, int count) {
     return m;
 }
 
-static void check_surface(const outer *list, int count, const rg_mesh_file *file, rg_faults *faults) {
+static void check_surface(const outer *list, int count, const rg_mesh_file *file,
+                          rg_input_errors *input_errors) {
     rg_mesh *surface = surface_mesh(list, count);
-    rg_faults found = {.name = faults->name};
+    rg_input_errors found = {.name = input_errors->name};
     rg_mesh_check_surface(surface, &found);
     for (rg_gid e = 0; e < surface->elements && found.count > 0; e++) { /* now that they are needed */
         surface->original[e] = rg_mesh_file_original(file, list[e].id);
     }
     if (found.count > 0) {
-        rg_mesh_check_surface(surface, faults);
+        rg_mesh_check_surface(surface, input_errors);
     }
     rg_mesh_free(surface);
 }
@@ -226,7 +228,7 @@ static int64_t third(const rg_part *part, const face *all, int64_t faces, int64_
 
 /* Looks for the surface's faces among the own ones between elements. */
 static void check_inside(const rg_part *part, const face *all, int64_t faces, const rg_mesh_file *file,
-                         rg_faults *faults) {
+                         rg_input_errors *input_errors) {
     int64_t wrong = 0, slots = 4 * (int64_t)part->elements;
 #pragma omp parallel for schedule(static) reduction(+ : wrong)
     for (int64_t slot = 0; slot < slots; slot++) {
@@ -235,9 +237,10 @@ static void check_inside(const rg_part *part, const face *all, int64_t faces, co
     for (int64_t slot = 0; slot < slots && wrong > 0; slot++) {
         const rg_element *e = &part->element[slot / 4];
         int64_t at = third(part, all, faces, slot);
-        char *words = at >= 0 ? rg_faults_place(faults, e->id, slot % 4 - 4) : NULL;
+        char *words = at >= 0 ? rg_input_errors_place(input_errors, e->id, slot % 4 - 4) : NULL;
         if (words != NULL) {
-            snprintf(words, RG_FAULT_WORDS, "elements %" PRId64 ", %" PRId64 " and %" PRId64 " share a face",
+            snprintf(words, RG_INPUT_ERROR_WORDS,
+                     "elements %" PRId64 ", %" PRId64 " and %" PRId64 " share a face",
                      rg_mesh_file_original(file, e->id), rg_mesh_file_original(file, e->neighbour[slot % 4]),
                      rg_mesh_file_original(file, all[at].element));
         }
@@ -245,25 +248,25 @@ static void check_inside(const rg_part *part, const face *all, int64_t faces, co
 }
 
 void rg_part_check(const rg_part *part, const char *name, const rg_mesh_file *file, MPI_Comm comm) {
-    rg_faults faults = {.name = name};
+    rg_input_errors input_errors = {.name = name};
     int count, rank;
     int64_t faces = 0;
     MPI_Comm_rank(comm, &rank);
     outer *list = gather_outer(part, comm, &count);
     face *all = list_faces(list, count, &faces);
-    check_pairs(all, faces, file, &faults); /* rank 0's; the others have none yet */
+    check_pairs(all, faces, file, &input_errors); /* rank 0's; the others have none yet */
     MPI_Bcast(&faces, 1, MPI_INT64_T, 0, comm);
     if (rank != 0) {
         rg_free(all);
         all = RG_NEW(face, (size_t)faces + 1);
     }
     MPI_Bcast(all, (int)(2 * faces), MPI_UINT64_T, 0, comm);
-    check_inside(part, all, faces, file, &faults);
+    check_inside(part, all, faces, file, &input_errors);
     rg_free(all);
-    rg_faults_agree(&faults, comm);
+    rg_input_errors_agree(&input_errors, comm);
     if (rank == 0) {
-        check_surface(list, count, file, &faults);
+        check_surface(list, count, file, &input_errors);
     }
     rg_free(list);
-    rg_faults_agree(&faults, comm);
+    rg_input_errors_agree(&input_errors, comm);
 }

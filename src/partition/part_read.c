@@ -6,14 +6,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/faults.h"
+#include "base/input_errors.h"
 #include "base/hash.h"
 #include "base/mem.h"
 #include "base/tet.h"
 #include "layout.h"
 #include "mesh/file.h"
 #include "mesh/mesh.h"
-#include "partition/deal.h"
+#include "partition/distribution.h"
 #include "partition/part_check.h"
 
 enum { SLAB = 256 }; /* most tiles at once: what is read beside the part stays small */
@@ -23,7 +23,7 @@ typedef struct {
     int rank, ranks;
     rg_mesh_file *file;
     const rg_mesh_header *head;
-    rg_faults faults;
+    rg_input_errors input_errors;
     int32_t *owner;   /* [tiles] of the mesh */
     uint64_t *beside; /* [tiles]: what the graph says of their neighbours, see beside() */
     rg_lid *place;    /* [tiles]: where the elements of an own tile begin */
@@ -50,9 +50,9 @@ static uint64_t *sum_graph(const rg_tile_graph *g) {
 }
 
 /* The stored partition for so many ranks, or else METIS's; that knew of no weights. */
-static rg_deal *deal_out(reader *r, double *weight) {
+static rg_distribution *distribute(reader *r, double *weight) {
     int ranks = r->ranks;
-    rg_mesh_file *f = rg_mesh_file_open(r->faults.name);
+    rg_mesh_file *f = rg_mesh_file_open(r->input_errors.name);
     rg_tile_graph *g = rg_mesh_file_graph(f);
     r->beside = sum_graph(g);
     int32_t *owner = RG_NEW(int32_t, (size_t)g->tiles);
@@ -60,17 +60,17 @@ static rg_deal *deal_out(reader *r, double *weight) {
     if (weight != NULL || !rg_mesh_file_partition(f, ranks, owner)) {
         rg_tile_graph_partition(g, ranks, owner);
     }
-    rg_deal *deal = rg_deal_make(g, owner, ranks);
+    rg_distribution *distribution = rg_distribution_make(g, owner, ranks);
     rg_tile_graph_free(g);
     rg_mesh_file_close(f);
-    return deal;
+    return distribution;
 }
 
-static void share_owners(reader *r, const rg_deal *deal) {
+static void share_owners(reader *r, const rg_distribution *distribution) {
     int64_t tiles = (r->own->total + r->own->tile - 1) / r->own->tile;
     r->owner = RG_NEW(int32_t, (size_t)tiles);
     if (r->rank == 0) {
-        memcpy(r->owner, deal->owner, (size_t)tiles * sizeof *r->owner);
+        memcpy(r->owner, distribution->owner, (size_t)tiles * sizeof *r->owner);
     }
     MPI_Bcast(r->owner, (int)tiles, MPI_INT32_T, 0, r->comm);
     r->beside = r->rank == 0 ? r->beside : RG_NEW(uint64_t, (size_t)tiles);
@@ -121,7 +121,7 @@ static rg_element *element_at(const reader *r, rg_gid id) {
 }
 
 static void read_slab(reader *r, int64_t begin, int64_t end) {
-    rg_mesh_slab *s = rg_mesh_file_slab(r->file, begin, end, &r->faults);
+    rg_mesh_slab *s = rg_mesh_file_slab(r->file, begin, end, &r->input_errors);
     rg_gid elements = s != NULL ? s->elements : 0;
 #pragma omp parallel for schedule(static)
     for (rg_gid i = 0; i < elements; i++) {
@@ -203,9 +203,9 @@ static void tell_quarrels(reader *r, quarrels *q) {
     for (size_t i = 0; i < q->count; i++) {
         const rg_gid *pair = q->pair[i];
         bool first = i == 0 || by_elements(pair - 2, pair) != 0;
-        char *words = first ? rg_faults_place(&r->faults, pair[0], pair[1]) : NULL;
+        char *words = first ? rg_input_errors_place(&r->input_errors, pair[0], pair[1]) : NULL;
         if (words != NULL) {
-            snprintf(words, RG_FAULT_WORDS,
+            snprintf(words, RG_INPUT_ERROR_WORDS,
                      "neighbour: elements %" PRId64 " and %" PRId64 " do not agree that they share a face",
                      rg_mesh_file_original(r->file, pair[0]), rg_mesh_file_original(r->file, pair[1]));
         }
@@ -315,8 +315,9 @@ static void check_graph(reader *r) {
             }
         }
         if (sum != r->beside[id]) {
-            rg_faults_add(&r->faults, id, 0,
-                          "tile_neighbour: not the neighbours of tile %" PRId64 ", or not as many faces", id);
+            rg_input_errors_add(
+                &r->input_errors, id, 0,
+                "tile_neighbour: not the neighbours of tile %" PRId64 ", or not as many faces", id);
         }
     }
 }
@@ -340,35 +341,37 @@ static void check_header(reader *r) {
     MPI_Allreduce(MPI_IN_PLACE, &sides, 1, MPI_INT64_T, MPI_SUM, r->comm);
     MPI_Allreduce(MPI_IN_PLACE, box, 6, MPI_DOUBLE, MPI_MAX, r->comm);
     if (r->rank == 0 && sides != 2 * own->interfaces) {
-        rg_faults_add(&r->faults, -2, 0, "interfaces: %" PRId64 ", but the elements have %" PRId64,
-                      own->interfaces, sides / 2);
+        rg_input_errors_add(&r->input_errors, -2, 0,
+                            "interfaces: %" PRId64 ", but the elements have %" PRId64, own->interfaces,
+                            sides / 2);
     }
     for (int i = 0; i < 3; i++) {
         if (r->rank == 0 && (own->box[1][i] != box[i] || own->box[0][i] != -box[3 + i])) {
-            rg_faults_add(&r->faults, -1, 0, "box: is not that of the vertices");
+            rg_input_errors_add(&r->input_errors, -1, 0, "box: is not that of the vertices");
             return;
         }
     }
 }
 
 rg_part *rg_part_read(const char *path, double *weight, MPI_Comm comm) {
-    reader r = {.comm = comm, .faults = {.name = path}, .own = RG_NEW(rg_part, 1)};
+    reader r = {.comm = comm, .input_errors = {.name = path}, .own = RG_NEW(rg_part, 1)};
     MPI_Comm_rank(comm, &r.rank);
     MPI_Comm_size(comm, &r.ranks);
-    rg_deal *deal = r.rank == 0 ? deal_out(&r, weight) : NULL; /* tells what is wrong with the file as such */
-    rg_deal_share(deal, r.own, comm);
-    share_owners(&r, deal);
-    rg_deal_free(deal);
+    rg_distribution *distribution =
+        r.rank == 0 ? distribute(&r, weight) : NULL; /* tells what is wrong with the file as such */
+    rg_distribution_share(distribution, r.own, comm);
+    share_owners(&r, distribution);
+    rg_distribution_free(distribution);
     r.file = rg_mesh_file_open_on_all(path, comm);
     r.head = rg_mesh_file_header(r.file);
     take_header(&r);
     read_tiles(&r);
-    rg_faults_agree(&r.faults, comm);
+    rg_input_errors_agree(&r.input_errors, comm);
     fill_neighbours(&r);
-    rg_faults_agree(&r.faults, comm);
+    rg_input_errors_agree(&r.input_errors, comm);
     check_graph(&r);
     check_header(&r);
-    rg_faults_agree(&r.faults, comm);
+    rg_input_errors_agree(&r.input_errors, comm);
     rg_part_check(r.own, path, r.file, comm);
     rg_mesh_file_close(r.file);
     rg_free(r.owner);

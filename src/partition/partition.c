@@ -107,7 +107,7 @@ static double slowest(const struct graph *g, double elements, int parts, const i
 }
 
 /* The best of METIS's methods. With few tiles for each part any of them may go wrong: held to a small excess,
- * the k-way method deals out the tiles almost at random (three times the faces); recursive bisection is out
+ * the k-way method distributes the tiles almost at random (three times the faces); recursive bisection is out
  * of balance. */
 static void best_partition(struct graph *g, double elements, int parts, idx_t *result) {
     static const request all[] = {{METIS_PartGraphKway, 30},

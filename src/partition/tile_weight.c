@@ -4,7 +4,7 @@
 
 #include "base/error.h"
 #include "base/mem.h"
-#include "base/spot.h"
+#include "base/first_bad.h"
 #include "mesh/file.h"
 
 enum { SLAB = 256 }; /* tiles of a file at once */
@@ -12,8 +12,8 @@ enum { SLAB = 256 }; /* tiles of a file at once */
 typedef struct {
     const rg_case *c;
     int64_t tile;
-    double *weight; /* [tiles] */
-    rg_spot bad;    /* where it is not positive and finite */
+    double *weight;   /* [tiles] */
+    rg_first_bad bad; /* where it is not positive and finite */
 } scale;
 
 /* Adds mesh.weight at the centroid of an element with these corners to that of its tile. */
@@ -25,7 +25,7 @@ static void weigh(scale *s, rg_gid element, const double *const corner[4]) {
     double value = rg_expr_value(s->c->mesh.weight, x, 0);
     s->weight[element / s->tile] += value;
     if (!(value >= DBL_MIN && value <= DBL_MAX)) {
-        rg_spot_note(&s->bad, 0, x, value);
+        rg_first_bad_note(&s->bad, 0, x, value);
     }
 }
 
@@ -78,7 +78,7 @@ double *rg_tile_weights_of_file(const rg_case *c, MPI_Comm comm) {
     int rank, ranks;
     MPI_Comm_rank(comm, &rank);
     MPI_Comm_size(comm, &ranks);
-    rg_faults faults = {.name = c->mesh.file};
+    rg_input_errors input_errors = {.name = c->mesh.file};
     rg_mesh_file *f = rg_mesh_file_open_on_all(c->mesh.file, comm);
     const rg_mesh_header *h = rg_mesh_file_header(f);
     scale s = {.c = c,
@@ -87,14 +87,14 @@ double *rg_tile_weights_of_file(const rg_case *c, MPI_Comm comm) {
                .bad = {.which = RG_NOWHERE}};
     int64_t end = h->tiles * (rank + 1) / ranks;
     for (int64_t t = h->tiles * rank / ranks; t < end; t += SLAB) {
-        rg_mesh_slab *slab = rg_mesh_file_slab(f, t, t + SLAB < end ? t + SLAB : end, &faults);
+        rg_mesh_slab *slab = rg_mesh_file_slab(f, t, t + SLAB < end ? t + SLAB : end, &input_errors);
         if (slab != NULL) {
             weigh_slab(&s, slab);
             rg_mesh_slab_free(slab);
         }
     }
-    rg_faults_agree(&faults, comm);
-    if (rg_spot_lowest(&s.bad, comm)) {
+    rg_input_errors_agree(&input_errors, comm);
+    if (rg_first_bad_lowest(&s.bad, comm)) {
         rg_speak(comm);
         refuse(&s);
     }

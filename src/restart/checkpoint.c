@@ -12,10 +12,10 @@
 #include "base/files.h"
 #include "base/hash.h"
 #include "base/mem.h"
-#include "base/spot.h"
+#include "base/first_bad.h"
 #include "case/compare.h"
 #include "restart/checkpoint_folder.h"
-#include "restart/seal.h"
+#include "restart/checksum.h"
 #include "restart/state_table.h"
 #include "revision.h"
 
@@ -202,11 +202,11 @@ void rg_checkpoint_write(rg_checkpoints *k, int keep) {
     rg_make_directory(k->folder, s->comm);
     char *path = rg_folder_path(k->folder, s->step);
     rg_h5_file f;
-    rg_h5_create(&f, path, RG_SEAL, s->comm);
+    rg_h5_create(&f, path, RG_CHECKSUM, s->comm);
     put_all(&f, k);
     rg_h5_close(&f);
-    bool sealed = rg_seal_put(f.part, s->step, s->comm);
-    rg_h5_agree_on(&f, sealed, path, "seal the file", strerror(errno));
+    bool written = rg_checksum_put(f.part, s->step, s->comm);
+    rg_h5_agree_on(&f, written, path, "write the checksum of the file", strerror(errno));
     rg_h5_finish(&f, true);
     rg_free(path);
     sync_folder(k);
@@ -406,7 +406,7 @@ static bool get_all(rg_h5_file *f, rg_checkpoints *k) {
 
 /* One checkpoint; false, with the reason, if it is damaged. */
 static bool load(rg_checkpoints *k, const char *path, char *reason, size_t size) {
-    if (!rg_seal_holds(path, k->solver->comm, reason, size)) {
+    if (!rg_checksum_holds(path, k->solver->comm, reason, size)) {
         return false;
     }
     rg_h5_file f;

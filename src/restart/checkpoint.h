@@ -1,18 +1,18 @@
 /* Checkpoints: the whole state of a run in one file that knows nothing of ranks and threads.
  *
- * A checkpoint is dir/step-NNNNNNNNNNNN.h5: the seal (restart/seal.h), then HDF5:
+ * A checkpoint is dir/step-NNNNNNNNNNNN.h5: the checksum (restart/checksum.h), then HDF5:
  *
  *   attributes       program, revision, format, precision, instruction_set, elements, mesh (its hash)
  *   case             the values of the case that a restart may not change, one a line, as bytes [n][1]
  *   run/NAME         [rows][count]: what concerns the run as a whole
  *   element/NAME     [elements][count], by global element number
  *   face/key         [n][1], sorted: 4 * global element number + local face; face/NAME [n][count]: the
- *                    interfaces that have broken points (a seam's two copies are two of them)
+ *                    interfaces that have broken points (a tile-boundary face's two copies are two of them)
  *   face/rows        [elements][1]: how many of them each element has
  *   NAME/key, NAME/NAME, NAME/rows   the same of the list NAME
  *
- * It is written under another name, read back piece by piece, sealed, brought to the disk, and only then
- * gets its name: what has the name is good, until somebody damages it, and then that is noticed. */
+ * It is written under another name, read back piece by piece, given its checksum, brought to the disk, and
+ * only then gets its name: what has the name is good, until somebody damages it, and then that is noticed. */
 #ifndef RG_CHECKPOINT_H
 #define RG_CHECKPOINT_H
 

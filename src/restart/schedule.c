@@ -49,13 +49,13 @@ void rg_schedule_warn(const rg_schedule *t, const rg_solver *s) {
 bool rg_schedule_due(const rg_schedule *t, const rg_solver *s, bool end) {
     int64_t steps = s->input->checkpoint.steps;
     bool regular = steps > 0 || s->input->checkpoint.time > 0 || s->input->checkpoint.wall_time > 0;
-    if (s->wish >= RG_WISH_STOP) {
+    if (s->stop_request >= RG_REQUEST_STOP) {
         return !end; /* all but over: to the end */
     }
     if (s->step == t->last) {
         return false;
     }
-    return s->wish == RG_WISH_CHECKPOINT || (steps > 0 && s->step > 0 && s->step % steps == 0) ||
+    return s->stop_request == RG_REQUEST_CHECKPOINT || (steps > 0 && s->step > 0 && s->step % steps == 0) ||
            s->time >= t->next_time - 1e-6 * s->input->checkpoint.time || (end && regular);
 }
 

@@ -24,8 +24,8 @@ static void forget(rg_solver *s) {
     }
 }
 
-void rg_balance_start(rg_balance *b, rg_solver *s, bool dealt) {
-    *b = (rg_balance){.level = dealt ? 0 : 1, .now = 1, .spent = work_of(s), .step = s->step};
+void rg_balance_start(rg_balance *b, rg_solver *s, bool repartitioned) {
+    *b = (rg_balance){.level = repartitioned ? 0 : 1, .now = 1, .spent = work_of(s), .step = s->step};
     forget(s);
 }
 

@@ -7,7 +7,7 @@
 
 #include "base/error.h"
 #include "base/mem.h"
-#include "base/spot.h"
+#include "base/first_bad.h"
 #include "base/vector.h"
 #include "domain/element.h"
 #include "quadrature.h"

@@ -9,8 +9,8 @@
  * partition.
  *
  * Every rank knows all bodies and moves them alike: the force on a body is an exact sum over faces
- * (base/exact_sum.h), sent for under the seams and needed when the step ends. Bodies kick and drift like the
- * solid: what they gain in momentum, it loses. */
+ * (base/exact_sum.h), sent for under the tile-boundary faces and needed when the step ends. Bodies kick and
+ * drift like the solid: what they gain in momentum, it loses. */
 #ifndef RG_BODY_H
 #define RG_BODY_H
 
@@ -86,9 +86,9 @@ rg_bodies *rg_bodies_make(const rg_case *c, const rg_domain *d, const rg_part *p
 
 /* What forces do to the solid. */
 typedef struct {
-    double dt, dt_now; /* velocity += dt M^-1 f, now += dt_now M^-1 f */
-    rg_real *velocity; /* whole fields (layout.h) */
-    rg_real *now;      /* or NULL */
+    double dt, dt_now;      /* velocity += dt M^-1 f, step_velocity += dt_now M^-1 f */
+    rg_real *velocity;      /* whole fields (layout.h) */
+    rg_real *step_velocity; /* or NULL */
 } rg_contact_kick;
 
 /* Depth of point x below the surface of a body (m), negative outside; `normal` points out of the body. */

@@ -85,8 +85,8 @@ static void kick_element(const rg_bodies *b, const rg_contact_face *f, double fo
             }
             size_t at = rg_node_index(slot, n, c);
             kick->velocity[at] = (rg_real)(kick->velocity[at] + kick->dt * a / mass);
-            if (kick->now != NULL) {
-                kick->now[at] = (rg_real)(kick->now[at] + kick->dt_now * a / mass);
+            if (kick->step_velocity != NULL) {
+                kick->step_velocity[at] = (rg_real)(kick->step_velocity[at] + kick->dt_now * a / mass);
             }
         }
     }

@@ -8,7 +8,7 @@
 
 #include "base/error.h"
 #include "base/mem.h"
-#include "base/spot.h"
+#include "base/first_bad.h"
 #include "domain/element.h"
 #include "layout.h"
 
@@ -53,7 +53,7 @@ struct rg_constraints {
     pattern *patterns[1 << RG_NODES];
     bool lumped, varies; /* varies: some value depends on time or is a displacement */
     bool moving;         /* at the start the velocities are the initial ones */
-    rg_spot bad;         /* where a value was not finite first, and when */
+    rg_first_bad bad;    /* where a value was not finite first, and when */
 };
 
 /* ---- Patterns ---- */
@@ -228,18 +228,18 @@ static void note(rg_constraints *k, const entry *e, int i, double time) {
     double x[3];
     if (k->bad.which == RG_NOWHERE || k->bad.value == time) { /* what comes later only follows */
         rg_node_position(k->domain->corner + 12 * (size_t)e->slot, e->pattern->node[i], x);
-        rg_spot_note(&k->bad, e->boundary[i], x, time);
+        rg_first_bad_note(&k->bad, e->boundary[i], x, time);
     }
 }
 
 bool rg_constraints_told(const rg_constraints *k, char *words, size_t size, MPI_Comm comm) {
-    rg_spot bad = k->bad;
+    rg_first_bad bad = k->bad;
     double first = bad.which == RG_NOWHERE ? INFINITY : bad.value;
     MPI_Allreduce(MPI_IN_PLACE, &first, 1, MPI_DOUBLE, MPI_MIN, comm);
     if (bad.which != RG_NOWHERE && bad.value > first) { /* it only followed */
         bad.which = RG_NOWHERE;
     }
-    bool found = rg_spot_lowest(&bad, comm);
+    bool found = rg_first_bad_lowest(&bad, comm);
     if (found) {
         const rg_boundary *b = &k->input->boundary[bad.which];
         snprintf(words, size, "boundary[%d].%s: %s is not finite at (%g, %g, %g), t = %g s", (int)bad.which,

@@ -10,7 +10,7 @@
 #include <stdbool.h>
 
 #include "base/exact_sum.h"
-#include "base/spot.h"
+#include "base/first_bad.h"
 #include "case/case.h"
 #include "domain/assembly.h"
 #include "domain/domain.h"

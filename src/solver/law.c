@@ -48,7 +48,7 @@ rg_cohesive rg_law_make(const rg_case *c) {
 }
 
 double rg_law_steps(const rg_cohesive *law) {
-    return (facts_of(law).forms & RG_PACED) != 0 ? law->shape[RG_PACE_STEPS] : 0;
+    return (facts_of(law).forms & RG_LIMITS_STEP) != 0 ? law->shape[RG_LIMITER_STEPS] : 0;
 }
 
 size_t rg_crack_stride(const rg_cohesive *law) {

@@ -8,7 +8,7 @@
  */
 rg_cohesive rg_law_make(const rg_case *c);
 
-/* N of the adaptive time step (solver/pace.h); 0: the law has none, or it is not asked for. */
+/* N of the adaptive time step (solver/step_limiter.h); 0: the law has none, or it is not asked for. */
 double rg_law_steps(const rg_cohesive *law);
 
 /* Values of crack state, memory and friction of a block of interfaces. */

@@ -17,11 +17,11 @@ static void allocate_fields(rg_solver *s) {
     size_t blocks = d->blocks, rows = d->own_rows + d->shared;
     s->u = RG_NEW(rg_real, blocks * RG_NODE_BLOCK);
     s->velocity = RG_NEW(rg_real, blocks * RG_NODE_BLOCK);
-    s->now = RG_NEW(rg_real, blocks * RG_NODE_BLOCK);
+    s->step_velocity = RG_NEW(rg_real, blocks * RG_NODE_BLOCK);
     s->acceleration = s->assembly != NULL ? RG_NEW(rg_real, blocks * RG_NODE_BLOCK) : NULL;
     s->stiffening = RG_NEW(rg_real, blocks * RG_LANES);
     s->tile_stiffening = RG_NEW(rg_real, d->tiles);
-    s->tile_pace = rg_law_steps(&s->law) > 0 ? RG_NEW(double, d->tiles) : NULL;
+    s->tile_opening_rate = rg_law_steps(&s->law) > 0 ? RG_NEW(double, d->tiles) : NULL;
     s->crack_stride = rg_crack_stride(&s->law);
     s->crack = rg_alloc_sparse(d->iblocks * s->crack_stride, sizeof *s->crack);
     s->history = s->history_stride > 0 ? RG_NEW(rg_real, blocks * s->history_stride) : NULL;
@@ -33,14 +33,14 @@ static void allocate_fields(rg_solver *s) {
     s->active = RG_NEW(uint8_t, d->iblocks);
     s->rows[0] = RG_NEW(rg_real, rows * RG_TRACE_ROW);
     s->rows[1] = RG_NEW(rg_real, rows * RG_TRACE_ROW);
-    s->tractions = RG_NEW(rg_real, rows * RG_SEAM_ROW);
+    s->tractions = RG_NEW(rg_real, rows * RG_TILE_FACE_ROW);
     s->watched = RG_NEW(uint8_t, d->tiles);
     s->work = RG_NEW(rg_workspace, (size_t)s->threads);
 }
 
 static void place_tile(rg_solver *s, const rg_tile *t) {
     const size_t nodal = sizeof(rg_real[RG_NODE_BLOCK]), trace = sizeof(rg_real[RG_TRACE_ROW]);
-    const size_t end = t->row + rg_tile_seams(t) * RG_LANES;
+    const size_t end = t->row + rg_tile_face_blocks(t) * RG_LANES;
     const struct {
         void *array;              /* NULL: there is no such */
         size_t bytes, begin, end; /* of an item; the tile's items */
@@ -50,7 +50,7 @@ static void place_tile(rg_solver *s, const rg_tile *t) {
         {s->acceleration, nodal, t->begin, t->end},
         {s->heat, sizeof(double[RG_LANES]), t->begin, t->end},
         {s->history, s->history_stride * sizeof *s->history, t->begin, t->end},
-        {s->tractions, sizeof(rg_real[RG_SEAM_ROW]), t->row, end},
+        {s->tractions, sizeof(rg_real[RG_TILE_FACE_ROW]), t->row, end},
         {s->rows[0], trace, t->row, end},
         {s->rows[1], trace, t->row, end},
     };
@@ -94,8 +94,8 @@ static void build_domain(rg_solver *s, const rg_interface_material *m) {
     uint8_t *joined = rg_joined_faces(s->input, s->part, s->comm);
     s->domain = rg_domain_build(s->part, joined, s->rank, m);
     if (joined != NULL) {
-        s->joints = rg_joints_make(s->domain, s->part, joined, s->rank);
-        s->assembly = rg_assembly_make(s->domain, s->joints, s->material, s->comm);
+        s->conforming_faces = rg_conforming_faces_make(s->domain, s->part, joined, s->rank);
+        s->assembly = rg_assembly_make(s->domain, s->conforming_faces, s->material, s->comm);
     }
     rg_free(joined);
     rg_free(s->part->element);
@@ -135,7 +135,7 @@ rg_solver *rg_solver_make_from_part(const rg_case *input, rg_part *part, MPI_Com
     for (int k = 0; k < 2; k++) {
         s->halo_u[k] = rg_halo_make(s->domain, RG_TRACE_ROW, s->rows[k], 1 + k, comm);
     }
-    s->halo_t = rg_halo_make(s->domain, RG_SEAM_ROW, s->tractions, 3, comm);
+    s->halo_t = rg_halo_make(s->domain, RG_TILE_FACE_ROW, s->tractions, 3, comm);
     return s;
 }
 
@@ -157,12 +157,13 @@ void rg_solver_free(rg_solver *s) {
     for (int t = 0; t < s->threads; t++) {
         rg_workspace_free(&s->work[t]);
     }
-    void *blocks[] = {s->u,         s->velocity, s->now,      s->crack,   s->stiffening, s->tile_stiffening,
-                      s->cracked,   s->broken,   s->unlinked, s->active,  s->rows[0],    s->rows[1],
-                      s->tractions, s->watched,  s->work,     s->history, s->heat,       s->acceleration};
+    void *blocks[] = {
+        s->u,         s->velocity, s->step_velocity, s->crack,   s->stiffening, s->tile_stiffening,
+        s->cracked,   s->broken,   s->unlinked,      s->active,  s->rows[0],    s->rows[1],
+        s->tractions, s->watched,  s->work,          s->history, s->heat,       s->acceleration};
     rg_free(s->material);
     rg_free(s->scale);
-    rg_free(s->tile_pace);
+    rg_free(s->tile_opening_rate);
     rg_free(s->tile_seconds);
     rg_constraints_free(s->constraints);
     rg_bodies_free(s->bodies);
@@ -170,7 +171,7 @@ void rg_solver_free(rg_solver *s) {
     rg_halo_free(s->halo_u[1]);
     rg_halo_free(s->halo_t);
     rg_assembly_free(s->assembly);
-    rg_joints_free(s->joints);
+    rg_conforming_faces_free(s->conforming_faces);
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) {
         rg_free(blocks[i]);
     }

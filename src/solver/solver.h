@@ -2,9 +2,9 @@
  *
  * A step from state n to n + 1 is a kick and a drift. The kick evaluates the forces of u(n) in two sweeps
  * over the tiles: elements and the interfaces inside them, whose results never leave the cache; then, when
- * the tractions of all tiles are known, the seams. The drift moves u and publishes the traces of the seams.
- * In form continuous the sweeps kick accelerations in place of velocities, whose mean over the copies of a
- * node (domain/assembly.h) moves all of them in a third one.
+ * the tractions of all tiles are known, the tile-boundary faces. The drift moves u and publishes the traces
+ * of the tile-boundary faces. In form continuous the sweeps kick accelerations in place of velocities, whose
+ * mean over the copies of a node (domain/assembly.h) moves all of them in a third one.
  *
  * A material with a history goes on in the kick, by the step that led to u(n): once for each state. Between
  * kick and drift stress and energy are those that the forces were made of. */
@@ -30,7 +30,8 @@ typedef struct {
 
 typedef struct rg_solver rg_solver;
 
-/* Called for a tile between its kick and its drift, with `now` up to date there and the ghosts received. */
+/* Called for a tile between its kick and its drift, with `step_velocity` up to date there and the ghosts
+ * received. */
 typedef void rg_watcher(void *context, rg_solver *s, size_t tile, const rg_workspace *work);
 
 struct rg_solver {
@@ -42,23 +43,24 @@ struct rg_solver {
     rg_part *patch; /* rank 0, until rg_spectrum: the elements that limit the time step (partition/patch.h);
                        not in form continuous */
     rg_domain *domain;
-    rg_joints *joints;     /* of form continuous; NULL in others */
-    rg_assembly *assembly; /* likewise */
+    rg_conforming_faces *conforming_faces; /* of form continuous; NULL in others */
+    rg_assembly *assembly;                 /* likewise */
 
-    rg_real *u, *velocity, *now; /* layout.h; now: velocity at the time of u, where it was asked for */
-    rg_real *acceleration;       /* of each element for itself, then of the nodes; only with an assembly */
-    rg_real *crack;              /* state of all broken points, and the memory of their law: layout.h */
-    size_t crack_stride;         /* values of a block of interfaces */
-    rg_real *history;            /* layout.h: of the materials; NULL where none has any */
-    size_t history_stride;       /* values of a block: as many as the longest history needs */
-    double *heat;        /* [blocks][lane]: dissipated by bulk viscosity (J); NULL where there is none */
-    rg_real *stiffening; /* [blocks][lane] */
+    rg_real *u, *velocity, *step_velocity; /* layout.h; velocity is that of the half step, step_velocity that
+                                              at the time of u, where it was asked for */
+    rg_real *acceleration; /* of each element for itself, then of the nodes; only with an assembly */
+    rg_real *crack;        /* state of all broken points, and the memory of their law: layout.h */
+    size_t crack_stride;   /* values of a block of interfaces */
+    rg_real *history;      /* layout.h: of the materials; NULL where none has any */
+    size_t history_stride; /* values of a block: as many as the longest history needs */
+    double *heat;          /* [blocks][lane]: dissipated by bulk viscosity (J); NULL where there is none */
+    rg_real *stiffening;   /* [blocks][lane] */
     rg_real *tile_stiffening;
     double *tile_seconds;       /* [tiles]: that the sweeps took (solver/balance.h); NULL: nobody asks */
-    double *tile_pace;          /* solver/pace.h; NULL: the law asks for no steps */
-    double pace;                /* largest on all ranks (1/s) */
+    double *tile_opening_rate;  /* solver/step_limiter.h; NULL: the law asks for no steps */
+    double opening_rate;        /* largest on all ranks (1/s) */
     double stiffening_anywhere; /* largest on all ranks; infinite if not finite */
-    int wish; /* largest of all ranks (base/interrupt.h) when the forces were last computed */
+    int stop_request; /* largest of all ranks (base/interrupt.h) when the forces were last computed */
     double here[2], anywhere[2]; /* both on their way */
     MPI_Request stiffening_request;
     uint8_t *cracked, *broken, *unlinked, *active;

@@ -181,7 +181,7 @@ static void first_vector(const linear_operator *op, rg_real *q, rg_real *before)
 }
 
 static double lanczos_eigenvalue(const linear_operator *op, lanczos *z) {
-    rg_real *q = op->s->velocity, *before = op->s->now;
+    rg_real *q = op->s->velocity, *before = op->s->step_velocity;
     double last = 0;
     first_vector(op, q, before);
     for (z->n = 0; z->n < MAX_ITERATIONS;) {
@@ -200,7 +200,7 @@ static double lanczos_eigenvalue(const linear_operator *op, lanczos *z) {
 /* Not symmetric: growth of the norm under repeated application. */
 static double power_eigenvalue(const linear_operator *op) {
     rg_solver *s = op->s;
-    rg_real *q = s->velocity, *w = s->now;
+    rg_real *q = s->velocity, *w = s->step_velocity;
     double norm = 0, largest = 0;
     first_vector(op, q, w);
     for (int i = 0; i < POWER_ITERATIONS; i++) {
@@ -257,7 +257,7 @@ static rg_gid limiting_element(const linear_operator *op, const lanczos *known, 
         return dominant_element(s, s->velocity);
     }
     double y[MAX_ITERATIONS];
-    rg_real *q = s->velocity, *before = s->now;
+    rg_real *q = s->velocity, *before = s->step_velocity;
     rg_real *ritz = RG_NEW(rg_real, values(s));
     lanczos again = *known;
     tridiagonal_vector(known, theta, y);
@@ -358,7 +358,7 @@ static void linearize(rg_solver *s, rg_material_model model[RG_MAX_MATERIALS], b
 
 static void rest(rg_solver *s) {
     memset(s->velocity, 0, values(s) * sizeof *s->u);
-    memset(s->now, 0, values(s) * sizeof *s->u);
+    memset(s->step_velocity, 0, values(s) * sizeof *s->u);
     memset(s->u, 0, values(s) * sizeof *s->u);
 }
 

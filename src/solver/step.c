@@ -6,11 +6,11 @@
 
 #include "base/error.h"
 #include "base/interrupt.h"
-#include "base/spot.h"
+#include "base/first_bad.h"
 #include "domain/element.h"
 #include "partition/material.h"
 #include "solver/law.h"
-#include "solver/pace.h"
+#include "solver/step_limiter.h"
 #include "solver/tile.h"
 
 /* ---- One tile ---- */
@@ -20,7 +20,7 @@ typedef struct {
     rg_real *velocity;
     double dt;
     bool move;      /* the step goes on: drift and publish at once */
-    bool observe;   /* `now` is wanted everywhere */
+    bool observe;   /* `step_velocity` is wanted everywhere */
     bool constrain; /* prescribed motions and bodies act */
     bool advance;   /* the history of the material goes on by the step that led here: once for each state */
     bool apart;     /* velocity is that of elements that do not know yet that they share nodes */
@@ -28,7 +28,7 @@ typedef struct {
 
 /* Where the velocity at the present time goes; NULL: it is not wanted. */
 static rg_real *now_of(const rg_solver *s, size_t tile, const impulse *p) {
-    return !p->apart && (p->observe || s->watched[tile]) ? s->now : NULL;
+    return !p->apart && (p->observe || s->watched[tile]) ? s->step_velocity : NULL;
 }
 
 /* Tells the elements beside broken points, so that the lift leaves those points out. */
@@ -42,12 +42,12 @@ static void mark_cracked(rg_solver *s, const rg_tile *t, size_t begin, size_t en
     }
 }
 
-static void kick(rg_solver *s, size_t tile, const rg_workspace *w, const impulse *p, bool seams) {
+static void kick(rg_solver *s, size_t tile, const rg_workspace *w, const impulse *p, bool tile_faces) {
     const rg_tile *t = &s->domain->tile[tile];
     size_t at = t->begin * RG_NODE_BLOCK;
     rg_real *now = now_of(s, tile, p);
     rg_kick_args args = {.lumped = s->lumped,
-                         .seams = seams,
+                         .tile_faces = tile_faces,
                          .dt = p->dt,
                          .geom = s->domain->geom + t->begin * RG_GEOM_BLOCK,
                          .force = w->force,
@@ -56,7 +56,7 @@ static void kick(rg_solver *s, size_t tile, const rg_workspace *w, const impulse
                          .broken = s->broken + t->ibegin * RG_LANES,
                          .interface = s->domain->interface + t->begin * RG_LINK_BLOCK,
                          .velocity = p->velocity + at,
-                         .now = now == NULL ? NULL : now + at,
+                         .step_velocity = now == NULL ? NULL : now + at,
                          .dt_now = 0.5 * s->dt};
     for (size_t begin = 0, end; begin < rg_tile_eblocks(t); begin = end) {
         end = rg_run_end(s->domain, t, begin);
@@ -108,7 +108,7 @@ static void inside(rg_solver *s, size_t tile, const rg_workspace *w, const impul
     if (p->apart) {
         memset(p->velocity + t->begin * RG_NODE_BLOCK, 0, blocks * RG_NODE_BLOCK * sizeof *p->velocity);
     }
-    s->kernels->receive(&traces, 0, rg_tile_seams(t));
+    s->kernels->receive(&traces, 0, rg_tile_face_blocks(t));
     for (size_t begin = 0, end; begin < blocks; begin = end) {
         end = rg_run_end(s->domain, t, begin);
         bulk.material = *rg_block_material(s, t, begin);
@@ -117,8 +117,8 @@ static void inside(rg_solver *s, size_t tile, const rg_workspace *w, const impul
             dampen(s, t, &bulk, begin, end);
         }
     }
-    s->kernels->send_tractions(&traces, 0, rg_tile_seams(t));
-    s->kernels->interface(&interface, 0, rg_tile_inside(t));
+    s->kernels->send_tractions(&traces, 0, rg_tile_face_blocks(t));
+    s->kernels->interface(&interface, 0, rg_tile_inner_blocks(t));
     mark_cracked(s, t, t->ibegin, t->sbegin);
     kick(s, tile, w, p, false);
     if (p->constrain) {
@@ -134,7 +134,7 @@ static void drift(rg_solver *s, size_t tile, const rg_workspace *w) {
     s->kernels->drift(&args, 0, rg_tile_eblocks(t));
     rg_constraints_place(s->constraints, tile, s->u);
     rg_trace_args traces = rg_tile_traces(s, t, w, true);
-    s->kernels->send(&traces, 0, rg_tile_seams(t));
+    s->kernels->send(&traces, 0, rg_tile_face_blocks(t));
 }
 
 /* The velocities of a tile are complete. */
@@ -150,15 +150,15 @@ static void settle(rg_solver *s, size_t tile, const rg_workspace *w, const impul
     }
 }
 
-/* Seams, once the tractions of all tiles are known. */
+/* Tile-boundary faces, once the tractions of all tiles are known. */
 static void across(rg_solver *s, size_t tile, const rg_workspace *w, const impulse *p) {
     const rg_tile *t = &s->domain->tile[tile];
     rg_interface_args interface = rg_tile_interfaces(s, t, w);
     rg_tile_receive(s, t, w);
-    s->kernels->interface(&interface, rg_tile_inside(t), rg_tile_iblocks(t));
+    s->kernels->interface(&interface, rg_tile_inner_blocks(t), rg_tile_iblocks(t));
     mark_cracked(s, t, t->sbegin, t->iend);
-    if (s->tile_pace != NULL && p->constrain) {
-        s->tile_pace[tile] = rg_pace_of_tile(s, t);
+    if (s->tile_opening_rate != NULL && p->constrain) {
+        s->tile_opening_rate[tile] = rg_tile_opening_rate(s, t);
     }
     kick(s, tile, w, p, true);
     if (p->apart) {
@@ -242,7 +242,7 @@ static void start_stiffening(rg_solver *s) {
     {
         double here = largest(s->tile_stiffening, s->domain->tiles);
         s->here[0] = isfinite(here) ? here : INFINITY;
-        s->here[1] = rg_interrupt_wish();
+        s->here[1] = rg_interrupt_request();
         MPI_Iallreduce(s->here, s->anywhere, 2, MPI_DOUBLE, MPI_MAX, s->comm, &s->stiffening_request);
     }
     mark(s, RG_PHASE_REDUCE);
@@ -307,9 +307,9 @@ static void evaluate(rg_solver *s, const impulse *whole) {
     }
     MPI_Wait(&s->stiffening_request, MPI_STATUS_IGNORE);
     s->stiffening_anywhere = s->anywhere[0];
-    s->wish = (int)s->anywhere[1];
-    if (s->tile_pace != NULL && p->constrain) {
-        rg_pace_agree(s);
+    s->stop_request = (int)s->anywhere[1];
+    if (s->tile_opening_rate != NULL && p->constrain) {
+        rg_step_limiter_agree(s);
     }
     if (p->constrain) {
         rg_bodies_kick(s->bodies, s->time, s->dt, s->dt_next);
@@ -327,7 +327,7 @@ static void publish(rg_solver *s) {
 #pragma omp for schedule(static)
         for (size_t t = 0; t < d->tiles; t++) {
             rg_trace_args traces = rg_tile_traces(s, &d->tile[t], w, false);
-            s->kernels->send(&traces, 0, rg_tile_seams(&d->tile[t]));
+            s->kernels->send(&traces, 0, rg_tile_face_blocks(&d->tile[t]));
         }
         start(s, s->halo_u[s->current]);
     }
@@ -341,17 +341,17 @@ void rg_solver_impulse(rg_solver *s, rg_real *velocity, double dt) {
 /* ---- Time ---- */
 
 /* Value of an initial expression, 0 where there is none. */
-static double initial_value(const rg_expr *e, int which, const double x[3], rg_spot *bad) {
+static double initial_value(const rg_expr *e, int which, const double x[3], rg_first_bad *bad) {
     double value = e == NULL ? 0 : rg_expr_value(e, x, 0);
     if (!isfinite(value)) {
 #pragma omp critical
-        rg_spot_note(bad, which, x, value);
+        rg_first_bad_note(bad, which, x, value);
     }
     return value;
 }
 
-static void refuse_initial(const rg_solver *s, rg_spot *bad) {
-    if (rg_spot_lowest(bad, s->comm)) {
+static void refuse_initial(const rg_solver *s, rg_first_bad *bad) {
+    if (rg_first_bad_lowest(bad, s->comm)) {
         int k = (int)bad->which % 3;
         bool moves = bad->which >= 3;
         rg_speak(s->comm);
@@ -363,7 +363,7 @@ static void refuse_initial(const rg_solver *s, rg_spot *bad) {
 }
 
 static void set_initial(rg_solver *s) {
-    rg_spot bad = {.which = RG_NOWHERE};
+    rg_first_bad bad = {.which = RG_NOWHERE};
 #pragma omp parallel
     {
         rg_expr *u[3], *velocity[3]; /* this thread's own */
@@ -396,7 +396,7 @@ static void measure(rg_solver *s) {
     rg_cohesive law = s->law;
     s->law.strength = law.intrinsic ? law.strength : INFINITY;
     double begin = MPI_Wtime();
-    rg_solver_impulse(s, s->now, 0);
+    rg_solver_impulse(s, s->step_velocity, 0);
     s->pass_seconds = MPI_Wtime() - begin;
     s->law = law;
 }

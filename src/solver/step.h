@@ -12,14 +12,15 @@ void rg_solver_start(rg_solver *s);
  */
 void rg_solver_resume(rg_solver *s);
 
-/* Forces of the current displacement; velocities go on to the middle of a step `dt`, and `now` becomes the
- * velocity at the current time everywhere, with the constraints. Collective. */
+/* Forces of the current displacement; velocities go on to the middle of a step `dt`, and `step_velocity`
+ * becomes the velocity at the current time everywhere, with the constraints. Collective. */
 void rg_solver_kick(rg_solver *s, double dt);
 
 /* The rest of the step. Collective. */
 void rg_solver_drift(rg_solver *s);
 
-/* Kick and drift at once, tile by tile; `now` is only known to the watcher. Collective. Allocates nothing. */
+/* Kick and drift at once, tile by tile; `step_velocity` is only known to the watcher. Collective. Allocates
+ * nothing. */
 void rg_solver_step(rg_solver *s, double dt);
 
 /* velocity += dt M^-1 (all forces of u), without constraints. The history stays. For

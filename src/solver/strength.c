@@ -5,7 +5,7 @@
 #include "base/error.h"
 #include "base/hash.h"
 #include "base/mem.h"
-#include "base/spot.h"
+#include "base/first_bad.h"
 #include "cohesive/facts.h"
 
 /* Strength and critical opening of a face over those of the law. */
@@ -18,7 +18,7 @@ typedef struct {
     const rg_solver *s;
     double work;       /* of separation, over strength times opening */
     int (*between)[2]; /* [sets]: materials that a set names, the lower first; of others nothing */
-    rg_spot bad;       /* where an expression is not finite */
+    rg_first_bad bad;  /* where an expression is not finite */
 } search;
 
 /* Corners of an interface, as its first side has them; both sides have the same bits. */
@@ -67,7 +67,7 @@ static bool has(search *f, int number, size_t i, const double middle[3], const d
     const rg_face_set *set = &f->s->input->interface.set[number];
     double here = set->where == NULL ? 1 : rg_expr_face_value(set->where, middle, normal);
     if (!isfinite(here)) {
-        rg_spot_note(&f->bad, number, middle, here);
+        rg_first_bad_note(&f->bad, number, middle, here);
     }
     return here != 0 && (set->between == NULL || lies_between(f, number, i));
 }
@@ -131,7 +131,7 @@ void rg_strength_make(rg_solver *s) {
                    .work = rg_law_facts_of(s->law.law, s->law.shape, s->law.beta).work,
                    .between = rg_alloc((size_t)c->interface.sets + 1, sizeof *look.between),
                    .bad = {.which = RG_NOWHERE}};
-    const rg_spot *bad = &look.bad;
+    const rg_first_bad *bad = &look.bad;
     find_materials(&look);
     s->scale = RG_NEW(rg_real, d->iblocks * 2 * RG_LANES);
     for (size_t t = 0; t < d->tiles; t++) { /* expressions are not for threads */
@@ -143,7 +143,7 @@ void rg_strength_make(rg_solver *s) {
         }
     }
     rg_free(look.between);
-    if (rg_spot_lowest(&look.bad, s->comm)) {
+    if (rg_first_bad_lowest(&look.bad, s->comm)) {
         rg_speak(s->comm);
         rg_fatal(RG_USAGE, "%s: interface.sets[%d].where: %s is not finite at (%g, %g, %g)", c->path,
                  (int)bad->which, rg_expr_text(c->interface.set[bad->which].where), bad->x[0], bad->x[1],

@@ -13,7 +13,7 @@ rg_trace_args rg_tile_traces(const rg_solver *s, const rg_tile *t, const rg_work
                            .other = d->side[1] + t->sbegin * RG_LANES,
                            .rows = rows,
                            .own_rows = rows + t->row * RG_TRACE_ROW,
-                           .own_tractions = s->tractions + t->row * RG_SEAM_ROW,
+                           .own_tractions = s->tractions + t->row * RG_TILE_FACE_ROW,
                            .ghost = w->ghost};
 }
 
@@ -66,9 +66,9 @@ rg_interface_args rg_tile_interfaces(const rg_solver *s, const rg_tile *t, const
                                .step = s->dt,
                                .u = s->u + t->begin * RG_NODE_BLOCK,
                                .traction = w->traction,
-                               .first_seam = rg_tile_inside(t),
+                               .first_tile_face = rg_tile_inner_blocks(t),
                                .ghost = w->ghost,
-                               .own_tractions = s->tractions + t->row * RG_SEAM_ROW,
+                               .own_tractions = s->tractions + t->row * RG_TILE_FACE_ROW,
                                .tractions = s->tractions,
                                .side = {d->side[0] + first, d->side[1] + first},
                                .geom = d->igeom + t->ibegin * RG_IGEOM_BLOCK,
@@ -104,7 +104,7 @@ bool rg_face_is_broken(const rg_solver *s, size_t i) {
 
 void rg_tile_receive(const rg_solver *s, const rg_tile *t, const rg_workspace *w) {
     rg_trace_args traces = rg_tile_traces(s, t, w, false);
-    s->kernels->receive(&traces, 0, rg_tile_seams(t));
+    s->kernels->receive(&traces, 0, rg_tile_face_blocks(t));
 }
 
 rg_workspace rg_workspace_make(const rg_domain *d) {

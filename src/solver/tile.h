@@ -4,12 +4,12 @@
 
 #include "solver/solver.h"
 
-/* Blocks of a tile: elements, interfaces inside, seams. */
+/* Blocks of a tile: elements, interfaces inside, tile-boundary faces. */
 static inline size_t rg_tile_eblocks(const rg_tile *t) {
     return t->end - t->begin;
 }
 
-static inline size_t rg_tile_inside(const rg_tile *t) {
+static inline size_t rg_tile_inner_blocks(const rg_tile *t) {
     return t->sbegin - t->ibegin;
 }
 
@@ -17,7 +17,7 @@ static inline size_t rg_tile_iblocks(const rg_tile *t) {
     return t->iend - t->ibegin;
 }
 
-static inline size_t rg_tile_seams(const rg_tile *t) {
+static inline size_t rg_tile_face_blocks(const rg_tile *t) {
     return t->iend - t->sbegin;
 }
 

@@ -112,7 +112,7 @@ void rg_verify_patch(MPI_Comm comm, const rg_verify_change *change, rg_verify_ro
 static void see_velocity(void *context, const rg_solver *s, size_t slot, int node) {
     worst *w = context;
     for (int i = 0; i < 3; i++) {
-        w->nodal = larger(w->nodal, fabs(s->now[rg_node_index(slot, node, i)]));
+        w->nodal = larger(w->nodal, fabs(s->step_velocity[rg_node_index(slot, node, i)]));
     }
 }
 

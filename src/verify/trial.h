@@ -28,8 +28,8 @@ typedef struct {
 rg_trial *rg_trial_begin(const char *text, const rg_verify_change *change, MPI_Comm comm);
 
 /* Goes on to the next state, from the first call's initial one to that at the end time, with forces and the
- * velocity of that moment (solver->now) known. False after the last, or when the state is no longer finite.
- * Collective. */
+ * velocity of that moment (solver->step_velocity) known. False after the last, or when the state is no longer
+ * finite. Collective. */
 bool rg_trial_next(rg_trial *t);
 
 /* Takes stock of the current state. Collective. */

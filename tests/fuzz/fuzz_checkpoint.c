@@ -1,7 +1,7 @@
-/* Checkpoints: a good one, to which the input is a list of changes. The seal refuses whatever is not what was
- * sealed before HDF5 sees it; so bytes change as they are, which must always be refused, and values,
- * attributes and the shapes of datasets change under a new seal: what else could reach the reader of the
- * state? Files that HDF5 itself would not have written are not made: its parser is not this program's.
+/* Checkpoints: a good one, to which the input is a list of changes. The checksum refuses whatever is not what
+ * was given its checksum before HDF5 sees it; so bytes change as they are, which must always be refused, and
+ * values, attributes and the shapes of datasets change under a new checksum: what else could reach the reader
+ * of the state? Files that HDF5 itself would not have written are not made: its parser is not this program's.
  *
  * Input: changes of five bytes: kind, what, where (2 bytes), value. */
 #include <hdf5.h>
@@ -20,7 +20,7 @@
 #include "host.h"
 #include "restart/checkpoint.h"
 #include "restart/restart.h"
-#include "restart/seal.h"
+#include "restart/checksum.h"
 #include "solver/setup.h"
 #include "solver/step.h"
 
@@ -156,7 +156,7 @@ int LLVMFuzzerInitialize(int *argc, char ***argv) {
 
 /* ---- changes ---- */
 
-/* Kinds: 0 and 1 damage the sealed file, 2 and 3 are values, others go through HDF5. */
+/* Kinds: 0 and 1 damage the given its checksum file, 2 and 3 are values, others go through HDF5. */
 enum { BYTE, CUT, VALUE, TEXT, ATTRIBUTE, OTHER_ATTRIBUTE, SHAPE, KINDS };
 
 static size_t where(const uint8_t *c) {
@@ -190,7 +190,8 @@ static void change_file(hid_t file, const uint8_t *c) {
     }
 }
 
-/* Puts a new seal on what is in `work` after the changes that a seal may have; whether there are any. */
+/* Puts a new checksum on what is in `work` after the changes that a checksum may have; whether there are any.
+ */
 static bool forge(const uint8_t *data, size_t size) {
     bool values = false, through_h5 = false;
     for (size_t at = 0; at + CHANGE <= size; at += CHANGE) {
@@ -212,17 +213,17 @@ static bool forge(const uint8_t *data, size_t size) {
         change_file(file, data + at);
     }
     rg_fuzz_require(file < 0 || H5Fclose(file) >= 0, "the changed file is closed");
-    rg_fuzz_require(rg_seal_put(path, STEP, MPI_COMM_SELF), "the changed file is sealed");
+    rg_fuzz_require(rg_checksum_put(path, STEP, MPI_COMM_SELF), "the changed file has its checksum");
     return true;
 }
 
-/* Changes behind the seal's back; whether any byte is another. */
+/* Changes behind the checksum's back; whether any byte is another. */
 static bool damage(const uint8_t *data, size_t size) {
-    uint8_t *sealed = NULL;
-    size_t length = load_file(&sealed), left = length;
+    uint8_t *written = NULL;
+    size_t length = load_file(&written), left = length;
     uint8_t *now = malloc(length);
     rg_fuzz_require(now != NULL, "memory");
-    memcpy(now, sealed, length);
+    memcpy(now, written, length);
     for (size_t at = 0; at + CHANGE <= size; at += CHANGE) {
         const uint8_t *c = data + at;
         size_t place = where(c) + 65536 * (size_t)(c[1] % 8);
@@ -232,12 +233,12 @@ static bool damage(const uint8_t *data, size_t size) {
             left = place % length;
         }
     }
-    bool damaged = left < length || memcmp(now, sealed, length) != 0;
+    bool damaged = left < length || memcmp(now, written, length) != 0;
     if (damaged) {
         save_file(now, left);
     }
     free(now);
-    free(sealed);
+    free(written);
     return damaged;
 }
 

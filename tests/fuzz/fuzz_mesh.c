@@ -218,12 +218,12 @@ static void read_whole(const char *path) {
 
 static void read_pieces(const char *path) {
     rg_mesh_file *f = rg_mesh_file_open(path);
-    rg_faults faults = {.name = path};
+    rg_input_errors input_errors = {.name = path};
     int64_t tiles = rg_mesh_file_header(f)->tiles;
     for (int64_t t = 0; t < tiles; t += 7) {
-        rg_mesh_slab_free(rg_mesh_file_slab(f, t, t + 1, &faults));
+        rg_mesh_slab_free(rg_mesh_file_slab(f, t, t + 1, &input_errors));
     }
-    rg_faults_end(&faults);
+    rg_input_errors_end(&input_errors);
     rg_mesh_file_close(f);
 }
 

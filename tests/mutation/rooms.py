@@ -7,7 +7,7 @@ import fnmatch
 
 ROOMS = {
     "kernels": (["kernels/*"],
-                """kernels interface seams reference laws friction viscosity elastic j2 bulk_history deshpande_evans
+                """kernels interface tile_faces reference laws friction viscosity elastic j2 bulk_history deshpande_evans
                 deshpande_evans_kernel cost_model material step test_invariance.py test_contact.py test_friction.py test_viscosity.py
                 test_laws.py test_ceramic.py test_solids.py test_ledger.py test_spall.py"""),
     "mesh/import": (["src/mesh/import/*"],
@@ -25,7 +25,7 @@ ROOMS = {
                test_contact.py test_bodies.py test_continuous.py test_fragments.py test_solids.py test_bimaterials.py
                test_ledger.py test_spall.py test_parallel.py"""),
     "solver": (["src/solver/*"],
-               """step spectrum body checkpoint pace strength patch material verify case checkpoint_file ledger snapshot
+               """step spectrum body checkpoint step_limiter strength patch material verify case checkpoint_file ledger snapshot
                test_invariance.py test_contact.py
                test_friction.py test_viscosity.py test_bodies.py test_output.py test_continuous.py test_ceramic.py
                test_laws.py test_ledger.py test_spall.py test_solids.py test_waves.py test_bimaterials.py
@@ -39,14 +39,14 @@ ROOMS = {
                """writer slab estimate progress snapshot summary xdmf test_output.py test_invariance.py test_spall.py
                test_cli.py test_bimaterials.py test_fragments.py test_faults.py test_parallel.py test_restart.py"""),
     "restart": (["src/restart/*"],
-                """seal slab schedule restart checkpoint checkpoint_file fuzz-checkpoint test_output.py test_faults.py
+                """checksum slab schedule restart checkpoint checkpoint_file fuzz-checkpoint test_output.py test_faults.py
                 test_cli.py test_restart.py test_partition.py"""),
     "verify": (["src/verify/*"], "verify test_verify.py"),
     "case": (["src/case/*"],
              """case case_text case_echo case_ranges case_rules case_values case_mistakes numbers strength fuzz-case test_output.py test_laws.py test_bodies.py test_cli.py
              test_bimaterials.py test_continuous.py test_restart.py"""),
     "base": (["src/*"],
-             """numbers exchange files interrupt run h5_parallel rebalance slab seal writer fragment verify checkpoint_file fragment_table
+             """numbers exchange files interrupt run h5_parallel rebalance slab checksum writer fragment verify checkpoint_file fragment_table
              fragment_twin ledger probe summary test_output.py test_mesh_faults.py test_faults.py test_cli.py
              test_fragments.py test_meshes.py test_partition.py test_restart.py"""),
     "plot": (["bench/plot", "bench/drawing.py", "bench/theory.py", "bench/rhegma.py"],

@@ -85,7 +85,7 @@ def test_every_room_has_files_and_tests():
 def test_a_test_that_no_row_names_touches_all_of_src():
     assert touches("newcomer", "src/diagnostics/ledger.c") and not touches("newcomer", "kernels/vec.h")
     assert not touches("test_count.py", "src/diagnostics/ledger.c")
-    assert touches("pace", "src/solver/pace.c") and not touches("pace", "src/case/case.c")
+    assert touches("step_limiter", "src/solver/step_limiter.c") and not touches("step_limiter", "src/case/case.c")
     assert touches("test_plot.py", "bench/plot") and not touches("newcomer", "bench/plot")
 
 

@@ -84,8 +84,7 @@ def test_an_include_against_the_order_is_told(tmp_path, more, said):
     ({"src/base/mem.h": "base/files.h", "src/base/files.h": "base/mem.h"}, {"src/base/mem.h", "src/base/files.h"}),
 ])
 def test_a_cycle_is_told(tmp_path, more, members):
-    said, = faults(tree(tmp_path, more))
-    assert set(said.removeprefix("cycle: ").split(" needs ")) == members
+    assert members in [set(said.removeprefix("cycle: ").split(" needs ")) for said in faults(tree(tmp_path, more))]
 
 
 def tree(root, more):

@@ -194,9 +194,9 @@ def test_same_bits_on_any_ranks_and_threads(three, figure, ranks, threads, sets)
 
 
 def test_same_bits_where_tiles_are_dealt_anew(three):
-    one, dealt = three(), three(2, **{"mesh.rebalance": 0.5})
-    assert dealt.summary["partitions"] > 1
-    assert dealt.summary["state_hash"] == one.summary["state_hash"]
+    one, repartitioned = three(), three(2, **{"mesh.rebalance": 0.5})
+    assert repartitioned.summary["partitions"] > 1
+    assert repartitioned.summary["state_hash"] == one.summary["state_hash"]
 
 
 def test_all_histories_go_on(three):

@@ -68,7 +68,7 @@ def test_a_checkpoint_that_finds_no_room(run, tmp_path, ranks):
     limit_files(process, 100000)  # no checkpoint is so small
     said = process.communicate(timeout=120)[1]
     assert process.returncode == 1
-    assert re.search(r"^rhegma: .*/checkpoints/step-\d+.h5: cannot (write|close|seal|create)", said, re.M), said
+    assert re.search(r"^rhegma: .*/checkpoints/step-\d+.h5: cannot (write|close|create)", said, re.M), said
     left = sorted(path.name for path in (tmp_path / "out" / "checkpoints").iterdir())
     assert left and all(re.fullmatch(r"step-\d+.h5", name) for name in left)  # nothing half-written
     restart_ends_as(tmp_path / "out", reference)

@@ -46,7 +46,7 @@ def edit(file, name, change):
 
 
 def silly(path, ranks):
-    """The partition for so many ranks becomes one that deals tiles out like cards."""
+    """The partition for so many ranks becomes one that hands tiles out one to each in turn."""
     with h5py.File(path, "r+") as file:
         store(file, f"partition_{ranks}", np.arange(file.attrs["tiles"]) % ranks)
 

@@ -406,7 +406,7 @@ def refused(directory, ranks=1):
 
 def test_flipped_bits_are_found(victim):
     directory, path, good = victim
-    for position in [20, 300, 600, len(good) // 2, len(good) - 1]:  # tests/unit/restart/test_seal.c tries thousands
+    for position in [20, 300, 600, len(good) // 2, len(good) - 1]:  # tests/unit/restart/test_checksum.c tries thousands
         path.write_bytes(good)
         flip(path, position, position % 8)
         said = refused(directory)

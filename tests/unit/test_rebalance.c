@@ -1,6 +1,6 @@
-/* A run of two ranks that deals its tiles anew on the way: the same rows, one more partition, and what the
- * run hands to the question whether that pays. What is left to a restart of it is said once. Prints TAP from
- * rank 0. */
+/* A run of two ranks that distributes its tiles anew on the way: the same rows, one more partition, and what
+ * the run hands to the question whether that pays. What is left to a restart of it is said once. Prints TAP
+ * from rank 0. */
 #include <fcntl.h>
 #include <math.h>
 #include <stdlib.h>
@@ -58,7 +58,7 @@ static void read_all(const char *path, char *to, size_t size) {
 }
 
 /* What rank 0 prints goes to `printed`; what all say, to `said`. */
-static int go(bool restart, int64_t deal) {
+static int go(bool restart, int64_t distribution) {
     const rg_run_options options = {.restart = restart, .overwrite = true};
     int out = dup(STDOUT_FILENO), err = dup(STDERR_FILENO);
     int to_out = open(rank == 0 ? "stdout" : "/dev/null", O_WRONLY | O_CREAT | O_TRUNC, 0666);
@@ -66,7 +66,7 @@ static int go(bool restart, int64_t deal) {
     fflush(stdout);
     dup2(to_out, STDOUT_FILENO);
     dup2(to_err, STDERR_FILENO);
-    deal_at = deal;
+    deal_at = distribution;
     looked = 0;
     asked_well = true;
     dearest = 0;
@@ -129,19 +129,19 @@ int main(int argc, char **argv) {
     good = go(false, 3) == RG_OK && summary("partitions") == 2 && summary("checkpoints") == 2;
     double elapsed = MPI_Wtime() - begin;
     read_all("out/energy.csv", rows[1], sizeof rows[1]);
-    report(good && asked_well && summary("steps") == 8 && strcmp(rows[0], rows[1]) == 0, "dealt anew",
+    report(good && asked_well && summary("steps") == 8 && strcmp(rows[0], rows[1]) == 0, "repartitioned",
            "goes on to the same rows");
     /* a checkpoint of 96 elements costs next to nothing */
     report(rank > 0 || (summary("setup_s") > first_cost && summary("setup_s") + summary("wall_s") < elapsed &&
                         dearest < elapsed),
-           "dealt anew", "takes its time once");
+           "repartitioned", "takes its time once");
     double most = 0, seconds = -1;
     const char *words =
         strstr(printed, "step 3: the ranks' work was uneven (most 1.25 of the mean), the mesh is "
-                        "dealt anew (by cost, most ");
+                        "repartitioned (by cost, most ");
     good = words != NULL && sscanf(strstr(words, "by cost, most "), "by cost, most %lf of the mean) in %lf s",
                                    &most, &seconds) == 2;
-    report(good && most >= 1 && most < 2 && seconds >= 0 && seconds < elapsed, "dealt anew", "says so");
+    report(good && most >= 1 && most < 2 && seconds >= 0 && seconds < elapsed, "repartitioned", "says so");
 
     good = go(true, -1) == RG_OK && count(said, "warning: nothing is left to compute") == 1 &&
            count(printed, "goes on") == 0;

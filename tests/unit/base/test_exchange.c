@@ -7,10 +7,10 @@
 #include <string.h>
 
 #include "base/exact_sum.h"
-#include "base/faults.h"
+#include "base/input_errors.h"
 #include "base/hash.h"
 #include "base/mem.h"
-#include "base/spot.h"
+#include "base/first_bad.h"
 #include "support/tap.h"
 
 static int ranks;
@@ -113,9 +113,9 @@ static void test_sums(void) {
 
 /* ---- the lowest place ---- */
 
-static void test_spots(void) {
-    rg_spot none = {.which = RG_NOWHERE}, p = none;
-    report(!rg_spot_lowest(&none, MPI_COMM_WORLD) && none.which == RG_NOWHERE, "place", "is nowhere");
+static void test_first_bad_values(void) {
+    rg_first_bad none = {.which = RG_NOWHERE}, p = none;
+    report(!rg_first_bad_lowest(&none, MPI_COMM_WORLD) && none.which == RG_NOWHERE, "place", "is nowhere");
     /* each replaces the one before, but for the marked ones */
     static const struct {
         int64_t which;
@@ -127,18 +127,18 @@ static void test_spots(void) {
     bool good = true;
     for (int i = 0; i < (int)(sizeof noted / sizeof *noted); i++) {
         double before = p.value;
-        rg_spot_note(&p, noted[i].which, noted[i].x, i + 1);
+        rg_first_bad_note(&p, noted[i].which, noted[i].x, i + 1);
         good = good && p.value == (noted[i].lower ? i + 1 : before);
     }
     report(good && p.which == 4 && p.x[0] == 7 && p.x[1] == 8 && p.x[2] == 9, "place", "is the lowest noted");
     for (int n = 0; n < 500; n++) { /* drawn at random */
         int digit[2][4];
-        rg_spot q = {.which = RG_NOWHERE};
+        rg_first_bad q = {.which = RG_NOWHERE};
         for (int i = 0; i < 2; i++) {
             for (int k = 0; k < 4; k++) {
                 digit[i][k] = (int)(rg_hash((uint64_t)n, (uint64_t)(4 * i + k)) % 3);
             }
-            rg_spot_note(&q, digit[i][0], (const double[3]){digit[i][1], digit[i][2], digit[i][3]}, i);
+            rg_first_bad_note(&q, digit[i][0], (const double[3]){digit[i][1], digit[i][2], digit[i][3]}, i);
         }
         int number_of[2];
         for (int i = 0; i < 2; i++) {
@@ -148,11 +148,11 @@ static void test_spots(void) {
     }
     report(good, "place", "is the lower one of two");
     for (int lowest = 0; lowest < ranks; lowest++) { /* on one rank; others have it further on, or none */
-        rg_spot q = {.which = RG_NOWHERE};
+        rg_first_bad q = {.which = RG_NOWHERE};
         if (rank == lowest || rank % 2 == 0) {
-            rg_spot_note(&q, 3, (const double[3]){1, rank == lowest ? 0.5 : 2, -3}, 10 + rank);
+            rg_first_bad_note(&q, 3, (const double[3]){1, rank == lowest ? 0.5 : 2, -3}, 10 + rank);
         }
-        good = rg_spot_lowest(&q, MPI_COMM_WORLD);
+        good = rg_first_bad_lowest(&q, MPI_COMM_WORLD);
         report(good && q.which == 3 && q.x[0] == 1 && q.x[1] == 0.5 && q.x[2] == -3 && q.value == 10 + lowest,
                "place", "is the lowest of all ranks");
     }
@@ -178,13 +178,13 @@ static void test_spots(void) {
 
 /* ---- faults ---- */
 
-static bool kept(const rg_faults *f, int count, const int keys[][2], const char *words) {
+static bool kept(const rg_input_errors *f, int count, const int keys[][2], const char *words) {
     bool good = f->kept == count;
     for (int i = 0; i < count && good; i++) {
         char expected[64];
         snprintf(expected, sizeof expected, "%s %d %d", words, keys[i][0], keys[i][1]);
-        good = f->fault[i].key[0] == keys[i][0] && f->fault[i].key[1] == keys[i][1] &&
-               strcmp(f->fault[i].words, expected) == 0;
+        good = f->input_error[i].key[0] == keys[i][0] && f->input_error[i].key[1] == keys[i][1] &&
+               strcmp(f->input_error[i].words, expected) == 0;
     }
     return good;
 }
@@ -212,32 +212,32 @@ static void sorted_keys(int total, int keys[][2]) {
 /* The lowest ten stay, in order; one says where its words go, or that they are not wanted. */
 static void test_faults_of_one(void) {
     enum { TOTAL = 23 };
-    rg_faults f = {.name = "f"};
+    rg_input_errors f = {.name = "f"};
     int keys[TOTAL][2];
     sorted_keys(TOTAL, keys);
     for (int k = 0; k < TOTAL; k++) {
         int key[2];
         key_of(k, TOTAL, key);
-        rg_faults_add(&f, key[0], key[1], "fault %d %d", key[0], key[1]);
+        rg_input_errors_add(&f, key[0], key[1], "fault %d %d", key[0], key[1]);
     }
-    report(f.count == TOTAL && kept(&f, RG_FAULTS_TOLD, (const int(*)[2])keys, "fault"), "faults",
+    report(f.count == TOTAL && kept(&f, RG_INPUT_ERRORS_TOLD, (const int(*)[2])keys, "fault"), "faults",
            "the lowest ones are kept");
-    const int64_t *last = f.fault[9].key, *third = f.fault[2].key;
-    bool good = rg_faults_place(&f, last[0], last[1] + 1) == NULL && f.count == TOTAL + 1;
-    char *words = rg_faults_place(&f, third[0], third[1] - 1);
-    good = good && words == f.fault[2].words && f.count == TOTAL + 2 && f.kept == RG_FAULTS_TOLD;
-    good = good && f.fault[2].key[0] == keys[2][0] && f.fault[2].key[1] == keys[2][1] - 1;
-    for (int k = 3; k < RG_FAULTS_TOLD; k++) {
-        good = good && f.fault[k].key[0] == keys[k - 1][0] && f.fault[k].key[1] == keys[k - 1][1];
+    const int64_t *last = f.input_error[9].key, *third = f.input_error[2].key;
+    bool good = rg_input_errors_place(&f, last[0], last[1] + 1) == NULL && f.count == TOTAL + 1;
+    char *words = rg_input_errors_place(&f, third[0], third[1] - 1);
+    good = good && words == f.input_error[2].words && f.count == TOTAL + 2 && f.kept == RG_INPUT_ERRORS_TOLD;
+    good = good && f.input_error[2].key[0] == keys[2][0] && f.input_error[2].key[1] == keys[2][1] - 1;
+    for (int k = 3; k < RG_INPUT_ERRORS_TOLD; k++) {
+        good = good && f.input_error[k].key[0] == keys[k - 1][0] && f.input_error[k].key[1] == keys[k - 1][1];
     }
     report(good, "faults", "a low one takes its place, and the last one goes");
-    rg_faults_add(&f, -9, 0, "%0500d", 7);
-    report(strlen(f.fault[0].words) == RG_FAULT_WORDS - 1, "faults", "long words are cut");
+    rg_input_errors_add(&f, -9, 0, "%0500d", 7);
+    report(strlen(f.input_error[0].words) == RG_INPUT_ERROR_WORDS - 1, "faults", "long words are cut");
 }
 
 /* Fault k is on ranks k % ranks and (2 k + 1) % ranks, so some are brought twice, and told once. */
 static void test_faults_of_all(int total, int told) {
-    rg_faults f = {.name = rank == 0 ? "zero" : "other"}, all = {0};
+    rg_input_errors f = {.name = rank == 0 ? "zero" : "other"}, all = {0};
     int64_t brought = 0;
     int keys[32][2];
     sorted_keys(total, keys);
@@ -248,29 +248,29 @@ static void test_faults_of_all(int total, int told) {
             bool once = k % ranks == r || (2 * k + 1) % ranks == r;
             brought += once;
             if (once && r == rank) {
-                rg_faults_add(&f, key[0], key[1], "of all %d %d", key[0], key[1]);
+                rg_input_errors_add(&f, key[0], key[1], "of all %d %d", key[0], key[1]);
             }
         }
     }
-    bool good = rg_faults_gather(&f, &all, MPI_COMM_WORLD);
+    bool good = rg_input_errors_gather(&f, &all, MPI_COMM_WORLD);
     if (rank == 0) {
         good = good && kept(&all, told, (const int(*)[2])keys, "of all") && strcmp(all.name, "zero") == 0;
         /* beyond those told, one that two ranks bring may count twice */
-        good = good &&
-               (total <= RG_FAULTS_TOLD ? all.count == total : all.count >= total && all.count <= brought);
+        good = good && (total <= RG_INPUT_ERRORS_TOLD ? all.count == total
+                                                      : all.count >= total && all.count <= brought);
     }
     report(good, "faults", "of all ranks are told once, in order");
 }
 
 static void test_no_faults(void) {
-    rg_faults f = {.name = "f"}, all = {.count = 77};
-    report(!rg_faults_gather(&f, &all, MPI_COMM_WORLD) && all.count == 77, "faults", "are on no rank");
-    rg_faults_agree(&f, MPI_COMM_WORLD); /* goes on */
-    rg_faults_end(&f);
+    rg_input_errors f = {.name = "f"}, all = {.count = 77};
+    report(!rg_input_errors_gather(&f, &all, MPI_COMM_WORLD) && all.count == 77, "faults", "are on no rank");
+    rg_input_errors_agree(&f, MPI_COMM_WORLD); /* goes on */
+    rg_input_errors_end(&f);
     f.count = rank == ranks - 1;
     f.kept = (int)f.count;
-    f.fault[0] = (rg_fault){{3, 4}, "of all 3 4"};
-    bool good = rg_faults_gather(&f, &all, MPI_COMM_WORLD);
+    f.input_error[0] = (rg_input_error){{3, 4}, "of all 3 4"};
+    bool good = rg_input_errors_gather(&f, &all, MPI_COMM_WORLD);
     report(good && (rank != 0 || (all.count == 1 && kept(&all, 1, (const int[1][2]){{3, 4}}, "of all"))),
            "faults", "are on the last rank alone");
 }
@@ -278,10 +278,10 @@ static void test_no_faults(void) {
 /* Two ranks say different things of one key: the lower word of them is told, whichever rank it comes from. */
 static void test_words_of_one_fault(void) {
     for (int lower = 0; lower < ranks; lower++) {
-        rg_faults f = {.name = "f"}, all = {0};
-        rg_faults_add(&f, 1, 2, "%s", rank == lower ? "abc" : "b");
-        rg_faults_gather(&f, &all, MPI_COMM_WORLD);
-        report(rank != 0 || (all.count == 1 && all.kept == 1 && strcmp(all.fault[0].words, "abc") == 0),
+        rg_input_errors f = {.name = "f"}, all = {0};
+        rg_input_errors_add(&f, 1, 2, "%s", rank == lower ? "abc" : "b");
+        rg_input_errors_gather(&f, &all, MPI_COMM_WORLD);
+        report(rank != 0 || (all.count == 1 && all.kept == 1 && strcmp(all.input_error[0].words, "abc") == 0),
                "faults", "are told in the same words");
     }
 }
@@ -292,11 +292,11 @@ int main(int argc, char **argv) {
     MPI_Comm_size(MPI_COMM_WORLD, &ranks);
     test_exchange();
     test_sums();
-    test_spots();
+    test_first_bad_values();
     test_faults_of_one();
     test_faults_of_all(8, 8);
     test_faults_of_all(7, 7);
-    test_faults_of_all(29, RG_FAULTS_TOLD);
+    test_faults_of_all(29, RG_INPUT_ERRORS_TOLD);
     test_no_faults();
     test_words_of_one_fault();
     return finish();

@@ -17,7 +17,7 @@
 #include <cmocka.h>
 
 #include "base/error.h"
-#include "base/faults.h"
+#include "base/input_errors.h"
 #include "base/files.h"
 #include "base/mem.h"
 #include "case/case.h"
@@ -81,19 +81,19 @@ static void test_fatal(void **state) {
 }
 
 static void end_with_faults(void) {
-    rg_faults none = {.name = "none"}, f = {.name = "a.inp"};
-    rg_faults_end(&none); /* goes on */
-    rg_faults_add(&f, 2, 0, "the second");
-    rg_faults_add(&f, 1, 0, "the first, %d", 1);
-    rg_faults_end(&f);
+    rg_input_errors none = {.name = "none"}, f = {.name = "a.inp"};
+    rg_input_errors_end(&none); /* goes on */
+    rg_input_errors_add(&f, 2, 0, "the second");
+    rg_input_errors_add(&f, 1, 0, "the first, %d", 1);
+    rg_input_errors_end(&f);
 }
 
 static void end_with_many_faults(void) {
-    rg_faults f = {.name = "b"};
+    rg_input_errors f = {.name = "b"};
     for (int i = 0; i < 12; i++) {
-        rg_faults_add(&f, i, 0, "%0600d", i); /* cut */
+        rg_input_errors_add(&f, i, 0, "%0600d", i); /* cut */
     }
-    rg_faults_agree(&f, MPI_COMM_SELF);
+    rg_input_errors_agree(&f, MPI_COMM_SELF);
 }
 
 static void test_faults(void **state) {

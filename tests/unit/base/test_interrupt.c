@@ -1,4 +1,4 @@
-/* Signals and the clock as wishes of a run, and what a run says of its processors. */
+/* Signals and the clock as requests of a run, and what a run says of its processors. */
 #define _GNU_SOURCE /* sched_setaffinity */
 #include <math.h>
 #include <omp.h>
@@ -27,29 +27,29 @@ static void expect(void (*job)(void), int status, const char *words) {
     assert_string_equal(said, words);
 }
 
-static const char *wish(void) {
+static const char *stop_request(void) {
     static const char *const word[] = {"none ", "checkpoint ", "stop ", "time-up "};
-    return word[rg_interrupt_wish()];
+    return word[rg_interrupt_request()];
 }
 
 /* ---- signals ---- */
 
 static void be_asked_for_a_checkpoint(void) {
     rg_interrupt_listen();
-    fputs(wish(), stderr);
+    fputs(stop_request(), stderr);
     raise(SIGUSR1);
-    fputs(wish(), stderr);
-    fputs(wish(), stderr); /* until it is answered */
+    fputs(stop_request(), stderr);
+    fputs(stop_request(), stderr); /* until it is answered */
     rg_interrupt_answered();
-    fputs(wish(), stderr);
+    fputs(stop_request(), stderr);
     raise(SIGUSR1);
-    fputs(wish(), stderr); /* again */
+    fputs(stop_request(), stderr); /* again */
     raise(SIGUSR2);
-    fputs(wish(), stderr); /* the larger one */
+    fputs(stop_request(), stderr); /* the larger one */
     rg_interrupt_answered();
-    fputs(wish(), stderr); /* which stays */
+    fputs(stop_request(), stderr); /* which stays */
     rg_interrupt_clock(0, INFINITY);
-    fputs(wish(), stderr);
+    fputs(stop_request(), stderr);
 }
 
 static int signal_to_send;
@@ -57,21 +57,21 @@ static int signal_to_send;
 static void be_signalled(void) {
     rg_interrupt_listen();
     raise(signal_to_send);
-    fputs(wish(), stderr);
+    fputs(stop_request(), stderr);
 }
 
 static void be_signalled_twice(void) {
     rg_interrupt_listen();
     raise(signal_to_send);
     raise(signal_to_send);
-    fputs(wish(), stderr);
+    fputs(stop_request(), stderr);
 }
 
 static void be_signalled_deaf(void) {
     rg_interrupt_listen();
     rg_interrupt_deafen();
     raise(signal_to_send);
-    fputs(wish(), stderr);
+    fputs(stop_request(), stderr);
 }
 
 static void start_with_nohup(void) {
@@ -137,23 +137,23 @@ static void look_at_the_clock(void) {
 static void wait_for_the_clock(void) {
     rg_interrupt_listen();
     rg_interrupt_clock(INFINITY, INFINITY);
-    fputs(wish(), stderr);
+    fputs(stop_request(), stderr);
     rg_interrupt_clock(1000, 1000);
-    fputs(wish(), stderr);
+    fputs(stop_request(), stderr);
     rg_interrupt_clock(1000, 0);
-    fputs(wish(), stderr);
+    fputs(stop_request(), stderr);
     rg_interrupt_clock(INFINITY, 0);
-    fputs(wish(), stderr);
+    fputs(stop_request(), stderr);
     rg_interrupt_clock(0, 1000);
-    fputs(wish(), stderr);
+    fputs(stop_request(), stderr);
     rg_interrupt_clock(0, INFINITY);
-    fputs(wish(), stderr);
+    fputs(stop_request(), stderr);
     rg_interrupt_clock(rg_interrupt_now() + 0.02, INFINITY);
-    fputs(wish(), stderr);
+    fputs(stop_request(), stderr);
     nanosleep(&(struct timespec){.tv_nsec = 30000000}, NULL);
-    fputs(wish(), stderr);
+    fputs(stop_request(), stderr);
     rg_interrupt_clock(INFINITY, rg_interrupt_now() + 1000);
-    fputs(wish(), stderr);
+    fputs(stop_request(), stderr);
 }
 
 static void test_clock(void **state) {

@@ -47,7 +47,8 @@ static void set_motion(rg_solver *s, double sunk) {
             for (int c = 0; c < 3; c++) {
                 int a = (c + 1) % 3, b = (c + 2) % 3;
                 s->u[rg_node_index(slot, n, c)] = (rg_real)(away[c] - (c == 2 && middle > 2 ? sunk : 0));
-                s->now[rg_node_index(slot, n, c)] = (rg_real)(flight[c] + spin[a] * x[b] - spin[b] * x[a]);
+                s->step_velocity[rg_node_index(slot, n, c)] =
+                    (rg_real)(flight[c] + spin[a] * x[b] - spin[b] * x[a]);
             }
         }
     }

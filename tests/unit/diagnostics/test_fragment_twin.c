@@ -45,7 +45,7 @@ static bool face_holds(const random_state *r, uint64_t seed, rg_gid face) {
 /* Whether a face carries an interface: all do, but of shared nodes those alone that lie in the plane of the
  * case. */
 static bool carries(const random_state *r, rg_gid face) {
-    if (r->solver->joints == NULL) {
+    if (r->solver->conforming_faces == NULL) {
         return true;
     }
     double x[4][3], middle[3] = {0, 0, 0};

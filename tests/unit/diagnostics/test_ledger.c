@@ -256,7 +256,7 @@ static void check_energies(random_state *r) {
 /* Times `factor` all velocities, which only the kinetic energy knows. */
 static void scale_velocity(rg_solver *s, double factor) {
     for (size_t i = 0; i < s->domain->blocks * RG_NODE_BLOCK; i++) {
-        s->now[i] = (rg_real)(factor * s->now[i]);
+        s->step_velocity[i] = (rg_real)(factor * s->step_velocity[i]);
     }
 }
 
@@ -282,7 +282,7 @@ static void check_errors(random_state *r) {
     report(near(fourth.error, -first.kinetic / most, 1) && fourth.kinetic == 0, "ledger", "a loss");
     for (size_t slot = 0; slot < r->solver->domain->blocks * RG_LANES; slot++) {
         if (r->solver->domain->id[slot] == 0) {
-            r->solver->now[rg_node_index(slot, 3, 1)] = (rg_real)NAN;
+            r->solver->step_velocity[rg_node_index(slot, 3, 1)] = (rg_real)NAN;
         }
     }
     rg_ledger_take(&ledger, r->solver);
@@ -304,14 +304,14 @@ static void check_rest(void) {
            "what rounding makes of F");
     for (size_t slot = 0; slot < r.solver->domain->blocks * RG_LANES; slot++) {
         for (int n = 0; n < RG_NODES && r.solver->domain->id[slot] >= 0; n++) {
-            r.solver->now[rg_node_index(slot, n, 1)] = (rg_real)1e-4;
+            r.solver->step_velocity[rg_node_index(slot, n, 1)] = (rg_real)1e-4;
         }
     }
     e = *rg_ledger_take(&ledger, r.solver);
     report(e.kinetic > 0 && near(e.error, e.kinetic / ledger.largest, 1e-3), "ledger", "an error of that");
     for (size_t slot = 0; slot < r.solver->domain->blocks * RG_LANES; slot++) {
         for (int n = 0; n < RG_NODES && r.solver->domain->id[slot] >= 0; n++) {
-            r.solver->now[rg_node_index(slot, n, 1)] = 10;
+            r.solver->step_velocity[rg_node_index(slot, n, 1)] = 10;
         }
     }
     memset(&ledger, 0, sizeof ledger);
@@ -488,7 +488,7 @@ static void check_element_hash(random_state *r) {
     size_t at = here ? (size_t)slot : 0;
     for (int k = 0; k < 3 * RG_NODES; k++) {
         good = noticed(s, &s->u[rg_node_index(at, k / 3, k % 3)], here) && good;
-        good = noticed(s, &s->now[rg_node_index(at, k / 3, k % 3)], here) && good;
+        good = noticed(s, &s->step_velocity[rg_node_index(at, k / 3, k % 3)], here) && good;
     }
     for (size_t row = 0; row < rg_history_rows(RG_J2_HISTORY); row++) {
         good = noticed(s, &s->history[rg_history_index(at, s->history_stride, row)], here) && good;

@@ -42,7 +42,7 @@ static const subject subjects[] = {
 typedef struct {
     rg_part *part;
     rg_domain *domain;
-    rg_joints *joints;
+    rg_conforming_faces *conforming_faces;
     rg_assembly *assembly;
     rg_real *field;
     uint16_t *mask;
@@ -166,8 +166,8 @@ static share make_share(const subject *s, const rg_mesh *mesh, MPI_Comm comm) {
     }
     uint8_t *joined = rg_joined_faces(&c, a.part, comm);
     a.domain = rg_domain_build(a.part, joined, here, &no_matter);
-    a.joints = rg_joints_make(a.domain, a.part, joined, here);
-    a.assembly = rg_assembly_make(a.domain, a.joints, matter, comm);
+    a.conforming_faces = rg_conforming_faces_make(a.domain, a.part, joined, here);
+    a.assembly = rg_assembly_make(a.domain, a.conforming_faces, matter, comm);
     size_t slots = a.domain->blocks * RG_LANES;
     a.field = RG_NEW(rg_real, slots * 3 * RG_NODES);
     a.mask = RG_NEW(uint16_t, slots);
@@ -187,7 +187,7 @@ static share make_share(const subject *s, const rg_mesh *mesh, MPI_Comm comm) {
 
 static void free_share(share *a) {
     rg_assembly_free(a->assembly);
-    rg_joints_free(a->joints);
+    rg_conforming_faces_free(a->conforming_faces);
     rg_domain_free(a->domain);
     rg_part_free(a->part);
     rg_free(a->field);

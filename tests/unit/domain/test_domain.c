@@ -1,4 +1,5 @@
-/* The domain of a mesh on one rank: every face once inside a tile or as two seams that mirror each other. */
+/* The domain of a mesh on one rank: every face once inside a tile or as two tile-boundary faces that mirror
+ * each other. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -105,12 +106,12 @@ static size_t interface_of(const rg_domain *d, rg_gid e, int f) {
     return t->ibegin * RG_LANES + (size_t)interface_link(d, e, f) / 4;
 }
 
-static bool is_seam(const rg_domain *d, const rg_tile *t, size_t i) {
+static bool is_tile_face(const rg_domain *d, const rg_tile *t, size_t i) {
     assert_true(i >= t->ibegin * RG_LANES && i < t->iend * RG_LANES && i < d->iblocks * RG_LANES);
     return i >= t->sbegin * RG_LANES;
 }
 
-/* Row of a seam of a tile. */
+/* Row of a tile-boundary face of a tile. */
 static size_t row_of(const rg_tile *t, size_t i) {
     return t->row + (i - t->sbegin * RG_LANES);
 }
@@ -219,7 +220,7 @@ static void check_inside(const setup *s, rg_gid e, int f, rg_gid other, int g) {
     const rg_tile *t = rg_tile_of(d, slot_of(d, e));
     int32_t link = interface_link(d, e, f);
     size_t i = interface_of(d, e, f), first = t->begin * RG_LANES;
-    assert_false(is_seam(d, t, i) || link & RG_SEAM);
+    assert_false(is_tile_face(d, t, i) || link & RG_TILE_FACE);
     assert_int_equal(interface_of(d, other, g), i);
     assert_int_equal(interface_link(d, other, g) % 4, 1 - link % 4);
     assert_int_equal(d->side[link % 4][i], rg_side_link(slot_of(d, e) - first, f));
@@ -228,13 +229,13 @@ static void check_inside(const setup *s, rg_gid e, int f, rg_gid other, int g) {
     assert_int_equal(d->counted[i], 1);
 }
 
-/* A seam, from one of its sides. */
-static void check_seam(const setup *s, rg_gid e, int f, rg_gid other, int g) {
+/* A tile-boundary face, from one of its sides. */
+static void check_tile_face(const setup *s, rg_gid e, int f, rg_gid other, int g) {
     const rg_domain *d = s->domain;
     const rg_tile *t = rg_tile_of(d, slot_of(d, e)), *u = rg_tile_of(d, slot_of(d, other));
     int32_t link = interface_link(d, e, f);
     size_t i = interface_of(d, e, f), j = interface_of(d, other, g);
-    assert_true(is_seam(d, t, i) && is_seam(d, u, j) && link & RG_SEAM && i != j);
+    assert_true(is_tile_face(d, t, i) && is_tile_face(d, u, j) && link & RG_TILE_FACE && i != j);
     assert_int_equal(link & 1, d->side[1][i] & 1);
     assert_int_equal(d->side[1][i] & 1, 1 - (d->side[1][j] & 1));
     assert_int_equal(d->side[1][i] / 2, row_of(u, j));
@@ -263,11 +264,12 @@ static void check_faces(const setup *s) {
             continue;
         }
         bool inside = in_one_tile(d, at / 4, other);
-        (inside ? check_inside : check_seam)(s, at / 4, (int)(at % 4), other, s->mesh->face[at]);
+        (inside ? check_inside : check_tile_face)(s, at / 4, (int)(at % 4), other, s->mesh->face[at]);
         seen[interface_of(d, at / 4, (int)(at % 4))] += inside ? 1 : 2;
     }
     size_t counted = 0, used = 0, faces = 0;
-    for (size_t i = 0; i < d->iblocks * RG_LANES; i++) { /* inside: from both elements; seam: from its own */
+    for (size_t i = 0; i < d->iblocks * RG_LANES;
+         i++) { /* inside: from both elements; tile-boundary face: from its own */
         assert_true(seen[i] == 0 || seen[i] == 2);
         counted += d->counted[i];
         used += seen[i] > 0;
@@ -282,8 +284,8 @@ static void check_faces(const setup *s) {
     rg_free(seen);
 }
 
-/* Every interior face appears once inside a tile or as exactly two seams with the same geometry, opposite
- * sides and each other's rows; `counted` marks each face once. */
+/* Every interior face appears once inside a tile or as exactly two tile-boundary faces with the same
+ * geometry, opposite sides and each other's rows; `counted` marks each face once. */
 static void test_faces(void **state) {
     (void)state;
     for_each_setup(check_faces);
@@ -350,9 +352,9 @@ static void test_areas(void **state) {
 
 /* ---- Tiles ---- */
 
-/* The other tile and element of seam i. */
+/* The other tile and element of tile-boundary face i. */
 typedef struct {
-    size_t tile, place; /* place: index among the other tile's seams */
+    size_t tile, place; /* place: index among the other tile's tile-boundary faces */
 } across;
 
 static across other_side(const rg_domain *d, size_t i) {
@@ -363,8 +365,8 @@ static across other_side(const rg_domain *d, size_t i) {
     return (across){t, row - d->tile[t].row};
 }
 
-/* Seams of tile t that are used: as many as its elements' faces on other tiles. */
-static size_t used_seams(const setup *s, size_t t) {
+/* Tile-boundary faces of tile t that are used: as many as its elements' faces on other tiles. */
+static size_t used_tile_faces(const setup *s, size_t t) {
     const rg_domain *d = s->domain;
     size_t n = 0;
     for (rg_gid at = 4 * d->tile[t].first; at < 4 * s->mesh->elements; at++) {
@@ -379,7 +381,7 @@ static size_t used_seams(const setup *s, size_t t) {
 static void check_streams(const setup *s) {
     const rg_domain *d = s->domain;
     for (size_t t = 0; t < d->tiles; t++) {
-        size_t first = d->tile[t].sbegin * RG_LANES, n = used_seams(s, t);
+        size_t first = d->tile[t].sbegin * RG_LANES, n = used_tile_faces(s, t);
         assert_true(first + n <= d->tile[t].iend * RG_LANES);
         for (size_t k = 1; k < n; k++) {
             across before = other_side(d, first + k - 1), here = other_side(d, first + k);
@@ -391,8 +393,8 @@ static void check_streams(const setup *s) {
     }
 }
 
-/* Seams with one other tile lie side by side, the tiles by ascending number, and in the same order on both
- * sides: their rows are read as a stream. */
+/* Tile-boundary faces with one other tile lie side by side, the tiles by ascending number, and in the same
+ * order on both sides: their rows are read as a stream. */
 static void test_streams(void **state) {
     (void)state;
     for_each_setup(check_streams);
@@ -400,21 +402,21 @@ static void test_streams(void **state) {
 
 static void check_layout(const setup *s) {
     const rg_domain *d = s->domain;
-    size_t block = 0, iblock = 0, row = 0, largest = 0, seams = 0, blocks = 0;
+    size_t block = 0, iblock = 0, row = 0, largest = 0, tile_faces = 0, blocks = 0;
     for (size_t t = 0; t < d->tiles; t++) {
         const rg_tile *tile = &d->tile[t];
         assert_true(tile->begin == block && tile->ibegin == iblock && tile->row == row);
         assert_true(tile->end > tile->begin && tile->ibegin <= tile->sbegin);
-        assert_int_equal(tile->iend - tile->sbegin, (used_seams(s, t) + RG_LANES - 1) / RG_LANES);
+        assert_int_equal(tile->iend - tile->sbegin, (used_tile_faces(s, t) + RG_LANES - 1) / RG_LANES);
         block = tile->end;
         iblock = tile->iend;
         row += (tile->iend - tile->sbegin) * RG_LANES;
         blocks = tile->end - tile->begin > blocks ? tile->end - tile->begin : blocks;
         largest = tile->iend - tile->ibegin > largest ? tile->iend - tile->ibegin : largest;
-        seams = tile->iend - tile->sbegin > seams ? tile->iend - tile->sbegin : seams;
+        tile_faces = tile->iend - tile->sbegin > tile_faces ? tile->iend - tile->sbegin : tile_faces;
     }
     assert_true(d->blocks == block && d->iblocks == iblock && d->own_rows == row);
-    assert_true(d->tile_blocks == blocks && d->tile_iblocks == largest && d->tile_sblocks == seams);
+    assert_true(d->tile_blocks == blocks && d->tile_iblocks == largest && d->tile_sblocks == tile_faces);
 }
 
 /* Blocks and rows of the tiles follow each other without gaps. */
@@ -436,13 +438,13 @@ static void check_element_padding(const rg_domain *d, size_t slot) {
 /* Interface i of a tile, or its padding: links stay inside the tile, padding has no area and its own row. */
 static void check_interface_slot(const rg_domain *d, const rg_tile *t, size_t i, bool padding) {
     size_t slots = (t->end - t->begin) * RG_LANES;
-    bool seam = is_seam(d, t, i);
+    bool tile_face = is_tile_face(d, t, i);
     assert_true(d->side[0][i] >= 0 && (size_t)d->side[0][i] / 4 < slots);
-    assert_true(seam || (d->side[1][i] >= 0 && (size_t)d->side[1][i] / 4 < slots));
+    assert_true(tile_face || (d->side[1][i] >= 0 && (size_t)d->side[1][i] / 4 < slots));
     for (int k = 0; padding && k < RG_IGEOM; k++) {
         assert_true(d->igeom[rg_igeom_index(i, k)] == 0);
     }
-    if (padding && seam) {
+    if (padding && tile_face) {
         assert_int_equal(d->side[1][i] / 2, row_of(t, i));
     }
     assert_true(!padding || !d->counted[i]);

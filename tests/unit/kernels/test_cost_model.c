@@ -181,7 +181,7 @@ static void bind_interfaces(call *c) {
     c->interface = (rg_interface_args){.law = in->law,
                                        .u = in->u,
                                        .traction = in->traction,
-                                       .first_seam = INPUT_IBLOCKS,
+                                       .first_tile_face = INPUT_IBLOCKS,
                                        .side = {in->side[0], in->side[1]},
                                        .geom = in->igeom,
                                        .broken = in->broken,
@@ -443,7 +443,7 @@ static bytes_seen count_bytes(const call *c) {
 static double shared_lines(const call *c) {
     enum { LINES = INPUT_EBLOCKS * RG_TRACTION_BLOCK * sizeof(double) / LINE };
     static bool seen[LINES];
-    const size_t row = RG_SEAM_ROW * sizeof(double);
+    const size_t row = RG_TILE_FACE_ROW * sizeof(double);
     double lines = 0;
     memset(seen, 0, sizeof seen);
     for (int k = 0; k < 2; k++)
@@ -478,16 +478,17 @@ static void test_bytes(void **state) {
 
 /* ---- The step ---- */
 
-/* A step is its kernels; what the tiles keep in the cache and send along their seams is the only difference.
+/* A step is its kernels; what the tiles keep in the cache and send along their tile-boundary faces is the
+ * only difference.
  */
 static void test_step(void **state) {
     (void)state;
     const rg_cost_variant v = {.lift = true, .interfaces = 2, .fill = 1};
-    rg_cost_variant seamed = v;
-    seamed.seams = 1;
+    rg_cost_variant split = v;
+    split.tile_faces = 1;
     rg_cost bulk = rg_cost_block(RG_COST_BULK, &v), kick = rg_cost_block(RG_COST_KICK, &v),
             interface = rg_cost_block(RG_COST_INTERFACE, &v), drift = rg_cost_block(RG_COST_DRIFT, &v);
-    rg_cost one = rg_cost_step(&v), tiled = rg_cost_step(&seamed);
+    rg_cost one = rg_cost_step(&v), tiled = rg_cost_step(&split);
     assert_true(one.flops == bulk.flops + kick.flops + 2 * interface.flops + drift.flops);
     assert_true(one.actual < bulk.actual + kick.actual + 2 * interface.actual + drift.actual);
     /* of 8 elements: 18 displacements read twice, written once (and fetched), 9 tractions written and fetched

@@ -1,5 +1,5 @@
 /* Each regime of the interface by hand: one flat face, uniform tractions and jumps, on every set of kernels,
- * inside a tile and as a seam seen from either side. */
+ * inside a tile and as a tile-boundary face seen from either side. */
 #include <stdarg.h>
 #include <stddef.h>
 #include <setjmp.h>
@@ -375,21 +375,21 @@ static const scenario scenarios[] = {
 /* How the kernel sees the face. */
 typedef enum { INSIDE, FROM_MINUS, FROM_PLUS, VIEWS } view;
 
-/* One block of interfaces, all between face MINUS_FACE of element 0 and face PLUS_FACE of element 1. As seams
- * they have the first rows of tractions, the other side the last ones. */
+/* One block of interfaces, all between face MINUS_FACE of element 0 and face PLUS_FACE of element 1. As
+ * tile-boundary faces they have the first rows of tractions, the other side the last ones. */
 typedef struct {
     view view;
     _Alignas(64) rg_real u[RG_NODE_BLOCK], traction[RG_TRACTION_BLOCK], geom[RG_IGEOM_BLOCK];
     _Alignas(64) rg_real crack[RG_CRACK_BLOCK], force[RG_IFORCE_BLOCK];
     double energy[RG_E_INTERFACE * RG_LANES];
-    _Alignas(64) rg_real ghost[RG_GHOST_BLOCK], rows[2 * RG_LANES * RG_SEAM_ROW];
+    _Alignas(64) rg_real ghost[RG_GHOST_BLOCK], rows[2 * RG_LANES * RG_TILE_FACE_ROW];
     _Alignas(64) int32_t side[2][RG_LANES];
     _Alignas(64) uint8_t broken[RG_LANES], unlinked[RG_LANES];
     uint8_t active;
     rg_interface_args args;
 } bench;
 
-/* Row of the other side of seam i. */
+/* Row of the other side of tile-boundary face i. */
 static size_t other_row(size_t i) {
     return RG_LANES + (i + 3) % RG_LANES;
 }
@@ -416,7 +416,7 @@ static void bench_make(bench *b, rg_cohesive law, double up, view v) {
         .time = TIME,
         .u = b->u,
         .traction = b->traction,
-        .first_seam = v == INSIDE ? 1 : 0,
+        .first_tile_face = v == INSIDE ? 1 : 0,
         .ghost = b->ghost,
         .own_tractions = b->rows,
         .tractions = b->rows,
@@ -453,8 +453,8 @@ static void bench_deform(bench *b, const double g[3][3]) {
     }
 }
 
-/* What a seam knows of both sides. The kernel must take all of it from here: the other side's own fields are
- * spoiled. */
+/* What a tile-boundary face knows of both sides. The kernel must take all of it from here: the other side's
+ * own fields are spoiled. */
 static void bench_exchange(bench *b) {
     const size_t own = b->view == FROM_PLUS, other = 1 - own;
     const int face[2] = {MINUS_FACE, PLUS_FACE};
@@ -466,10 +466,10 @@ static void bench_exchange(bench *b) {
     for (size_t i = 0; i < RG_LANES; i++) {
         for (int k = 0; k < RG_FNODES * 3; k++)
             b->ghost[rg_iforce_index(i, k / 3, k % 3)] = u[k / 3][k % 3];
-        memcpy(b->rows + i * RG_SEAM_ROW, &b->traction[rg_traction_index(own, face[own], 0, 0)],
-               RG_SEAM_ROW * sizeof(rg_real));
-        memcpy(b->rows + other_row(i) * RG_SEAM_ROW,
-               &b->traction[rg_traction_index(other, face[other], 0, 0)], RG_SEAM_ROW * sizeof(rg_real));
+        memcpy(b->rows + i * RG_TILE_FACE_ROW, &b->traction[rg_traction_index(own, face[own], 0, 0)],
+               RG_TILE_FACE_ROW * sizeof(rg_real));
+        memcpy(b->rows + other_row(i) * RG_TILE_FACE_ROW,
+               &b->traction[rg_traction_index(other, face[other], 0, 0)], RG_TILE_FACE_ROW * sizeof(rg_real));
     }
     for (int k = 0; k < RG_TRACTION_BLOCK; k++)
         b->traction[k] = NAN;

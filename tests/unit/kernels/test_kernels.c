@@ -123,7 +123,7 @@ static void run_elements(const rg_kernels *set, const input *in, range r, output
         .broken = in->broken,
         .interface = in->interface,
         .velocity = out->velocity,
-        .now = out->now,
+        .step_velocity = out->now,
         .dt_now = 5e-11,
     };
     rg_drift_args drift = {2e-10, out->velocity, out->u};
@@ -135,7 +135,7 @@ static void run_elements(const rg_kernels *set, const input *in, range r, output
     kinetic.lumped = kick.lumped = true;
     kinetic.energy = out->lumped_kinetic + r.begin * RG_LANES;
     kick.velocity = out->lumped_velocity;
-    kick.now = out->lumped_now;
+    kick.step_velocity = out->lumped_now;
     drift = (rg_drift_args){2e-10, out->lumped_velocity, out->lumped_u};
     set->kinetic(&kinetic, r.begin, r.end);
     set->kick(&kick, r.begin, r.end);

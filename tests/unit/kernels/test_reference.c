@@ -477,7 +477,7 @@ static void kick(const body *b, bool lumped, double *velocity, double *now) {
                                .iforce = b->iforce,
                                .interface = b->in->interface,
                                .velocity = velocity,
-                               .now = now,
+                               .step_velocity = now,
                                .dt_now = 4e-10};
     b->set->kick(&args, 0, INPUT_EBLOCKS);
 }

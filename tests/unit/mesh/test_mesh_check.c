@@ -52,7 +52,7 @@ static void test_volume_bound(void **state) {
     (void)state;
     const rg_gid corner[4] = {3, 5, 8, 9};
     double x[12] = {1, 2, 3, 5, 2, 3, 1, 5, 3}; /* edges 4, 3 and 5; the height makes 1e-12 of 125 */
-    char what[RG_FAULT_WORDS];
+    char what[RG_INPUT_ERROR_WORDS];
     const double height = 125e-12 / 2;
     for (int side = -1; side <= 1; side += 2) {
         memcpy(x + 9, (double[]){2, 3, 0}, 3 * sizeof *x);
@@ -73,7 +73,7 @@ static void test_corner_order(void **state) {
     const double x[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
     const rg_gid wrong[][4] = {{3, 3, 8, 9}, {3, 8, 8, 9}, {3, 5, 9, 9},
                                {5, 3, 8, 9}, {3, 8, 5, 9}, {3, 5, 9, 8}};
-    char what[RG_FAULT_WORDS], words[RG_FAULT_WORDS];
+    char what[RG_INPUT_ERROR_WORDS], words[RG_INPUT_ERROR_WORDS];
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
         assert_false(rg_tet_sound(x, wrong[i], 70, what));
         snprintf(words, sizeof words,

@@ -588,22 +588,23 @@ static void test_original_number(void **state) {
 
 static void test_partitions(void **state) {
     (void)state;
-    int32_t deal[3][TILES], found[TILES];
+    int32_t distribution[3][TILES], found[TILES];
     int *parts;
     for (int t = 0; t < TILES; t++) {
-        deal[0][t] = t % 11;
-        deal[1][t] = t % 7 % 2;
-        deal[2][t] = t % 3;
+        distribution[0][t] = t % 11;
+        distribution[1][t] = t % 7 % 2;
+        distribution[2][t] = t % 3;
     }
     H5Fclose(open_copy());
-    rg_mesh_file_add_partitions(bad, 3,
-                                (const rg_tile_partition[]){{11, deal[0]}, {2, deal[1]}, {3, deal[2]}});
+    rg_mesh_file_add_partitions(
+        bad, 3,
+        (const rg_tile_partition[]){{11, distribution[0]}, {2, distribution[1]}, {3, distribution[2]}});
     rg_mesh_file *f = rg_mesh_file_open(bad);
     assert_int_equal(rg_mesh_file_partitions(f, &parts), 3);
     assert_true(parts[0] == 2 && parts[1] == 3 && parts[2] == 11);
     for (int k = 0; k < 3; k++) {
         assert_true(rg_mesh_file_partition(f, k == 0 ? 11 : k + 1, found));
-        assert_memory_equal(found, deal[k], sizeof found);
+        assert_memory_equal(found, distribution[k], sizeof found);
     }
     assert_false(rg_mesh_file_partition(f, 4, found));
     rg_free(parts);

@@ -125,9 +125,9 @@ static void test_slabs(void **state) {
     assert_int_equal(tiles, TILES);
     for (int64_t begin = 0; begin < tiles; begin++) {
         for (int64_t end = begin; end <= tiles; end++) {
-            rg_faults faults = {.name = path};
-            rg_mesh_slab *s = rg_mesh_file_slab(f, begin, end, &faults);
-            assert_int_equal(faults.count, 0);
+            rg_input_errors input_errors = {.name = path};
+            rg_mesh_slab *s = rg_mesh_file_slab(f, begin, end, &input_errors);
+            assert_int_equal(input_errors.count, 0);
             check_slab(*state, s, begin, end);
             rg_mesh_slab_free(s);
         }

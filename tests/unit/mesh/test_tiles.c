@@ -17,7 +17,7 @@
 #include "case/expr.h"
 #include "mesh/gid_map.h"
 #include "mesh/tile_graph.h"
-#include "partition/deal.h"
+#include "partition/distribution.h"
 #include "partition/tile_weight.h"
 #include "support/dice.h"
 #include "support/mesh_text.h"
@@ -214,9 +214,9 @@ static void test_too_many_parts(void **state) {
     rg_mesh_free(m);
 }
 
-/* ---- deals ---- */
+/* ---- distributions ---- */
 
-static void test_deal(void **state) {
+static void test_distribution(void **state) {
     (void)state;
     enum { RANKS = 4 };
     rg_mesh *m = make();
@@ -227,15 +227,15 @@ static void test_deal(void **state) {
         for (int64_t t = 0; t < g->tiles; t++) { /* runs, so that some tiles are inside */
             owner[t] = t > 0 && dice_unit(&d) < 0.8 ? owner[t - 1] : (int32_t)(RANKS * dice_unit(&d));
         }
-        rg_deal *deal = rg_deal_make(g, owner, RANKS);
-        assert_true(deal->ranks == RANKS && deal->elements == 360 && deal->tile == 7 && deal->tiles == 52 &&
-                    deal->owner == owner);
+        rg_distribution *distribution = rg_distribution_make(g, owner, RANKS);
+        assert_true(distribution->ranks == RANKS && distribution->elements == 360 &&
+                    distribution->tile == 7 && distribution->tiles == 52 && distribution->owner == owner);
         rg_partition_quality q = rg_tile_graph_quality(g, RANKS, owner);
-        assert_true(deal->quality.cut_faces == q.cut_faces &&
-                    deal->quality.neighbours_max == q.neighbours_max);
+        assert_true(distribution->quality.cut_faces == q.cut_faces &&
+                    distribution->quality.neighbours_max == q.neighbours_max);
         int64_t at = 0;
         for (int r = 0; r < RANKS; r++) {
-            assert_int_equal(deal->start[r], at);
+            assert_int_equal(distribution->start[r], at);
             for (int inner = 0; inner < 2; inner++) {
                 for (int64_t t = 0; t < g->tiles; t++) {
                     bool shared = false;
@@ -243,16 +243,16 @@ static void test_deal(void **state) {
                         shared = shared || (m->neighbour[s] >= 0 && owner[m->neighbour[s] / 7] != owner[t]);
                     }
                     if (owner[t] == r && shared == (inner == 0)) {
-                        assert_int_equal(deal->list[at++], t);
+                        assert_int_equal(distribution->list[at++], t);
                     }
                 }
                 if (inner == 0) {
-                    assert_int_equal(deal->shared[r], at - deal->start[r]);
+                    assert_int_equal(distribution->shared[r], at - distribution->start[r]);
                 }
             }
         }
-        assert_true(at == 52 && deal->start[RANKS] == 52);
-        rg_deal_free(deal);
+        assert_true(at == 52 && distribution->start[RANKS] == 52);
+        rg_distribution_free(distribution);
     }
     rg_tile_graph_free(g);
     rg_mesh_free(m);
@@ -261,22 +261,22 @@ static void test_deal(void **state) {
 /* A mesh of so many tiles of 256 on one of two ranks. */
 static int64_t heavy;
 
-static void deal_many(void) {
+static void distribute_many(void) {
     rg_tile_graph g = {.elements = 256 * (heavy + 1), .tile = 256, .tiles = heavy + 1};
     g.start = rg_alloc((size_t)g.tiles + 1, sizeof *g.start);
     g.neighbour = rg_alloc(1, sizeof *g.neighbour);
     int32_t *owner = RG_NEW(int32_t, (size_t)g.tiles);
     owner[heavy] = 1;
-    rg_deal_free(rg_deal_make(&g, owner, 2));
+    rg_distribution_free(rg_distribution_make(&g, owner, 2));
 }
 
 static void test_most_elements_of_a_rank(void **state) {
     (void)state;
     heavy = (1 << 29) / 256;
-    expect_said(deal_many, RG_OK, "");
+    expect_said(distribute_many, RG_OK, "");
     heavy++;
     expect_said(
-        deal_many, RG_USAGE,
+        distribute_many, RG_USAGE,
         "rhegma: mesh: 536871168 elements on one rank, at most 536870912 are possible: use more ranks\n");
 }
 
@@ -339,9 +339,9 @@ static void test_weights(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_graph),     cmocka_unit_test(test_quality),
-        cmocka_unit_test(test_partition), cmocka_unit_test(test_too_many_parts),
-        cmocka_unit_test(test_deal),      cmocka_unit_test(test_most_elements_of_a_rank),
+        cmocka_unit_test(test_graph),        cmocka_unit_test(test_quality),
+        cmocka_unit_test(test_partition),    cmocka_unit_test(test_too_many_parts),
+        cmocka_unit_test(test_distribution), cmocka_unit_test(test_most_elements_of_a_rank),
         cmocka_unit_test(test_weights),
     };
     return cmocka_run_group_tests_name("tiles", tests, NULL, NULL);

@@ -108,7 +108,7 @@ static void look(rg_fragment_table *t, const rg_solver *s, bool several) {
 }
 
 /* Some of `count` rows on each rank, none on the last of several. */
-static void deal(int count, int ranks) {
+static void distribution(int count, int ranks) {
     int workers = ranks > 1 ? ranks - 1 : 1;
     int from = rank < workers ? rank * count / workers : count,
         to = rank < workers ? (rank + 1) * count / workers : count;
@@ -187,7 +187,7 @@ static void check_table(void) {
            "due each time");
     solver.step = 12;
     solver.time = 1.5e-7;
-    deal(ROWS, solver.ranks);
+    distribution(ROWS, solver.ranks);
     rg_fragment_table_take(t, &solver, NULL);
     rg_fragment_mark mark = rg_fragment_table_settle(t);
     for (int k = 0; k < ROWS; k++) {
@@ -217,7 +217,7 @@ static void check_table(void) {
     report(t->overlap_time == 3 && t->overlap[0] == 7 && t->overlap[1] == 8, "restart",
            "keeps the first overlap");
     solver.step = 14;
-    deal(2, solver.ranks);
+    distribution(2, solver.ranks);
     searches = 0;
     rg_fragment_table_take(t, &solver, NULL);
     look(t, &solver, true);

@@ -144,7 +144,7 @@ static void check_weights(const struct box *b, const rg_mesh *mesh, int tile) {
     rg_part *given = rg_part_distribute_weighted(rank == 0 ? mesh : NULL, tile, weight, MPI_COMM_WORLD);
     rg_part *read =
         rg_part_read(path, make_weights(mesh, tile), MPI_COMM_WORLD); /* the stored partition knows of none */
-    report(same_part(read, given), b->name, "parts by weight have the bits of those that rank 0 deals out");
+    report(same_part(read, given), b->name, "parts by weight have the bits of those that rank 0 distributes");
     const rg_partition_quality *q = &read->quality;
     const rg_partition_quality *other = &given->quality;
     report(q->imbalance == other->imbalance && q->cost_imbalance == other->cost_imbalance &&
@@ -210,7 +210,7 @@ static void check_box(const struct box *b) {
     rg_part *given = rg_part_distribute(rank == 0 ? mesh : NULL, tile, MPI_COMM_WORLD);
     rg_part *read = rg_part_read(path, NULL, MPI_COMM_WORLD);
     report(same_counts(read, given), b->name, "counts, box and sets");
-    report(same_part(read, given), b->name, "parts have the bits of those that rank 0 deals out");
+    report(same_part(read, given), b->name, "parts have the bits of those that rank 0 distributes");
     report(quality_right(read) && quality_right(given), b->name, "quality of the partition");
     rg_part_free(given);
     rg_part_free(read);

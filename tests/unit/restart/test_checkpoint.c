@@ -18,7 +18,7 @@
 #include "domain/assembly.h"
 #include "partition/material_map.h"
 #include "restart/restart.h"
-#include "solver/pace.h"
+#include "solver/step_limiter.h"
 #include "solver/setup.h"
 #include "solver/step.h"
 #include "solver/spectrum.h"
@@ -206,9 +206,9 @@ static void disturb(rg_solver *s) {
     rg_solver_resume(s);
 }
 
-/* As in a run, it follows the stiffening and the pace of the state before. */
+/* As in a run, it follows the stiffening and the opening rate of the state before. */
 static double next_step(const rg_solver *s) {
-    return rg_pace_step(s, 4e-10 * (1 + 0.3 * sin((double)s->step)) / sqrt(s->stiffening_anywhere));
+    return rg_limited_step(s, 4e-10 * (1 + 0.3 * sin((double)s->step)) / sqrt(s->stiffening_anywhere));
 }
 
 static void go_on(half *h, int steps) {

@@ -18,7 +18,7 @@
 #include "base/mem.h"
 #include "case/compare.h"
 #include "restart/restart.h"
-#include "restart/seal.h"
+#include "restart/checksum.h"
 #include "solver/tile.h"
 #include "support/checkpoint_tamper.h"
 #include "support/random_state.h"
@@ -56,15 +56,15 @@ void rg_warn(const char *format, ...) {
 
 size_t __wrap_rg_slab_window(size_t bytes);
 
-static bool seal_fails, sync_fails;
-bool __wrap_rg_seal_put(const char *path, int64_t step, MPI_Comm comm);
-bool __real_rg_seal_put(const char *path, int64_t step, MPI_Comm comm);
+static bool checksum_fails, sync_fails;
+bool __wrap_rg_checksum_put(const char *path, int64_t step, MPI_Comm comm);
+bool __real_rg_checksum_put(const char *path, int64_t step, MPI_Comm comm);
 bool __wrap_rg_sync_folder(const char *path);
 bool __real_rg_sync_folder(const char *path);
 
-bool __wrap_rg_seal_put(const char *path, int64_t step, MPI_Comm comm) {
+bool __wrap_rg_checksum_put(const char *path, int64_t step, MPI_Comm comm) {
     errno = EIO;
-    return !seal_fails && __real_rg_seal_put(path, step, comm);
+    return !checksum_fails && __real_rg_checksum_put(path, step, comm);
 }
 
 bool __wrap_rg_sync_folder(const char *path) {
@@ -177,8 +177,8 @@ static bool same_state(const run *a, const run *b) {
                     memcmp(&a->ledger, &b->ledger, sizeof a->ledger) == 0 &&
                     a->summary.dt_first == b->summary.dt_first && s->time == t->time && s->dt == t->dt &&
                     s->step == t->step && s->stiffening_anywhere == t->stiffening_anywhere &&
-                    s->pace == t->pace && s->omega2 == t->omega2 && s->limiting == t->limiting &&
-                    s->damping == t->damping;
+                    s->opening_rate == t->opening_rate && s->omega2 == t->omega2 &&
+                    s->limiting == t->limiting && s->damping == t->damping;
     bool elements = same_elements(s, t), faces = same_faces(s, t);
     if (!run_same || !elements || !faces) {
         printf("# run %d, elements %d, faces %d\n", run_same, elements, faces);
@@ -291,7 +291,7 @@ static bool elements_good(hid_t file, const run *x, uint64_t seed) {
     return good;
 }
 
-/* Keys are those of the broken faces, of seams twice: by both sides. */
+/* Keys are those of the broken faces, of tile-boundary faces twice: by both sides. */
 static bool faces_good(hid_t file, const run *x, uint64_t seed, int64_t copies) {
     int64_t n = -1, elements = x->r.mesh->elements;
     int64_t *key = load(file, "face/key", H5T_NATIVE_INT64, &n, 1);
@@ -403,7 +403,7 @@ static bool good_of(bool good, const char *name) {
     return good;
 }
 
-/* The file that the run wrote, changed by `which`, under a seal of its own. */
+/* The file that the run wrote, changed by `which`, under a checksum of its own. */
 static void make_tampered(const char *dir, int which) {
     char path[500];
     snprintf(path, sizeof path, "%s/checkpoints/step-000000000107.h5", dir);
@@ -417,8 +417,8 @@ static void make_tampered(const char *dir, int which) {
         put_text(file, "instruction_set", "abacus");
     }
     H5Fclose(file);
-    if (!rg_seal_put(path, 107, MPI_COMM_SELF)) {
-        rg_fatal(RG_FAILURE, "%s cannot be sealed", path);
+    if (!rg_checksum_put(path, 107, MPI_COMM_SELF)) {
+        rg_fatal(RG_FAILURE, "%s cannot be given its checksum", path);
     }
 }
 
@@ -523,9 +523,10 @@ static bool check_failures(run *x) {
     draw(x, 1);
     rg_checkpoint_write(&x->k, 1);
     draw(x, 2);
-    seal_fails = true;
-    bool good = write_fails(x, "step-000000000102.h5: cannot seal the file: Input/output error", "101 ");
-    seal_fails = false;
+    checksum_fails = true;
+    bool good = write_fails(
+        x, "step-000000000102.h5: cannot write the checksum of the file: Input/output error", "101 ");
+    checksum_fails = false;
     sync_fails = true;
     good = write_fails(x, "failing/checkpoints: cannot bring the folder to the disk: Input/output error",
                        "101 102 ") &&

@@ -152,16 +152,16 @@ static void starts_behind_a_restart(void **state) {
     assert_int_equal(t.last, 1);
 }
 
-static void wishes(void **state) {
+static void stop_requests(void **state) {
     (void)state;
     rg_schedule t;
     rg_schedule_start(&t, &solver, 0);
-    solver.wish = RG_WISH_CHECKPOINT;
+    solver.stop_request = RG_REQUEST_CHECKPOINT;
     assert_true(due(&t, 3, 1e-9));
     rg_schedule_done(&t, &solver, 1);
     assert_false(due(&t, 3, 1e-9)); /* was just written */
-    for (int wish = RG_WISH_STOP; wish <= RG_WISH_TIME_UP; wish++) {
-        solver.wish = wish;
+    for (int stop_request = RG_REQUEST_STOP; stop_request <= RG_REQUEST_TIME_UP; stop_request++) {
+        solver.stop_request = stop_request;
         assert_true(due(&t, 3, 1e-9)); /* also where it was: the run is to stop */
         assert_false(rg_schedule_due(&t, &solver, true));
     }
@@ -259,7 +259,7 @@ int main(void) {
         cmocka_unit_test_setup(every_so_many_steps, set_up),
         cmocka_unit_test_setup(at_multiples_of_simulated_time, set_up),
         cmocka_unit_test_setup(starts_behind_a_restart, set_up),
-        cmocka_unit_test_setup(wishes, set_up),
+        cmocka_unit_test_setup(stop_requests, set_up),
         cmocka_unit_test_setup(at_the_end_for_each_reason, set_up),
         cmocka_unit_test_setup(seconds_of_a_checkpoint, set_up),
         cmocka_unit_test_setup(clock_leaves_room_for_a_checkpoint, set_up),

@@ -273,7 +273,7 @@ static double damping_of(const rg_case *c, const rg_mesh *mesh, double omega2) {
 static bool at_rest(const rg_solver *s, const rg_cohesive *law, size_t stride) {
     bool rest = memcmp(&s->law, law, sizeof *law) == 0 && s->crack_stride == stride;
     for (size_t i = 0; i < s->domain->blocks * RG_NODE_BLOCK; i++)
-        rest = rest && s->u[i] == 0 && s->velocity[i] == 0 && s->now[i] == 0;
+        rest = rest && s->u[i] == 0 && s->velocity[i] == 0 && s->step_velocity[i] == 0;
     for (size_t i = 0; i < s->domain->iblocks * RG_LANES; i++)
         rest = rest && s->broken[i] == s->unlinked[i] &&
                s->broken[i] == (law->intrinsic ? (1 << RG_POINTS) - 1 : 0) &&

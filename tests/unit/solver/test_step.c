@@ -1,7 +1,7 @@
 /* The step of the solver against its twin (step_twin.h), on any number of ranks: what lies between the
- * kernels - tiles, seams, rows, links, materials, laws, strengths, shared nodes, prescribed motion, rigid
- * bodies - in every form, with faces that hold, open, break and close. Tiles have several blocks, which
- * meshes under a thousand elements have not by themselves. Prints TAP from rank 0. */
+ * kernels - tiles, tile-boundary faces, rows, links, materials, laws, strengths, shared nodes, prescribed
+ * motion, rigid bodies - in every form, with faces that hold, open, break and close. Tiles have several
+ * blocks, which meshes under a thousand elements have not by themselves. Prints TAP from rank 0. */
 #include <float.h>
 #include <math.h>
 #include <omp.h>
@@ -41,7 +41,7 @@ enum {
     NOW,
     STIFFENING,
     HEAT,
-    PACE,
+    OPENING_RATE,
     BODY,
     PLACE,
     FORCE,
@@ -66,8 +66,9 @@ static const char *const kind_name[] = {"displacement",
                                         "energy",
                                         "history",
                                         "crack"};
-static const int kind_begin[] = {DISPLACEMENT, VELOCITY, NOW,    STIFFENING, HEAT,    PACE,  BODY, PLACE,
-                                 FORCE,        FIRST,    STORED, ENERGY,     HISTORY, CRACK, KINDS};
+static const int kind_begin[] = {DISPLACEMENT, VELOCITY, NOW,     STIFFENING, HEAT,
+                                 OPENING_RATE, BODY,     PLACE,   FORCE,      FIRST,
+                                 STORED,       ENERGY,   HISTORY, CRACK,      KINDS};
 
 /* Largest difference and largest value of each kind on this rank, over all steps. */
 typedef struct {
@@ -78,7 +79,7 @@ typedef struct {
     int masks;          /* interfaces whose bits differ */
     int displaced;      /* nodes that are not quite where they are to be */
     int bits, energies; /* steps after which the state is not that of the lone solver, or its energies */
-    int watched, held, opened, parted, closed, seams, across_blocks;
+    int watched, held, opened, parted, closed, tile_faces, across_blocks;
 } record;
 
 static void note(record *r, int kind, double got, double expected) {
@@ -100,7 +101,7 @@ static void compare_elements(record *r, const rg_solver *s, const twin *w, bool 
             note(r, DISPLACEMENT, s->u[i], w->u[j]);
             note(r, VELOCITY, s->velocity[i], w->velocity[j]);
             if (now)
-                note(r, NOW, s->now[i], w->now[j]);
+                note(r, NOW, s->step_velocity[i], w->step_velocity[j]);
         }
         note(r, STIFFENING, s->stiffening[slot], w->stiffening[at]);
         if (s->heat != NULL)
@@ -181,7 +182,7 @@ static void compare_interface(record *r, const rg_solver *s, const twin *w, cons
         r->across_blocks +=
             s->domain->side[0][i] / (RG_FACES * RG_LANES) != s->domain->side[1][i] / (RG_FACES * RG_LANES);
     else
-        r->seams++;
+        r->tile_faces++;
     for (int q = 0; q < RG_POINTS; q++) {
         for (int k = 0; k < RG_CRACK + RG_LAW_MEMORY + RG_FRICTION && (s->broken[i] >> q & 1); k++) {
             size_t row = crack_row(w, j % RG_LANES, q, k), own = crack_row(w, i % RG_LANES, q, k);
@@ -379,7 +380,7 @@ static bool same(const void *a, const void *b, size_t bytes) {
 /* All that the two have in common has the same bits. */
 static bool same_bits(const rg_solver *s, const lone *one) {
     const rg_solver *o = one->solver;
-    bool good = s->stiffening_anywhere == o->stiffening_anywhere && s->pace == o->pace;
+    bool good = s->stiffening_anywhere == o->stiffening_anywhere && s->opening_rate == o->opening_rate;
     for (size_t slot = 0; slot < s->domain->blocks * RG_LANES; slot++) {
         rg_gid id = s->domain->id[slot];
         for (int k = 0; k < 3 * RG_NODES && id >= 0; k++) {
@@ -428,8 +429,8 @@ static void watch(void *context, rg_solver *s, size_t tile, const rg_workspace *
     for (size_t slot = t->begin * RG_LANES; slot < t->end * RG_LANES; slot++) {
         rg_gid id = s->domain->id[slot];
         for (int k = 0; k < 3 * RG_NODES && id >= 0; k++)
-            note(own->record, NOW, s->now[rg_node_index(slot, k / 3, k % 3)],
-                 w->now[rg_node_index(w->slot[id], k / 3, k % 3)]);
+            note(own->record, NOW, s->step_velocity[rg_node_index(slot, k / 3, k % 3)],
+                 w->step_velocity[rg_node_index(w->slot[id], k / 3, k % 3)]);
         if (id >= 0)
             note(own->record, STORED, got[slot - t->begin * RG_LANES], want[w->slot[id]]);
     }
@@ -438,15 +439,16 @@ static void watch(void *context, rg_solver *s, size_t tile, const rg_workspace *
 }
 
 static void note_step(record *r, rg_solver *s, const twin *w) {
-    double most = 0, pace = 0;
+    double most = 0, opening_rate = 0;
     for (size_t e = 0; e < w->elements; e++)
         most = fmax(most, w->stiffening[w->slot[e]]);
     note(r, STIFFENING, s->stiffening_anywhere, most);
-    for (size_t i = 0; i < w->interfaces && s->tile_pace != NULL; i++)
+    for (size_t i = 0; i < w->interfaces && s->tile_opening_rate != NULL; i++)
         for (int q = 0; q < RG_POINTS; q++)
-            pace = fmax(pace, w->crack[i / RG_LANES * w->crack_stride +
-                                       crack_row(w, i % RG_LANES, q, RG_CRACK + RG_PACE_RATE)]);
-    note(r, PACE, s->pace, pace);
+            opening_rate =
+                fmax(opening_rate, w->crack[i / RG_LANES * w->crack_stride +
+                                            crack_row(w, i % RG_LANES, q, RG_CRACK + RG_LIMITER_RATE)]);
+    note(r, OPENING_RATE, s->opening_rate, opening_rate);
     compare_interfaces(r, s, w);
     compare_bodies(r, s, w);
 }
@@ -542,12 +544,13 @@ static void judge(const variant *v, const record *r) {
     report(r->bits == 0, v->name, "the same bits on one rank with three threads");
     report(r->energies == 0, v->name, "the same energies there");
     bool none = v->override[0] != NULL && strstr(v->override[0], "law: none") != NULL;
-    bool parts =
-        r->across_blocks > 1000 && r->seams > 1000 && r->opened > 500 && r->parted > 10 && r->closed > 300;
+    bool parts = r->across_blocks > 1000 && r->tile_faces > 1000 && r->opened > 500 && r->parted > 10 &&
+                 r->closed > 300;
     report(r->watched > 0 && none != parts, v->name, "there was something to compare");
     if (rank == 0)
-        printf("# %d points hold, %d open, %d parted, %d closed; %d interfaces between blocks, %d seams\n",
-               r->held, r->opened, r->parted, r->closed, r->across_blocks, r->seams);
+        printf("# %d points hold, %d open, %d parted, %d closed; %d interfaces between blocks, %d "
+               "tile-boundary faces\n",
+               r->held, r->opened, r->parted, r->closed, r->across_blocks, r->tile_faces);
 }
 
 /* ---- The start, and a state that is none ---- */

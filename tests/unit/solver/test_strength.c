@@ -1,5 +1,5 @@
 /* Strengths that differ from face to face: Weibull's distribution, sets of faces, the same on both copies of
- * a seam. */
+ * a tile-boundary face. */
 #include <stdarg.h>
 #include <stddef.h>
 #include <setjmp.h>
@@ -69,7 +69,8 @@ static face face_of(const rg_solver *s, const rg_tile *t, size_t i) {
     return f;
 }
 
-/* All faces of a solver, seams twice, sorted by place; the caller frees them. Frees the solver. */
+/* All faces of a solver, tile-boundary faces twice, sorted by place; the caller frees them. Frees the solver.
+ */
 static face *list_faces(rg_solver *s, size_t *count) {
     face *list = calloc(s->domain->iblocks * RG_LANES, sizeof *list);
     assert_non_null(list);
@@ -108,7 +109,7 @@ static void test_weibull(void **state) {
     face *f = faces_of(1, set, &count);
     for (size_t i = 0; i < count; i++) {
         assert_true(fabs(f[i].strength * f[i].opening - 1) < 1e-6); /* G_c stays */
-        if (i + 1 < count && by_place(&f[i], &f[i + 1]) == 0) {     /* copies of a seam */
+        if (i + 1 < count && by_place(&f[i], &f[i + 1]) == 0) {     /* copies of a tile-boundary face */
             assert_true(f[i].strength == f[i + 1].strength && f[i].opening == f[i + 1].opening);
             continue;
         }

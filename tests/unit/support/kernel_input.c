@@ -402,7 +402,7 @@ rg_interface_args input_interface_args(const input *in, uint8_t *broken, uint8_t
         .time = 3e-7,
         .u = in->u,
         .traction = in->traction,
-        .first_seam = INPUT_IBLOCKS,
+        .first_tile_face = INPUT_IBLOCKS,
         .side = {in->side[0], in->side[1]},
         .geom = in->igeom,
         .broken = broken,

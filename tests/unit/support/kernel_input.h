@@ -1,7 +1,7 @@
 /* Random but valid input for the kernels: a jittered box of tetrahedra, deformed with a discontinuity at
  * every face, and interfaces with tractions and crack states of every regime. The whole mesh is one tile
- * without seams. The physics is a function of (kind, seed) alone; `order` shuffles which slot (block and
- * lane) each element and interface sits in. */
+ * without tile-boundary faces. The physics is a function of (kind, seed) alone; `order` shuffles which slot
+ * (block and lane) each element and interface sits in. */
 #ifndef RG_KERNEL_INPUT_H
 #define RG_KERNEL_INPUT_H
 

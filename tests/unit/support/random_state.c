@@ -140,7 +140,7 @@ static void draw_element(rg_solver *s, size_t slot, uint64_t seed) {
     for (int k = 0; k < 3 * RG_NODES; k++) {
         size_t at = rg_node_index(slot, k / 3, k % 3);
         s->u[at] = (rg_real)drawn_u(seed, id, k / 3, k % 3);
-        s->now[at] = (rg_real)drawn_now(seed, id, k / 3, k % 3);
+        s->step_velocity[at] = (rg_real)drawn_now(seed, id, k / 3, k % 3);
         s->velocity[at] = (rg_real)(20 * drawn(seed, DRAW_VELOCITY, id, k));
     }
     int values = rg_material_history(rg_material_of(s, slot)->model), rows = (int)rg_history_rows(values);
@@ -193,7 +193,7 @@ static void draw_registered(rg_solver *s, uint64_t seed) {
     s->dt = 1e-9 * (2 + drawn(seed, DRAW_RUN, 0, 1));
     s->step = 123 + (int64_t)(50 * drawn(seed, DRAW_RUN, 0, 2));
     s->stiffening_anywhere = 1.5 + drawn(seed, DRAW_RUN, 0, 3);
-    s->pace = 1.5 + drawn(seed, DRAW_RUN, 0, 4);
+    s->opening_rate = 1.5 + drawn(seed, DRAW_RUN, 0, 4);
     s->omega2 = 1e17 * (1.5 + drawn(seed, DRAW_RUN, 0, 5));
     s->limiting = 60 + (int64_t)(50 * drawn(seed, DRAW_RUN, 0, 6));
     s->damping = 0.1 * (1.5 + drawn(seed, DRAW_RUN, 0, 7));

@@ -20,8 +20,8 @@ typedef struct {
 random_state random_state_make(int changes, const char *const change[], MPI_Comm comm);
 void random_state_free(random_state *r);
 
-/* Draws all that the solver's registry of state (solver/state.h) holds, and `now`, and publishes the traces.
- * `seed` tells states apart. Collective. */
+/* Draws all that the solver's registry of state (solver/state.h) holds, and `step_velocity`, and publishes
+ * the traces. `seed` tells states apart. Collective. */
 void random_state_draw(random_state *r, uint64_t seed);
 
 /* From this seed on most faces have failed, so that the body is debris. */

@@ -89,7 +89,7 @@ static void hold(twin *w, size_t e, int c) {
         }
     }
     if (any) {
-        h->work_now = h->work + (w->step > 0 ? correct(w, e, c, h->before, present, w->now) : 0);
+        h->work_now = h->work + (w->step > 0 ? correct(w, e, c, h->before, present, w->step_velocity) : 0);
         h->work += correct(w, e, c, h->before, target, w->velocity);
         memcpy(h->before, target, sizeof target);
     }
@@ -203,7 +203,7 @@ static rg_interface_args interface_args(const twin *w) {
                                .step = w->dt,
                                .u = w->u,
                                .traction = w->traction,
-                               .first_seam = w->iblocks,
+                               .first_tile_face = w->iblocks,
                                .side = {w->side[0], w->side[1]},
                                .geom = w->igeom,
                                .scale = w->scale,
@@ -293,7 +293,7 @@ void twin_kick(twin *w, double dt) {
         rg_material_prepare(&w->material[m], w->dt);
     evaluate(w, w->dt > 0);
     for (size_t k = 0; k < w->blocks * RG_NODE_BLOCK; k++) {
-        w->now[k] = (rg_real)(w->velocity[k] + w->dt / 2 * w->acceleration[k]);
+        w->step_velocity[k] = (rg_real)(w->velocity[k] + w->dt / 2 * w->acceleration[k]);
         w->velocity[k] += (rg_real)((w->dt + dt) / 2 * w->acceleration[k]);
     }
     for (size_t k = 0; k < 3 * w->elements; k++)
@@ -335,7 +335,7 @@ static void add_released(const twin *w, size_t e, rg_energy *sum) {
 static void add_elements(const twin *w, rg_energy *sum) {
     double *bulk = RG_NEW(double, w->blocks *RG_LANES), *kinetic = RG_NEW(double, w->blocks *RG_LANES);
     twin_bulk_energies(w, bulk);
-    rg_kinetic_args args = {1, w->lumped, w->geom, w->now, kinetic};
+    rg_kinetic_args args = {1, w->lumped, w->geom, w->step_velocity, kinetic};
     rg_reference_kinetic(&args, 0, w->blocks);
     for (size_t e = 0; e < w->elements; e++) {
         sum->bulk += bulk[w->slot[e]];
@@ -355,7 +355,7 @@ static void add_momentum(const twin *w, rg_energy *sum) {
         position(w, e, a, x);
         for (int c = 0; c < 3; c++) {
             x[c] += w->u[rg_node_index(w->slot[e], a, c)];
-            v[c] = mass * w->now[rg_node_index(w->slot[e], b, c)];
+            v[c] = mass * w->step_velocity[rg_node_index(w->slot[e], b, c)];
             sum->momentum[c] += v[c];
         }
         rg_reference_cross(x, v, turn);

@@ -1,7 +1,7 @@
 /* The twin of the solver: a step of the whole body as plain loops over the elements and faces of the mesh,
- * with the scalar kernels. It knows no tiles, seams, rows, links between tiles, ranks or threads, and reads
- * nothing of what the solver has made of the case: materials, law, penalties, shared nodes, prescribed motion
- * and rigid bodies are worked out anew. */
+ * with the scalar kernels. It knows no tiles, tile-boundary faces, rows, links between tiles, ranks or
+ * threads, and reads nothing of what the solver has made of the case: materials, law, penalties, shared
+ * nodes, prescribed motion and rigid bodies are worked out anew. */
 #ifndef STEP_TWIN_H
 #define STEP_TWIN_H
 
@@ -37,8 +37,8 @@ typedef struct {
     int16_t *held; /* [elements][10][3]: the boundary that prescribes it; -1: none */
     size_t crack_stride, history_stride;
     rg_real *geom, *igeom, *scale;
-    rg_real *u, *velocity, *now, *acceleration, *force, *traction, *stiffening, *iforce, *turn, *crack,
-        *history;
+    rg_real *u, *velocity, *step_velocity, *acceleration, *force, *traction, *stiffening, *iforce, *turn,
+        *crack, *history;
     double *heat;
     uint8_t *broken, *unlinked, *active, *cracked;
     int32_t *neighbour, *interface, *side[2];

@@ -285,7 +285,7 @@ twin *twin_make(const rg_case *c, const rg_mesh *mesh) {
     w->history_stride = rg_history_block(values);
     w->history = values > 0 ? RG_NEW(rg_real, w->blocks * w->history_stride) : NULL;
     w->heat = c->viscosity.linear > 0 || c->viscosity.quadratic > 0 ? RG_NEW(double, slots) : NULL;
-    rg_real **field[] = {&w->u, &w->velocity, &w->now, &w->acceleration, &w->force};
+    rg_real **field[] = {&w->u, &w->velocity, &w->step_velocity, &w->acceleration, &w->force};
     for (size_t k = 0; k < sizeof field / sizeof *field; k++)
         *field[k] = RG_NEW(rg_real, w->blocks * RG_NODE_BLOCK);
     w->traction = RG_NEW(rg_real, w->blocks * RG_TRACTION_BLOCK);
@@ -332,11 +332,11 @@ void twin_start(twin *w) {
 }
 
 void twin_free(twin *w) {
-    void *blocks[] = {w->of,     w->slot,      w->face,      w->node,         w->held,     w->hold,
-                      w->u,      w->velocity,  w->now,       w->force,        w->traction, w->stiffening,
-                      w->geom,   w->neighbour, w->interface, w->acceleration, w->cracked,  w->igeom,
-                      w->iforce, w->turn,      w->crack,     w->scale,        w->broken,   w->unlinked,
-                      w->active, w->side[0],   w->side[1],   w->history,      w->heat,     w->body,
+    void *blocks[] = {w->of,     w->slot,      w->face,          w->node,         w->held,     w->hold,
+                      w->u,      w->velocity,  w->step_velocity, w->force,        w->traction, w->stiffening,
+                      w->geom,   w->neighbour, w->interface,     w->acceleration, w->cracked,  w->igeom,
+                      w->iforce, w->turn,      w->crack,         w->scale,        w->broken,   w->unlinked,
+                      w->active, w->side[0],   w->side[1],       w->history,      w->heat,     w->body,
                       w};
     for (size_t k = 0; k < sizeof blocks / sizeof *blocks; k++)
         rg_free(blocks[k]);

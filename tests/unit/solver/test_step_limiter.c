@@ -1,5 +1,5 @@
-/* The adaptive time step (3.14) in the solver: paces against (3.15) from the displacement itself, and the
- * step that follows from them. */
+/* The adaptive time step (3.14) in the solver: opening rates against (3.15) from the displacement itself, and
+ * the step that follows from them. */
 #include <stdarg.h>
 #include <stddef.h>
 #include <setjmp.h>
@@ -13,7 +13,7 @@
 #include "case/case.h"
 #include "case/read.h"
 #include "reference/reference.h"
-#include "solver/pace.h"
+#include "solver/step_limiter.h"
 #include "solver/setup.h"
 #include "solver/step.h"
 #include "solver/spectrum.h"
@@ -55,7 +55,7 @@ static double opening(const rg_solver *s, const rg_tile *t, size_t i, int q, con
 
 /* max xi/dt of all points by (3.15); `x` holds their openings of the state before and gets those of this one.
  * `widest`: the largest of them. */
-static double pace_of(const rg_solver *s, double *x, double dt, double *widest) {
+static double opening_rate_of(const rg_solver *s, double *x, double dt, double *widest) {
     double most = 0;
     for (size_t k = 0; k < s->domain->tiles; k++) {
         const rg_tile *t = &s->domain->tile[k];
@@ -73,9 +73,9 @@ static double pace_of(const rg_solver *s, double *x, double dt, double *widest) 
     return most;
 }
 
-/* The step is the smaller one of (3.14), within the rounding of solver/pace.h. */
-static void check_step(double got, double dt, double pace) {
-    double cohesive = 1 / (pace * STEPS);
+/* The step is the smaller one of (3.14), within the rounding of solver/step_limiter.h. */
+static void check_step(double got, double dt, double opening_rate) {
+    double cohesive = 1 / (opening_rate * STEPS);
     assert_true(got <= fmin(dt, cohesive) * (1 + 1e-12));
     assert_true(got >= fmin(dt, cohesive * exp2(-0.25)) * (1 - 1e-12));
 }
@@ -92,14 +92,14 @@ static void test_step_follows_the_opening(void **state) {
     rg_solver_start(s);
     int steps = 0;
     for (; widest < 1.5 * ASCENT && steps < MOST_STEPS; steps++) {
-        double dt = rg_pace_step(s, still), climb = widest;
-        check_step(dt, still, s->pace);
-        double expected = pace_of(s, x, s->dt, &widest);
+        double dt = rg_limited_step(s, still), climb = widest;
+        check_step(dt, still, s->opening_rate);
+        double expected = opening_rate_of(s, x, s->dt, &widest);
         if (climb > 0.1 * ASCENT && widest < ASCENT) { /* at first the predictor lags too far behind */
             fastest = fmax(fastest, (widest - climb) / ASCENT * STEPS);
         }
         rg_solver_step(s, dt);
-        assert_true(fabs(s->pace - expected) <= 1e-3 * expected);
+        assert_true(fabs(s->opening_rate - expected) <= 1e-3 * expected);
         least = fmin(least, dt / still);
     }
     assert_true(steps < MOST_STEPS);
@@ -111,16 +111,16 @@ static void test_step_follows_the_opening(void **state) {
 }
 
 /* Without `steps`, and for other laws, the step stays as it is and nothing is kept for it. */
-static void test_no_pace_without_steps(void **state) {
+static void test_no_limit_without_steps(void **state) {
     (void)state;
     rg_case *c = read_case();
-    c->interface.shape[RG_LAW_BILINEAR][RG_PACE_STEPS] = 0;
+    c->interface.shape[RG_LAW_BILINEAR][RG_LIMITER_STEPS] = 0;
     rg_solver *s = rg_solver_make(c, MPI_COMM_SELF);
     rg_solver_start(s);
     rg_solver_step(s, 1e-12);
     rg_solver_step(s, 1e-12);
-    assert_null(s->tile_pace);
-    assert_true(rg_pace_step(s, 3e-9) >= 3e-9);
+    assert_null(s->tile_opening_rate);
+    assert_true(rg_limited_step(s, 3e-9) >= 3e-9);
     rg_solver_free(s);
     rg_case_free(c);
 }
@@ -130,7 +130,7 @@ int main(int argc, char **argv) {
     MPI_Init(&argc, &argv);
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_step_follows_the_opening),
-        cmocka_unit_test(test_no_pace_without_steps),
+        cmocka_unit_test(test_no_limit_without_steps),
     };
     int failed = cmocka_run_group_tests(tests, NULL, NULL);
     MPI_Finalize();

@@ -1,6 +1,6 @@
-/* The seal of checkpoints, on any number of ranks: whatever bit is flipped, whatever is cut off or added, it
- * is noticed. Prints TAP. */
-#include "restart/seal.h"
+/* The checksum of checkpoints, on any number of ranks: whatever bit is flipped, whatever is cut off or added,
+ * it is noticed. Prints TAP. */
+#include "restart/checksum.h"
 
 #include <fcntl.h>
 #include <stdio.h>
@@ -12,7 +12,7 @@
 #include "base/mem.h"
 #include "support/tap.h"
 
-enum { PLANNED = 10, BYTES = RG_SEAL + 2 * (1 << 20) + 12345, RANDOM = 1000 };
+enum { PLANNED = 10, BYTES = RG_CHECKSUM + 2 * (1 << 20) + 12345, RANDOM = 1000 };
 
 static int ranks;
 static char path[200], reason[300];
@@ -21,7 +21,7 @@ static bool agreed = true;
 /* What rank 0 finds, so that all ranks go on alike; notes whether all found that. */
 static bool holds(void) {
     MPI_Barrier(MPI_COMM_WORLD);
-    bool mine = rg_seal_holds(path, MPI_COMM_WORLD, reason, sizeof reason), good = mine;
+    bool mine = rg_checksum_holds(path, MPI_COMM_WORLD, reason, sizeof reason), good = mine;
     MPI_Bcast(&good, 1, MPI_C_BOOL, 0, MPI_COMM_WORLD);
     agreed = agreed && mine == good;
     MPI_Barrier(MPI_COMM_WORLD);
@@ -62,7 +62,7 @@ static bool noticed(off_t position, int bit) {
 
 static void write_file(void) {
     char *data = RG_NEW(char, BYTES);
-    for (size_t i = RG_SEAL; i < BYTES; i++) {
+    for (size_t i = RG_CHECKSUM; i < BYTES; i++) {
         data[i] = (char)rg_mix(i / 3); /* also runs of the same byte */
     }
     int file = open(path, O_WRONLY | O_CREAT | O_TRUNC, 0666);
@@ -77,48 +77,49 @@ static void write_file(void) {
 static void check_bits(void) {
     bool head = true, body = true;
     int every = ranks == 1 ? 1 : 32; /* several ranks: that they agree */
-    for (int bit = 0; bit < 8 * RG_SEAL; bit += every) {
+    for (int bit = 0; bit < 8 * RG_CHECKSUM; bit += every) {
         head = noticed(bit / 8, bit % 8) && head;
     }
-    report(head, "seal", "its bits: all of them, on one rank");
+    report(head, "checksum", "its bits: all of them, on one rank");
     for (uint64_t i = 0; i < RANDOM; i += (uint64_t)every) {
         uint64_t h = rg_hash(1, i);
-        off_t position = RG_SEAL + (off_t)(rg_hash_uniform(h) * (BYTES - RG_SEAL));
+        off_t position = RG_CHECKSUM + (off_t)(rg_hash_uniform(h) * (BYTES - RG_CHECKSUM));
         body = noticed(position, (int)(h % 8)) && body;
     }
-    body = noticed(RG_SEAL, 0) && body;
+    body = noticed(RG_CHECKSUM, 0) && body;
     body = noticed(BYTES - 1, 7) && body;
-    report(body, "seal", "bits of what it seals: 1,000 on one rank, and the first and the last");
-    report(holds(), "seal", "the file as it was");
+    report(body, "checksum", "bits of what it covers: 1,000 on one rank, and the first and the last");
+    report(holds(), "checksum", "the file as it was");
 }
 
 static void check_length(void) {
     bool good = true;
-    const off_t lengths[] = {0, 1, 100, RG_SEAL - 1, RG_SEAL, RG_SEAL + 1, BYTES / 2, BYTES - 1, BYTES + 1};
+    const off_t lengths[] = {0,         1,         100,      RG_CHECKSUM - 1, RG_CHECKSUM, RG_CHECKSUM + 1,
+                             BYTES / 2, BYTES - 1, BYTES + 1};
     for (size_t i = 0; i < sizeof lengths / sizeof *lengths; i++) {
         if (rank == 0) {
             write_file();
         }
         MPI_Barrier(MPI_COMM_WORLD);
-        good = rg_seal_put(path, 77, MPI_COMM_WORLD) && holds() && good;
+        good = rg_checksum_put(path, 77, MPI_COMM_WORLD) && holds() && good;
         good = (rank != 0 || truncate(path, lengths[i]) == 0) && good;
         char why[100];
         snprintf(why, sizeof why, "it has %lld bytes and should have %d", (long long)lengths[i], BYTES);
         good = refused(lengths[i] < 100 ? "its head is not that of a checkpoint" : why) && good;
     }
-    report(good, "seal", "any other length");
+    report(good, "checksum", "any other length");
 }
 
 /* What is written stays readable for later versions: of a file of 3 parts, by any number of ranks. */
 static void check_text(void) {
     static const char wanted[] =
         "rhegma checkpoint 1\nstep 77\nbytes 2110009\nsum 173403126ea03d38\ncheck 25686768156c05eb\n";
-    char found[RG_SEAL + 1] = {0};
+    char found[RG_CHECKSUM + 1] = {0};
     bool good = true;
     if (rank == 0) {
         int file = open(path, O_RDONLY);
-        good = pread(file, found, RG_SEAL, 0) == RG_SEAL && strcmp(found, wanted) == 0;
-        for (size_t i = strlen(wanted); i < RG_SEAL; i++) {
+        good = pread(file, found, RG_CHECKSUM, 0) == RG_CHECKSUM && strcmp(found, wanted) == 0;
+        for (size_t i = strlen(wanted); i < RG_CHECKSUM; i++) {
             good = good && found[i] == '\0';
         }
         close(file);
@@ -126,20 +127,20 @@ static void check_text(void) {
     if (!good) {
         printf("# %s", found);
     }
-    report(good, "seal", "its text");
+    report(good, "checksum", "its text");
 }
 
 static void check_reasons(void) {
     flip(3, 0);
     bool good = refused("its head is not that of a checkpoint");
     flip(3, 0);
-    flip(RG_SEAL - 1, 6);
+    flip(RG_CHECKSUM - 1, 6);
     good = refused("its head is damaged") && good;
-    flip(RG_SEAL - 1, 6);
+    flip(RG_CHECKSUM - 1, 6);
     flip(BYTES - 5, 2);
     good = refused("its checksum is wrong: it is damaged") && good;
     flip(BYTES - 5, 2);
-    report(good, "seal", "what is wrong");
+    report(good, "checksum", "what is wrong");
 }
 
 int main(int argc, char **argv) {
@@ -148,13 +149,13 @@ int main(int argc, char **argv) {
     MPI_Comm_size(MPI_COMM_WORLD, &ranks);
     if (rank == 0) {
         printf("1..%d\n", PLANNED);
-        snprintf(path, sizeof path, "/tmp/test_seal.XXXXXX");
+        snprintf(path, sizeof path, "/tmp/test_checksum.XXXXXX");
         close(mkstemp(path));
         write_file();
     }
     MPI_Bcast(path, sizeof path, MPI_CHAR, 0, MPI_COMM_WORLD);
-    report(!holds(), "seal", "a file without a seal");
-    report(rg_seal_put(path, 77, MPI_COMM_WORLD) && holds(), "seal", "a file with one");
+    report(!holds(), "checksum", "a file without one");
+    report(rg_checksum_put(path, 77, MPI_COMM_WORLD) && holds(), "checksum", "a file with it");
     check_text();
     check_reasons();
     check_bits();
@@ -163,9 +164,9 @@ int main(int argc, char **argv) {
         unlink(path);
     }
     MPI_Barrier(MPI_COMM_WORLD);
-    report(refused("cannot be read: No such file or directory") && !rg_seal_put(path, 77, MPI_COMM_WORLD),
-           "seal", "no file");
-    report(agreed, "seal", "all ranks find the same");
+    report(refused("cannot be read: No such file or directory") && !rg_checksum_put(path, 77, MPI_COMM_WORLD),
+           "checksum", "no file");
+    report(agreed, "checksum", "all ranks find the same");
     MPI_Finalize();
     return failures > 0 || number != PLANNED;
 }

@@ -1,8 +1,9 @@
-/* Seams on every set of kernels: a face computed as a seam from either side has the bits that it has inside a
- * tile, and an element does not feel which of its faces are seams.
+/* Tile-boundary faces on every set of kernels: a face computed as a tile-boundary face from either side has
+ * the bits that it has inside a tile, and an element does not feel which of its faces are tile-boundary
+ * faces.
  *
- * A cut takes the input's body and turns some of its faces into two seams each, both in the same tile; what
- * they know of each other comes through send, receive and send_tractions alone. */
+ * A cut takes the input's body and turns some of its faces into two tile-boundary faces each, both in the
+ * same tile; what they know of each other comes through send, receive and send_tractions alone. */
 #include <stdarg.h>
 #include <stddef.h>
 #include <setjmp.h>
@@ -24,11 +25,11 @@ enum {
 };
 
 /* Interface numbers of the cut body: copy[i] are those of the input's interface i, one inside the tile and
- * NONE, or the seams on the minus and on the plus side. */
+ * NONE, or the tile-boundary faces on the minus and on the plus side. */
 typedef struct {
     const input *in;
     size_t inside, iblocks; /* blocks */
-    size_t rows;            /* of seams */
+    size_t rows;            /* of tile-boundary faces */
     int copy[INPUT_INTERFACES][2];
     int32_t *neighbour, *interface, *side[2];
     rg_real *igeom, *ipull, *crack, *force, *turn;
@@ -40,28 +41,29 @@ static size_t whole_blocks(size_t n) {
     return (n + RG_LANES - 1) / RG_LANES;
 }
 
-static bool is_seam(const cut *c, size_t i) {
+static bool is_tile_face(const cut *c, size_t i) {
     return c->copy[i][1] != NONE;
 }
 
-/* Numbers faces; every `every`-th one at random becomes a seam, all for 1, none for 0. The seams of the plus
- * side lie behind those of the minus side in reverse order, so that both sides meet other lanes. */
+/* Numbers faces; every `every`-th one at random becomes a tile-boundary face, all for 1, none for 0. The
+ * tile-boundary faces of the plus side lie behind those of the minus side in reverse order, so that both
+ * sides meet other lanes. */
 static void number(cut *c, uint64_t every) {
-    size_t inside = 0, seams = 0;
+    size_t inside = 0, tile_faces = 0;
     for (size_t i = 0; i < INPUT_INTERFACES; i++) {
-        bool seam = every > 0 && rg_hash(3, i) % every == 0;
-        c->copy[i][0] = (int)(seam ? seams : inside);
-        c->copy[i][1] = seam ? 0 : NONE;
-        *(seam ? &seams : &inside) += 1;
+        bool tile_face = every > 0 && rg_hash(3, i) % every == 0;
+        c->copy[i][0] = (int)(tile_face ? tile_faces : inside);
+        c->copy[i][1] = tile_face ? 0 : NONE;
+        *(tile_face ? &tile_faces : &inside) += 1;
     }
     c->inside = whole_blocks(inside);
-    c->rows = whole_blocks(2 * seams) * RG_LANES;
-    c->iblocks = c->inside + whole_blocks(2 * seams);
+    c->rows = whole_blocks(2 * tile_faces) * RG_LANES;
+    c->iblocks = c->inside + whole_blocks(2 * tile_faces);
     for (size_t i = 0; i < INPUT_INTERFACES; i++)
-        if (is_seam(c, i)) {
+        if (is_tile_face(c, i)) {
             int first = (int)(c->inside * RG_LANES), k = c->copy[i][0];
             c->copy[i][0] = first + k;
-            c->copy[i][1] = first + (int)(2 * seams) - 1 - k;
+            c->copy[i][1] = first + (int)(2 * tile_faces) - 1 - k;
         }
 }
 
@@ -79,7 +81,7 @@ static void allocate(cut *c) {
     c->unlinked = input_alloc(MOST_ISLOTS);
     c->active = input_alloc(MOST_IBLOCKS);
     c->all_rows = input_alloc(MOST_ROWS * RG_TRACE_ROW * sizeof(rg_real));
-    c->tractions = input_alloc(MOST_ROWS * RG_SEAM_ROW * sizeof(rg_real));
+    c->tractions = input_alloc(MOST_ROWS * RG_TILE_FACE_ROW * sizeof(rg_real));
     c->ghost = input_alloc(MOST_IBLOCKS * RG_GHOST_BLOCK * sizeof(rg_real));
 }
 
@@ -114,14 +116,14 @@ static void link_inside(cut *c, size_t s, size_t to) {
     }
 }
 
-static void link_seams(cut *c, size_t s, const int copy[2]) {
+static void link_tile_faces(cut *c, size_t s, const int copy[2]) {
     size_t first = c->inside * RG_LANES;
     for (int side = 0; side < 2; side++) {
         int32_t own = c->in->side[side][s];
         size_t here = (size_t)copy[side], there = (size_t)copy[1 - side];
         c->side[0][here] = own;
         c->side[1][here] = rg_link(ROW + there - first, side, 2);
-        c->interface[rg_link_index((size_t)own / 4, own % 4)] = rg_link(here, RG_SEAM + side, 4);
+        c->interface[rg_link_index((size_t)own / 4, own % 4)] = rg_link(here, RG_TILE_FACE + side, 4);
         c->neighbour[rg_link_index((size_t)own / 4, own % 4)] = rg_neighbour_link(here - first, RG_GHOST);
     }
 }
@@ -137,10 +139,10 @@ static cut cut_make(const input *in, uint64_t every) {
         c.side[1][c.inside * RG_LANES + k] = rg_link(ROW + k, 0, 2);
     for (size_t i = 0; i < INPUT_INTERFACES; i++) {
         size_t s = in->slot[i];
-        for (int k = 0; k < (is_seam(&c, i) ? 2 : 1); k++)
+        for (int k = 0; k < (is_tile_face(&c, i) ? 2 : 1); k++)
             copy_interface(&c, s, (size_t)c.copy[i][k]);
-        if (is_seam(&c, i))
-            link_seams(&c, s, c.copy[i]);
+        if (is_tile_face(&c, i))
+            link_tile_faces(&c, s, c.copy[i]);
         else
             link_inside(&c, s, (size_t)c.copy[i][0]);
     }
@@ -157,7 +159,7 @@ static rg_trace_args trace_args(const cut *c) {
         .other = c->side[1] + c->inside * RG_LANES,
         .rows = c->all_rows,
         .own_rows = c->all_rows + ROW * RG_TRACE_ROW,
-        .own_tractions = c->tractions + ROW * RG_SEAM_ROW,
+        .own_tractions = c->tractions + ROW * RG_TILE_FACE_ROW,
         .ghost = c->ghost,
     };
 }
@@ -172,9 +174,9 @@ static void exchange(const rg_kernels *set, const cut *c) {
 static rg_interface_args interface_args(const cut *c) {
     rg_interface_args args =
         input_interface_args(c->in, c->broken, c->unlinked, c->active, c->crack, c->force);
-    args.first_seam = c->inside;
+    args.first_tile_face = c->inside;
     args.ghost = c->ghost;
-    args.own_tractions = c->tractions + ROW * RG_SEAM_ROW;
+    args.own_tractions = c->tractions + ROW * RG_TILE_FACE_ROW;
     args.tractions = c->tractions;
     args.side[0] = c->side[0];
     args.side[1] = c->side[1];
@@ -252,7 +254,7 @@ static void check_interface(const rg_kernels *set, input_kind kind, rg_cohesive 
     for (uint64_t every = 1; every <= 2; every++) {
         input *in = make_broken(kind, law);
         cut c = cut_make(in, every);
-        int seams = 0, switched = 0;
+        int tile_faces = 0, switched = 0;
         uint8_t before[INPUT_ISLOTS];
         memcpy(before, in->broken, sizeof before);
         rg_interface_args whole = input_interface_args(in, in->broken, in->unlinked, in->active, in->crack,
@@ -266,10 +268,10 @@ static void check_interface(const rg_kernels *set, input_kind kind, rg_cohesive 
             for (int k = 0; k < 2 && c.copy[i][k] != NONE; k++) {
                 compare(set->name, law.potential, &a, in->slot[i], &b, (size_t)c.copy[i][k]);
                 assert_true(!in->broken[in->slot[i]] || c.active[c.copy[i][k] / RG_LANES]);
-                seams += is_seam(&c, i);
+                tile_faces += is_tile_face(&c, i);
             }
         }
-        assert_true(seams > 100 && switched > 10);
+        assert_true(tile_faces > 100 && switched > 10);
         free(whole.force);
         free(whole.turn);
         free(a.energy);
@@ -279,8 +281,8 @@ static void check_interface(const rg_kernels *set, input_kind kind, rg_cohesive 
     }
 }
 
-/* Nodal force, crack state, masks and energies of a seam, from its minus and from its plus side, are those of
- * the face inside a tile; so are those of the faces that remain inside. */
+/* Nodal force, crack state, masks and energies of a tile-boundary face, from its minus and from its plus
+ * side, are those of the face inside a tile; so are those of the faces that remain inside. */
 static void test_interface(void **state) {
     (void)state;
     input_for_each_case(check_interface);
@@ -292,14 +294,15 @@ static void test_interface(void **state) {
 static void check_ghosts(const char *set, const cut *c) {
     const input *in = c->in;
     for (size_t i = 0; i < INPUT_INTERFACES; i++)
-        for (int k = 0; is_seam(c, i) && k < 2; k++) {
-            size_t seam = (size_t)c->copy[i][k] - c->inside * RG_LANES;
+        for (int k = 0; is_tile_face(c, i) && k < 2; k++) {
+            size_t tile_face = (size_t)c->copy[i][k] - c->inside * RG_LANES;
             int32_t own = in->side[k][in->slot[i]], other = in->side[1 - k][in->slot[i]];
             for (int n = 0; n < RG_FNODES * 3; n++)
-                same_bits(set, "ghost", seam, c->ghost[rg_iforce_index(seam, n / 3, n % 3)],
+                same_bits(set, "ghost", tile_face, c->ghost[rg_iforce_index(tile_face, n / 3, n % 3)],
                           in->u[rg_node_index((size_t)other / 4, rg_face_node[other % 4][n / 3], n % 3)]);
-            for (int n = 0; n < RG_SEAM_ROW; n++)
-                same_bits(set, "traction row", seam, c->tractions[(ROW + seam) * RG_SEAM_ROW + (size_t)n],
+            for (int n = 0; n < RG_TILE_FACE_ROW; n++)
+                same_bits(set, "traction row", tile_face,
+                          c->tractions[(ROW + tile_face) * RG_TILE_FACE_ROW + (size_t)n],
                           in->traction[rg_traction_index((size_t)own / 4, own % 4, n / 3, n % 3)]);
         }
 }
@@ -315,12 +318,12 @@ static void check_rows(const rg_kernels *set, input_kind kind, rg_cohesive law) 
     cut *both[2] = {&c, &ref};
     for (int k = 0; k < 2; k++) {
         spoil(both[k]->all_rows, MOST_ROWS * RG_TRACE_ROW);
-        spoil(both[k]->tractions, MOST_ROWS * RG_SEAM_ROW);
+        spoil(both[k]->tractions, MOST_ROWS * RG_TILE_FACE_ROW);
         spoil(both[k]->ghost, MOST_IBLOCKS * RG_GHOST_BLOCK);
         exchange(k ? &rg_kernels_reference : set, both[k]);
     }
     assert_memory_equal(c.all_rows, ref.all_rows, MOST_ROWS * RG_TRACE_ROW * sizeof(rg_real));
-    assert_memory_equal(c.tractions, ref.tractions, MOST_ROWS * RG_SEAM_ROW * sizeof(rg_real));
+    assert_memory_equal(c.tractions, ref.tractions, MOST_ROWS * RG_TILE_FACE_ROW * sizeof(rg_real));
     assert_memory_equal(c.ghost, ref.ghost, MOST_IBLOCKS * RG_GHOST_BLOCK * sizeof(rg_real));
     check_ghosts(set->name, &c);
     cut_free(&c);
@@ -352,8 +355,8 @@ static void check_row_range(const rg_kernels *set, input_kind kind, rg_cohesive 
             same_bits(set->name, "row", s, some.all_rows[row], in_range ? full.all_rows[row] : -12345);
             same_bits(set->name, "ghost", s, some.ghost[ghost], in_range ? full.ghost[ghost] : 0);
         }
-        for (size_t k = 0; k < RG_SEAM_ROW; k++) {
-            size_t row = (ROW + s) * RG_SEAM_ROW + k;
+        for (size_t k = 0; k < RG_TILE_FACE_ROW; k++) {
+            size_t row = (ROW + s) * RG_TILE_FACE_ROW + k;
             same_bits(set->name, "traction", s, some.tractions[row], in_range ? full.tractions[row] : 0);
         }
     }
@@ -444,7 +447,7 @@ static rg_kick_args kick_args(const input *in, const motion *m, bool lumped) {
                           .broken = in->broken,
                           .interface = in->interface,
                           .velocity = m->velocity,
-                          .now = m->now,
+                          .step_velocity = m->now,
                           .dt_now = 4e-11};
 }
 
@@ -455,9 +458,9 @@ static motion kick_cut(const rg_kernels *set, const cut *c, bool lumped, bool no
     args.iforce = args.turn = c->ipull;
     args.broken = c->broken;
     args.interface = c->interface;
-    args.now = now ? m.now : NULL;
+    args.step_velocity = now ? m.now : NULL;
     set->kick(&args, 0, INPUT_EBLOCKS);
-    args.seams = true;
+    args.tile_faces = true;
     args.force = NULL;
     set->kick(&args, 0, INPUT_EBLOCKS);
     return m;
@@ -494,7 +497,7 @@ static void check_kick(const rg_kernels *set, uint64_t every, bool lumped) {
     assert_close(set->name, "now against reference", parts.now, ref.now);
     check_now(set->name, in, &parts);
     assert_memory_equal(quiet.velocity, parts.velocity, NODE_VALUES * sizeof(rg_real));
-    if (every == 0) { /* no seams: the second part changes nothing */
+    if (every == 0) { /* no tile-boundary faces: the second part changes nothing */
         assert_memory_equal(parts.velocity, whole.velocity, NODE_VALUES * sizeof(rg_real));
         assert_memory_equal(parts.now, whole.now, NODE_VALUES * sizeof(rg_real));
     }

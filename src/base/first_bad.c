@@ -1,8 +1,8 @@
-#include "base/spot.h"
+#include "base/first_bad.h"
 
 #include <string.h>
 
-static bool lower(const rg_spot *a, const rg_spot *b) {
+static bool lower(const rg_first_bad *a, const rg_first_bad *b) {
     if (a->which != b->which) {
         return a->which < b->which;
     }
@@ -14,8 +14,8 @@ static bool lower(const rg_spot *a, const rg_spot *b) {
     return false;
 }
 
-void rg_spot_note(rg_spot *p, int64_t which, const double x[3], double value) {
-    rg_spot here = {.which = which, .x = {x[0], x[1], x[2]}, .value = value};
+void rg_first_bad_note(rg_first_bad *p, int64_t which, const double x[3], double value) {
+    rg_first_bad here = {.which = which, .x = {x[0], x[1], x[2]}, .value = value};
     if (p->which == RG_NOWHERE || lower(&here, p)) {
         *p = here;
     }
@@ -23,14 +23,14 @@ void rg_spot_note(rg_spot *p, int64_t which, const double x[3], double value) {
 
 /* An operation of MPI, on one element. */
 static void take_lower(void *in, void *inout, int *length, MPI_Datatype *type) {
-    const rg_spot *a = in;
-    rg_spot *b = inout;
+    const rg_first_bad *a = in;
+    rg_first_bad *b = inout;
     (void)length;
     (void)type;
     *b = lower(a, b) ? *a : *b;
 }
 
-bool rg_spot_lowest(rg_spot *p, MPI_Comm comm) {
+bool rg_first_bad_lowest(rg_first_bad *p, MPI_Comm comm) {
     MPI_Datatype type;
     MPI_Op op;
     MPI_Type_contiguous(sizeof *p, MPI_BYTE, &type);

@@ -1,11 +1,11 @@
-#include "domain/joint.h"
+#include "domain/conforming.h"
 
 #include <math.h>
 #include <stdlib.h>
 
 #include "base/error.h"
 #include "base/mem.h"
-#include "base/spot.h"
+#include "base/first_bad.h"
 #include "layout.h"
 #include "mesh/gid_map.h"
 
@@ -13,7 +13,7 @@
 
 /* Whether interface.faces selects face f: by its middle and unit normal, as both sides compute them from the
  * same corners in the same order. */
-static bool selected(const rg_expr *faces, const rg_element *e, int f, rg_spot *bad) {
+static bool selected(const rg_expr *faces, const rg_element *e, int f, rg_first_bad *bad) {
     const double *x[RG_FCORNERS];
     double middle[3], normal[3], square = 0;
     for (int k = 0; k < RG_FCORNERS; k++) {
@@ -31,7 +31,7 @@ static bool selected(const rg_expr *faces, const rg_element *e, int f, rg_spot *
     double here = rg_expr_face_value(faces, middle, normal);
     if (!isfinite(here)) {
 #pragma omp critical
-        rg_spot_note(bad, 0, middle, here);
+        rg_first_bad_note(bad, 0, middle, here);
     }
     return here != 0;
 }
@@ -40,7 +40,7 @@ uint8_t *rg_joined_faces(const rg_case *c, const rg_part *part, MPI_Comm comm) {
     if (c->interface.form != RG_FORM_CONTINUOUS) {
         return NULL;
     }
-    rg_spot bad = {.which = RG_NOWHERE};
+    rg_first_bad bad = {.which = RG_NOWHERE};
     uint8_t *joined = RG_NEW(uint8_t, (size_t)part->elements + 1);
 #pragma omp parallel
     {
@@ -49,13 +49,14 @@ uint8_t *rg_joined_faces(const rg_case *c, const rg_part *part, MPI_Comm comm) {
         for (rg_lid i = 0; i < part->elements; i++) {
             const rg_element *e = &part->element[i];
             for (int f = 0; f < RG_FACES; f++) {
-                bool joint = e->neighbour[f] >= 0 && (faces == NULL || !selected(faces, e, f, &bad));
-                joined[i] |= (uint8_t)(joint << f);
+                bool conforming_face =
+                    e->neighbour[f] >= 0 && (faces == NULL || !selected(faces, e, f, &bad));
+                joined[i] |= (uint8_t)(conforming_face << f);
             }
         }
         rg_expr_free(faces);
     }
-    if (rg_spot_lowest(&bad, comm)) {
+    if (rg_first_bad_lowest(&bad, comm)) {
         rg_speak(comm);
         rg_fatal(RG_USAGE, "%s: interface.faces: %s is not finite at (%g, %g, %g)", c->path,
                  rg_expr_text(c->interface.faces), bad.x[0], bad.x[1], bad.x[2]);
@@ -63,7 +64,7 @@ uint8_t *rg_joined_faces(const rg_case *c, const rg_part *part, MPI_Comm comm) {
     return joined;
 }
 
-/* ---- Joints ---- */
+/* ---- Shared-node faces ---- */
 
 typedef struct {
     const rg_domain *d;
@@ -71,7 +72,7 @@ typedef struct {
     const uint8_t *joined;
     int rank;
     rg_gid_map tile; /* global number of a tile -> its number here */
-    rg_joints *joints;
+    rg_conforming_faces *conforming_faces;
 } builder;
 
 static rg_lid slot_of(const builder *b, rg_gid id) {
@@ -79,9 +80,9 @@ static rg_lid slot_of(const builder *b, rg_gid id) {
     return (rg_lid)(t->begin * RG_LANES + rg_slot_in(b->d, t, id));
 }
 
-/* Visits the joints of element i: counts them and, with room for them, lists them. */
+/* Visits the shared-node faces of element i: counts them and, with room for them, lists them. */
 static void visit(builder *b, rg_lid i) {
-    rg_joints *j = b->joints;
+    rg_conforming_faces *j = b->conforming_faces;
     const rg_element *e = &b->part->element[i];
     for (int8_t f = 0; f < RG_FACES; f++) {
         rg_gid other = e->neighbour[f];
@@ -91,12 +92,13 @@ static void visit(builder *b, rg_lid i) {
         if (e->owner[f] != b->rank) {
             if (j->far != NULL) {
                 rg_gid key = e->id < other ? RG_FACES * e->id + f : RG_FACES * other + e->face[f];
-                j->far[j->fars] = (rg_far_joint){e->owner[f], key, slot_of(b, e->id), f};
+                j->far[j->fars] = (rg_far_conforming_face){e->owner[f], key, slot_of(b, e->id), f};
             }
             j->fars++;
         } else if (other < e->id) { /* once for both sides */
-            if (j->joint != NULL) {
-                j->joint[j->count] = (rg_joint){{slot_of(b, e->id), slot_of(b, other)}, {f, e->face[f]}};
+            if (j->conforming_face != NULL) {
+                j->conforming_face[j->count] =
+                    (rg_conforming_face){{slot_of(b, e->id), slot_of(b, other)}, {f, e->face[f]}};
             }
             j->count++;
         }
@@ -104,29 +106,30 @@ static void visit(builder *b, rg_lid i) {
 }
 
 static void visit_all(builder *b) {
-    b->joints->count = b->joints->fars = 0;
+    b->conforming_faces->count = b->conforming_faces->fars = 0;
     for (rg_lid i = 0; i < b->part->elements; i++) {
         visit(b, i);
     }
 }
 
 static int by_rank_and_key(const void *a, const void *b) {
-    const rg_far_joint *p = a, *q = b;
+    const rg_far_conforming_face *p = a, *q = b;
     if (p->rank != q->rank) {
         return p->rank < q->rank ? -1 : 1;
     }
     return (p->key > q->key) - (p->key < q->key);
 }
 
-rg_joints *rg_joints_make(const rg_domain *d, const rg_part *part, const uint8_t *joined, int rank) {
-    rg_joints *j = RG_NEW(rg_joints, 1);
+rg_conforming_faces *rg_conforming_faces_make(const rg_domain *d, const rg_part *part, const uint8_t *joined,
+                                              int rank) {
+    rg_conforming_faces *j = RG_NEW(rg_conforming_faces, 1);
     builder b = {d, part, joined, rank, rg_gid_map_make(d->tiles), j};
     for (size_t t = 0; t < d->tiles; t++) {
         rg_gid_map_put(&b.tile, d->tile[t].first / d->tile_elements, (rg_lid)t);
     }
     visit_all(&b);
-    j->joint = RG_NEW(rg_joint, j->count + 1);
-    j->far = RG_NEW(rg_far_joint, j->fars + 1);
+    j->conforming_face = RG_NEW(rg_conforming_face, j->count + 1);
+    j->far = RG_NEW(rg_far_conforming_face, j->fars + 1);
     j->far_rank = RG_NEW(int, j->fars + 1);
     visit_all(&b);
     qsort(j->far, j->fars, sizeof *j->far, by_rank_and_key);
@@ -137,11 +140,11 @@ rg_joints *rg_joints_make(const rg_domain *d, const rg_part *part, const uint8_t
     return j;
 }
 
-void rg_joints_free(rg_joints *j) {
+void rg_conforming_faces_free(rg_conforming_faces *j) {
     if (j == NULL) {
         return;
     }
-    rg_free(j->joint);
+    rg_free(j->conforming_face);
     rg_free(j->far);
     rg_free(j->far_rank);
     rg_free(j);

@@ -1,4 +1,4 @@
-#include "restart/seal.h"
+#include "restart/checksum.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -49,7 +49,7 @@ static ssize_t read_all(int file, char *data, size_t size, off_t at) {
 
 /* Hash of part p; false, with errno set where that helps: it cannot be read or is shorter. */
 static bool hash_part(int file, int64_t bytes, int64_t p, uint64_t *data, uint64_t *hash) {
-    int64_t at = RG_SEAL + p * PART, left = bytes - at;
+    int64_t at = RG_CHECKSUM + p * PART, left = bytes - at;
     size_t size = left < PART ? (size_t)left : PART, words = (size + 7) / 8;
     data[words - 1] = 0;
     errno = 0;
@@ -61,7 +61,7 @@ static bool hash_part(int file, int64_t bytes, int64_t p, uint64_t *data, uint64
 /* Sum over this rank's parts, which its threads share; false, with errno set where that helps, if the file
  * cannot be read or is shorter. */
 static bool sum_parts(int file, int64_t bytes, int rank, int ranks, uint64_t *sum) {
-    int64_t parts = (bytes - RG_SEAL + PART - 1) / PART;
+    int64_t parts = (bytes - RG_CHECKSUM + PART - 1) / PART;
     uint64_t all = 0;
     int failed = -1; /* errno of a thread, 0 included */
 #pragma omp parallel reduction(+ : all) reduction(max : failed)
@@ -98,15 +98,15 @@ static bool sum_file(const char *path, int64_t bytes, MPI_Comm comm, uint64_t *s
     return found[1] == 0;
 }
 
-static void render(char seal[RG_SEAL], int64_t step, int64_t bytes, uint64_t sum) {
-    memset(seal, 0, RG_SEAL);
-    int used = snprintf(seal, RG_SEAL,
+static void render(char checksum[RG_CHECKSUM], int64_t step, int64_t bytes, uint64_t sum) {
+    memset(checksum, 0, RG_CHECKSUM);
+    int used = snprintf(checksum, RG_CHECKSUM,
                         "rhegma checkpoint 1\nstep %" PRId64 "\nbytes %" PRId64 "\nsum %016" PRIx64 "\n",
                         step, bytes, sum);
-    uint64_t word[RG_SEAL / 8];
-    memcpy(word, seal, RG_SEAL);
-    snprintf(seal + used, (size_t)(RG_SEAL - used), "check %016" PRIx64 "\n",
-             hash_words(0, word, RG_SEAL / 8));
+    uint64_t word[RG_CHECKSUM / 8];
+    memcpy(word, checksum, RG_CHECKSUM);
+    snprintf(checksum + used, (size_t)(RG_CHECKSUM - used), "check %016" PRIx64 "\n",
+             hash_words(0, word, RG_CHECKSUM / 8));
 }
 
 static int64_t size_of(const char *path) {
@@ -114,39 +114,39 @@ static int64_t size_of(const char *path) {
     return stat(path, &found) == 0 ? (int64_t)found.st_size : -1;
 }
 
-static bool write_seal(const char *path, const char seal[RG_SEAL]) {
+static bool write_checksum(const char *path, const char checksum[RG_CHECKSUM]) {
     int file = open(path, O_WRONLY);
-    bool ok = file >= 0 && pwrite(file, seal, RG_SEAL, 0) == RG_SEAL;
+    bool ok = file >= 0 && pwrite(file, checksum, RG_CHECKSUM, 0) == RG_CHECKSUM;
     int reason = errno;
     ok = (file < 0 || close(file) == 0) && ok;
     errno = reason;
     return ok;
 }
 
-bool rg_seal_put(const char *path, int64_t step, MPI_Comm comm) {
+bool rg_checksum_put(const char *path, int64_t step, MPI_Comm comm) {
     int rank, ok = 1;
     uint64_t sum;
     MPI_Comm_rank(comm, &rank);
     int64_t bytes = rank == 0 ? size_of(path) : 0;
     MPI_Bcast(&bytes, 1, MPI_INT64_T, 0, comm);
-    if (bytes < RG_SEAL || !sum_file(path, bytes, comm, &sum)) {
+    if (bytes < RG_CHECKSUM || !sum_file(path, bytes, comm, &sum)) {
         return false;
     }
     if (rank == 0) {
-        char seal[RG_SEAL];
-        render(seal, step, bytes, sum);
-        ok = write_seal(path, seal);
+        char checksum[RG_CHECKSUM];
+        render(checksum, step, bytes, sum);
+        ok = write_checksum(path, checksum);
     }
     MPI_Bcast(&ok, 1, MPI_INT, 0, comm);
     return ok;
 }
 
-/* Rank 0: whether the seal itself is right and the file as long as it says. */
-static bool seal_right(const char *path, int64_t *bytes, uint64_t *sum, char *reason, size_t size) {
-    char found[RG_SEAL + 1] = {0}, wanted[RG_SEAL];
+/* Rank 0: whether the checksum itself is right and the file as long as it says. */
+static bool checksum_right(const char *path, int64_t *bytes, uint64_t *sum, char *reason, size_t size) {
+    char found[RG_CHECKSUM + 1] = {0}, wanted[RG_CHECKSUM];
     int64_t step = 0, there = size_of(path);
     int file = open(path, O_RDONLY);
-    ssize_t got = file < 0 ? -1 : read_all(file, found, RG_SEAL, 0);
+    ssize_t got = file < 0 ? -1 : read_all(file, found, RG_CHECKSUM, 0);
     if (got < 0) {
         snprintf(reason, size, "cannot be read: %s", strerror(errno));
     }
@@ -162,7 +162,7 @@ static bool seal_right(const char *path, int64_t *bytes, uint64_t *sum, char *re
         return false;
     }
     render(wanted, step, *bytes, *sum);
-    if (memcmp(found, wanted, RG_SEAL) != 0) {
+    if (memcmp(found, wanted, RG_CHECKSUM) != 0) {
         snprintf(reason, size, "its head is damaged");
         return false;
     }
@@ -173,7 +173,7 @@ static bool seal_right(const char *path, int64_t *bytes, uint64_t *sum, char *re
     return true;
 }
 
-bool rg_seal_holds(const char *path, MPI_Comm comm, char *reason, size_t size) {
+bool rg_checksum_holds(const char *path, MPI_Comm comm, char *reason, size_t size) {
     struct {
         int64_t right, bytes;
         uint64_t sum;
@@ -182,7 +182,7 @@ bool rg_seal_holds(const char *path, MPI_Comm comm, char *reason, size_t size) {
     MPI_Comm_rank(comm, &rank);
     reason[0] = '\0';
     if (rank == 0) {
-        head.right = seal_right(path, &head.bytes, &head.sum, reason, size);
+        head.right = checksum_right(path, &head.bytes, &head.sum, reason, size);
     }
     MPI_Bcast(&head, (int)sizeof head, MPI_BYTE, 0, comm);
     MPI_Bcast(reason, (int)size, MPI_CHAR, 0, comm);

@@ -1,4 +1,4 @@
-#include "partition/deal.h"
+#include "partition/distribution.h"
 
 #include <stdbool.h>
 
@@ -17,7 +17,7 @@ static bool shares_face(const rg_tile_graph *g, const int32_t *owner, int64_t t)
 }
 
 /* Lists each rank's tiles, those that share a face with another rank first. */
-static void order(rg_deal *d, const rg_tile_graph *g) {
+static void order(rg_distribution *d, const rg_tile_graph *g) {
     bool *outer = RG_NEW(bool, (size_t)d->tiles);
     for (int64_t t = 0; t < d->tiles; t++) {
         outer[t] = shares_face(g, d->owner, t);
@@ -41,22 +41,22 @@ static void order(rg_deal *d, const rg_tile_graph *g) {
     rg_free(outer);
 }
 
-rg_deal *rg_deal_make(const rg_tile_graph *g, int32_t *owner, int ranks) {
-    rg_deal *d = RG_NEW(rg_deal, 1);
-    *d = (rg_deal){.ranks = ranks,
-                   .elements = g->elements,
-                   .tile = g->tile,
-                   .tiles = g->tiles,
-                   .owner = owner,
-                   .list = RG_NEW(int64_t, (size_t)g->tiles),
-                   .start = RG_NEW(int64_t, (size_t)ranks + 1),
-                   .shared = RG_NEW(rg_lid, (size_t)ranks),
-                   .quality = rg_tile_graph_quality(g, ranks, owner)};
+rg_distribution *rg_distribution_make(const rg_tile_graph *g, int32_t *owner, int ranks) {
+    rg_distribution *d = RG_NEW(rg_distribution, 1);
+    *d = (rg_distribution){.ranks = ranks,
+                           .elements = g->elements,
+                           .tile = g->tile,
+                           .tiles = g->tiles,
+                           .owner = owner,
+                           .list = RG_NEW(int64_t, (size_t)g->tiles),
+                           .start = RG_NEW(int64_t, (size_t)ranks + 1),
+                           .shared = RG_NEW(rg_lid, (size_t)ranks),
+                           .quality = rg_tile_graph_quality(g, ranks, owner)};
     order(d, g);
     return d;
 }
 
-void rg_deal_free(rg_deal *d) {
+void rg_distribution_free(rg_distribution *d) {
     if (d != NULL) {
         rg_free(d->owner);
         rg_free(d->list);
@@ -66,7 +66,7 @@ void rg_deal_free(rg_deal *d) {
     }
 }
 
-static void share_counts(const rg_deal *d, rg_part *own, MPI_Comm comm) {
+static void share_counts(const rg_distribution *d, rg_part *own, MPI_Comm comm) {
     int rank;
     MPI_Comm_rank(comm, &rank);
     if (rank == 0) {
@@ -79,7 +79,7 @@ static void share_counts(const rg_deal *d, rg_part *own, MPI_Comm comm) {
     MPI_Bcast(&own->quality, sizeof own->quality, MPI_BYTE, 0, comm);
 }
 
-void rg_deal_share(const rg_deal *d, rg_part *own, MPI_Comm comm) {
+void rg_distribution_share(const rg_distribution *d, rg_part *own, MPI_Comm comm) {
     rg_lid *count = NULL, mine[2];
     int *size = NULL, *at = NULL;
     if (d != NULL) {
