@@ -7,10 +7,11 @@
 #include "mesh/import/gmsh_read.h"
 #include "mesh_command.h"
 #include "revision.h"
+#include "version.h"
 
 int main(int argc, char **argv) {
     if (argc == 2 && strcmp(argv[1], "--version") == 0) {
-        printf("rhegma-mesh %s\n", RG_REVISION);
+        printf("rhegma-mesh %s (%s)\n", RG_VERSION, RG_REVISION);
         return RG_OK;
     }
     rg_mesh_arguments a = rg_mesh_arguments_read(argc, argv, 1);

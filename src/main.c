@@ -18,6 +18,7 @@
 #include "revision.h"
 #include "run.h"
 #include "verify/verify.h"
+#include "version.h"
 
 static const char usage[] =
     "usage: rhegma run CASE.yaml [options]     run a case\n"
@@ -177,7 +178,7 @@ static bool has_said_all(void) {
 
 static int execute(int argc, char **argv, int rank) {
     if (argc == 2 && strcmp(argv[1], "--version") == 0) {
-        printf("rhegma %s, %s precision\n", RG_REVISION, RG_PRECISION);
+        printf("rhegma %s (%s), %s precision\n", RG_VERSION, RG_REVISION, RG_PRECISION);
         return RG_OK;
     }
     if (asks_for_help(argc, argv)) {

@@ -22,7 +22,7 @@ def includes(root):
         for path in sorted((root / top).rglob("*.[ch]")):
             for name in re.findall(r'^ *# *include "([^"]+)"', path.read_text(), re.M):
                 target = next((base / name for base in (path.parent, root / "kernels", root / "src") if (base / name).is_file()), None)
-                assert target is not None or name == "revision.h", f"{path}: {name} is not there"
+                assert target is not None or name in ("revision.h", "version.h"), f"{path}: {name} is not there"
                 if target is not None:
                     found.setdefault(path.relative_to(root), []).append(target.relative_to(root))
     return found

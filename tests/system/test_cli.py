@@ -10,7 +10,7 @@ import time
 
 import pytest
 import yaml
-from conftest import BENCH, CASES, ENVIRONMENT, PROGRAM, TIMEOUT, launch, overrides
+from conftest import BENCH, CASES, ENVIRONMENT, PROGRAM, ROOT, TIMEOUT, launch, overrides
 
 SPALL = BENCH / "spall.yaml"
 FRAGMENTS = CASES / "fragments.yaml"
@@ -84,7 +84,8 @@ def test_version_is_that_of_the_summary(run):
     process = launch("--version")
     assert process.returncode == 0 and process.stderr == ""
     summary = run(FRAGMENTS, sets=SHORT).summary
-    assert process.stdout == f"rhegma {summary['revision']}, {summary['precision']} precision\n"
+    version = re.search(r"version: '(\S+)'", (ROOT / "meson.build").read_text())[1]
+    assert process.stdout == f"rhegma {version} ({summary['revision']}), {summary['precision']} precision\n"
 
 
 @pytest.mark.parametrize("arguments", [["--help"], ["-h"], ["run", "--help"], ["check", "a.yaml", "-h"], ["verify", "--help"]])
