@@ -1,6 +1,6 @@
 """Starts Rhegma from Python. What all studies have in common, with the standard library alone: clusters have often no more.
 
-    launch.run("bench/cases/spall.yaml", out, {"time.end": 1e-7})
+    launch.run("bench/examples/spall/spall.yaml", out, {"time.end": 1e-7})
 """
 
 import json
@@ -13,7 +13,6 @@ import time
 
 NAME = pathlib.Path(sys.argv[0]).name
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-CASES = ROOT / "bench/cases"
 
 
 class BadInput(Exception):
@@ -45,6 +44,14 @@ def exit_with(main):
 def program():
     """The program that environment variable RHEGMA names, else the one of this tree."""
     return pathlib.Path(os.environ.get("RHEGMA", ROOT / "build/rhegma"))
+
+
+def example(name):
+    """A file of the examples: bench/examples/*/NAME."""
+    found = list((ROOT / "bench/examples").glob(f"*/{name}"))
+    if len(found) != 1:
+        raise BadInput(f"bench/examples: {len(found) or 'no'} files are called {name}")
+    return found[0]
 
 
 def options(sets):

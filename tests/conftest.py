@@ -18,9 +18,9 @@ import pytest
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "bench"))
 import rhegma  # noqa: E402  (of bench/)
+from launch import example  # noqa: E402
 
 PROGRAM = pathlib.Path(os.environ.get("RHEGMA", ROOT / "build" / "rhegma")).resolve()
-BENCH = ROOT / "bench" / "cases"
 CASES = ROOT / "tests" / "cases"
 TIMEOUT = int(os.environ.get("RHEGMA_TIMEOUT", 300))  # seconds: a run that hangs is a failure
 ENVIRONMENT = {
@@ -114,7 +114,7 @@ def run(scratch):
 
 @pytest.fixture(scope="session")
 def spall(run):
-    return run(BENCH / "spall.yaml", threads=2)
+    return run(example("spall.yaml"), threads=2)
 
 
 @pytest.fixture(scope="session")

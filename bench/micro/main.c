@@ -21,7 +21,7 @@ static const char usage[] =
     "  --threads N     1, 2, 4, ... and N threads per rank (default: what OMP_NUM_THREADS allows)\n"
     "  --repeats R     samples per row, 3 to 100 (default 21; 5 if quick)\n"
     "  --efficiency N  instead: what the ranks' cores gain over one core, in N rounds (3 to 100); see "
-    "bench/efficiency\n"
+    "bench/studies/efficiency\n"
     "  --cost          instead: operations and bytes of the cost model (perf/model.md)\n"
     "  --help\n"
     "us/tet counts two interfaces as one tet; the other columns follow kernels/cost/model.c "

@@ -20,8 +20,8 @@
  * (tests/unit/kernels/test_deshpande_evans.c tells by how much). Over an unconfined test to failure the sum
  * is positive, after a dip; in confined compression it stays negative.
  *
- * Uniaxial stress of table 5.4, as bench/ceramic-curves prints it: largest Cauchy stress (GPa) at strain (%),
- * and the stress with --set material.growth_speed=1e-7 (l0dot = 100 nm/s):
+ * Uniaxial stress of table 5.4, as bench/studies/ceramic-curves prints it: largest Cauchy stress at strain,
+ * in GPa (%), and the stress with --set material.growth_speed=1e-7 (l0dot = 100 nm/s):
  *     rate (1/s)     1e3          1e4          1e5          nm/s
  *     compression    3.20 (0.92)  3.95 (1.14)  4.78 (1.36)  6.02  7.44  9.22
  *     tension        0.98 (0.33)  1.21 (0.41)  1.48 (0.50)  1.84  2.26  2.77

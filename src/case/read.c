@@ -35,7 +35,7 @@ char *rg_case_file(const char *path, size_t *size) {
     return text;
 }
 
-/* "bench/cases/spall.yaml" -> "spall" */
+/* "bench/examples/spall/spall.yaml" -> "spall" */
 static char *case_name(const char *path) {
     const char *slash = strrchr(path, '/');
     const char *file = slash == NULL ? path : slash + 1;

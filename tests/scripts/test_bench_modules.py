@@ -6,7 +6,7 @@ import math
 import numpy as np
 import pytest
 import synthetic_run as synthetic
-from conftest import BENCH, ROOT
+from conftest import ROOT, example
 from conftest import launch as start
 
 import drawing
@@ -135,8 +135,8 @@ def test_overrides_are_those_of_the_program(run):
     """The program's own case.yaml against the case file with the same overrides."""
     sets = {"material.young": 1e9, "mesh.cells": [1, 1, 2], "viscosity.linear": 0.06, "time.steps": 1, "output.fields": []}
     texts = [f"{key}={json.dumps(value)}" for key, value in sets.items()]
-    used = rhegma.case(run(BENCH / "spall.yaml", sets=sets).dir)
-    case = rhegma.read_case(BENCH / "spall.yaml", texts)
+    used = rhegma.case(run(example("spall.yaml"), sets=sets).dir)
+    case = rhegma.read_case(example("spall.yaml"), texts)
     for section in ("mesh", "material", "interface", "viscosity", "boundary"):
         for key, value in case[section].items() if isinstance(case[section], dict) else []:
             assert used[section][key] == value
@@ -147,7 +147,7 @@ def test_overrides_are_those_of_the_program(run):
 @pytest.mark.parametrize("text", ["mesh.cells.x=1", "a=[1", "mesh.cells.0.y=2"])
 def test_overrides_that_cannot_be(text):
     with pytest.raises(rhegma.BadInput, match="--set "):
-        rhegma.read_case(BENCH / "spall.yaml", [text])
+        rhegma.read_case(example("spall.yaml"), [text])
 
 
 def test_what_cannot_be_read_is_named(tmp_path):
@@ -267,7 +267,7 @@ def test_moduli_and_speeds():
 
 def test_speeds_are_those_of_the_program():
     solid = rhegma.material_of(ALUMINA)
-    said = start("check", BENCH / "spall.yaml").stdout
+    said = start("check", example("spall.yaml")).stdout
     assert f"dilatational {solid.dilatational_speed:.1f} m/s, shear {solid.shear_speed:.1f} m/s" in said
 
 

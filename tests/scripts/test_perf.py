@@ -106,7 +106,7 @@ def test_scaling_run(tmp_path, monkeypatch, capsys):
           "--build", "/b", "--launcher", "go -n {ranks} -c {threads} 'a b'")
     assert len(calls) == 6
     case, sets, overrides, keywords = calls[3]
-    assert case == ROOT / "bench/cases/spall.yaml" and overrides == ["a=1"]
+    assert case == ROOT / "bench/examples/spall/spall.yaml" and overrides == ["a=1"]
     assert sets == {"mesh.cells": [3, 4, 5], "time.steps": 9, "output.interval": 9}
     assert keywords == {"build": "/b", "quiet": False, "launcher": ["go", "-n", "1", "-c", "2", "a b"], "OMP_NUM_THREADS": "2",
                         "OMP_PLACES": "cores", "OMP_PROC_BIND": "close"}
@@ -114,7 +114,7 @@ def test_scaling_run(tmp_path, monkeypatch, capsys):
     assert [repeat["step_s"] for repeat in record["repeats"]] == [20, 10, 70]
     assert record["hidden_share"] == (0.75 + 0.5) / 2  # waits of 0.5 s a pass for exchanges of 2 and of 1 s
     assert record["affinity"] == ["rank 0: 2 threads on processors 0-1 of host"]
-    for key, value in {"program": "bench/scaling", "kind": "strong", "case": "bench/cases/spall.yaml", "steps": 9, "cores": 2,
+    for key, value in {"program": "bench/scaling", "kind": "strong", "case": "bench/examples/spall/spall.yaml", "steps": 9, "cores": 2,
                        "launcher": "go -n {ranks} -c {threads} 'a b'"}.items():
         assert record[key] == value
     made = summary()
@@ -257,7 +257,7 @@ def test_overlap_asks_for_turns_of_delays(monkeypatch, tmp_path):
     told, turns = overlap.run(args, "tcp-unpolled", [0, 1e-3], 20)
     assert told == {} and np.array(turns) == pytest.approx(np.array([(0, 0.1), (1e-3, 0.2)]))
     ((case, sets, keywords),) = calls
-    assert case == ROOT / "bench/cases/spall.yaml"
+    assert case == ROOT / "bench/examples/spall/spall.yaml"
     assert sets == {"mesh.cells": [1, 2, 3], "time.steps": 60, "output.interval": 1000000, "output.fields": []}
     assert keywords["build"] == tmp_path and keywords["launcher"] == ["mpirun", "-n", 2, "--bind-to", "core", "env",
                                                                        f"LD_PRELOAD={tmp_path / 'libmpi_delay.so'}"]
@@ -602,11 +602,11 @@ def test_pictures_of_simulated_clusters(tmp_path, monkeypatch):
         assert_panels_apart(figure)
 
 
-# ---- bench/large, bench/checkpoint, bench/efficiency ----
+# ---- bench/studies/large, bench/studies/checkpoint, bench/studies/efficiency ----
 
 
 def test_large_reckons_per_tet(tmp_path, monkeypatch):
-    large, asked = script("bench/large"), []
+    large, asked = script("bench/studies/large"), []
 
     def run(case, out, sets, **keywords):
         asked.append((case, out, sets, keywords))
@@ -621,7 +621,7 @@ def test_large_reckons_per_tet(tmp_path, monkeypatch):
     assert large.measure(tmp_path / "small.h5", tmp_path, 25, 2) == {"tets": 400, "memory": 2000, "setup": pytest.approx(50),
                                                                      "step": 0.7}
     ((case, out, sets, keywords),) = asked
-    assert out == tmp_path / "small" and case == ROOT / "bench/cases/spall.yaml"
+    assert out == tmp_path / "small" and case == ROOT / "bench/examples/spall/spall.yaml"
     assert sets == {"mesh": {"file": str(tmp_path / "small.h5")}, "time.steps": 25, "output.fields": [],
                     "output.interval": 1000000}
     assert keywords["launcher"][:3] == ["mpirun", "--bind-to", "core"]
@@ -637,7 +637,7 @@ def test_large_reckons_per_tet(tmp_path, monkeypatch):
 
 
 def test_large_takes_the_median_of_the_small_mesh(tmp_path, monkeypatch, capsys):
-    large, order = script("bench/large"), []
+    large, order = script("bench/studies/large"), []
     steps = {"small": iter([0.5, 0.7, 0.4, 0.3, 0.9, 0.6]), "large": iter([0.6])}
 
     def measure(mesh, out, count, ranks):
@@ -661,10 +661,10 @@ def test_large_takes_the_median_of_the_small_mesh(tmp_path, monkeypatch, capsys)
 
 
 def test_large_makes_a_mesh_once(tmp_path, monkeypatch):
-    large, asked = script("bench/large"), []
+    large, asked = script("bench/studies/large"), []
     monkeypatch.setattr(launch, "call", lambda words: asked.append(words))
     large.make([1, 2, 3], tmp_path / "m.h5")
-    assert asked == [[launch.program(), "mesh", ROOT / "bench/cases/spall.yaml", "-o", tmp_path / "m.h5", "--set",
+    assert asked == [[launch.program(), "mesh", ROOT / "bench/examples/spall/spall.yaml", "-o", tmp_path / "m.h5", "--set",
                       "mesh.cells=[1, 2, 3]"]]
     (tmp_path / "m.h5").write_text("")
     large.make([1, 2, 3], tmp_path / "m.h5")
@@ -672,7 +672,7 @@ def test_large_makes_a_mesh_once(tmp_path, monkeypatch):
 
 
 def test_checkpoint_takes_medians_and_rates(tmp_path, monkeypatch, capsys):
-    script_, times = script("bench/checkpoint"), iter([(3e6, 0.3, 600), (3e6, 0.1, 600), (3e6, 0.2, 600)])
+    script_, times = script("bench/studies/checkpoint"), iter([(3e6, 0.3, 600), (3e6, 0.1, 600), (3e6, 0.2, 600)])
     others = iter([0.1, 0.4, 0.15])
     monkeypatch.setitem(script_.__dict__, "checkpoint", lambda options, out: next(times))
     monkeypatch.setitem(script_.__dict__, "dd", lambda out, size: next(others))

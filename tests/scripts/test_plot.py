@@ -5,7 +5,7 @@ import itertools
 import numpy as np
 import pytest
 import synthetic_run as synthetic
-from conftest import BENCH
+from conftest import example
 from matplotlib.colors import to_rgba
 from mpl_toolkits.mplot3d.art3d import Line3DCollection, Poly3DCollection
 from pictures import (assert_panels_apart, assert_readable, labels, legend, line, on_paper, script, segments, style, texts,
@@ -582,7 +582,7 @@ def test_plot_writes_beside_the_run_or_elsewhere(tmp_path, monkeypatch):
 
 def test_plot_of_a_real_run(run, monkeypatch):
     """Columns, names and shapes are those that the program writes; the parts of the ledger add up to the total drawn."""
-    result = run(BENCH / "spall.yaml", sets={"mesh.cells": [2, 2, 20], "time.end": 2.6e-7, "output.interval": 2e-8})
+    result = run(example("spall.yaml"), sets={"mesh.cells": [2, 2, 20], "time.end": 2.6e-7, "output.interval": 2e-8})
     figures = drawn(monkeypatch, result.dir, result.dir)
     assert {"history.png", "energy.png", "crack.png"} <= set(figures)
     upper = figures["energy.png"].axes[0]

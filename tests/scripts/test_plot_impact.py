@@ -1,4 +1,4 @@
-"""What bench/plot-impact shows of a plate and prints, against fields made by hand on a small plate."""
+"""What bench/studies/plot-impact shows of a plate and prints, against fields made by hand on a small plate."""
 
 import itertools
 import math
@@ -11,7 +11,7 @@ from pictures import assert_panels_apart, assert_readable, script, texts, title
 
 import rhegma
 
-impact = script("bench/plot-impact")
+impact = script("bench/studies/plot-impact")
 plt = impact.plt
 CELLS, LOW, SIZE = (4, 3, 2), np.array([-2.0, 1.0, -0.5]), np.array([8.0, 6.0, 4.0])  # mm: from (-2, 1, -0.5) to (6, 7, 3.5)
 BLOW = (1.0, 3.5)  # mm

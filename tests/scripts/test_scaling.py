@@ -64,7 +64,7 @@ def test_scaling_leaves_a_record_for_each_layout_and_a_picture(tmp_path):
 
 
 def test_efficiency_is_written(tmp_path):
-    command(sys.executable, ROOT / "bench/efficiency", "--quick", "--rounds", 3, "--build", BUILD, "--json", tmp_path / "e.json")
+    command(sys.executable, ROOT / "bench/studies/efficiency", "--quick", "--rounds", 3, "--build", BUILD, "--json", tmp_path / "e.json")
     record = json.loads((tmp_path / "e.json").read_text())
     assert {(s["form"], s["layout"]) for s in record["steps"]} == {(f, k) for f in ("variational", "incomplete")
                                                                    for k in ("threads", "ranks")}

@@ -1,6 +1,6 @@
 """Every script of bench/ and perf/ once, as a user starts it but on tiny meshes: none is broken unseen. What they make of
 their results is held to account in test_plot.py, test_plot_impact.py, test_studies.py and test_perf.py; bench/scaling,
-bench/efficiency and perf/simulate run are started in test_scaling.py."""
+bench/studies/efficiency and perf/simulate run are started in test_scaling.py."""
 
 import json
 import os
@@ -11,7 +11,7 @@ import subprocess
 import numpy as np
 import pytest
 import rhegma
-from conftest import BENCH, ENVIRONMENT, PROGRAM, ROOT, SINGLE, TIMEOUT, launch
+from conftest import ENVIRONMENT, PROGRAM, ROOT, SINGLE, TIMEOUT, example, launch
 
 BUILD = PROGRAM.parent
 PNG = b"\x89PNG\r\n"
@@ -53,10 +53,10 @@ def test_demo(tmp_path):
 
 @pytest.mark.skipif(SINGLE, reason="the ceramic needs double precision")
 def test_impact_and_its_pictures(tmp_path):
-    """bench/impact calls bench/plot and bench/plot-impact; what is there already is not run again."""
+    """bench/studies/impact calls bench/plot and bench/studies/plot-impact; what is there already is not run again."""
     words = ["structured", "--out", tmp_path, "--set", "mesh.cells=[8, 8, 4]", "--set", "time.end=0.4e-6", "--set",
              "output.times=[0.4e-6]"]
-    told, _ = script("bench/impact", *words)
+    told, _ = script("bench/studies/impact", *words)
     out = tmp_path / "structured"
     assert json.loads((out / "summary.json").read_text())["ranks"] == 2
     assert_pictures(out, told, "history.png", "energy.png", "crack.png", "impact-0.40us.png", "views.png")
@@ -64,19 +64,19 @@ def test_impact_and_its_pictures(tmp_path):
     change, speed = re.search(r"changes by (\S+) of itself at most; the ball flies on at (\S+) m/s", told).groups()
     assert float(change) < 1e-13 and 280 < float(speed) < 300
     when = (out / "summary.json").stat().st_mtime_ns
-    script("bench/impact", *words)
+    script("bench/studies/impact", *words)
     assert (out / "summary.json").stat().st_mtime_ns == when
 
 
 def test_free_bar(tmp_path):
-    told, _ = script("bench/free-bar", "--out", tmp_path, "--steps", 60, "--set", "mesh.cells=[1, 1, 6]")
+    told, _ = script("bench/studies/free-bar", "--out", tmp_path, "--steps", 60, "--set", "mesh.cells=[1, 1, 6]")
     assert "variational: completed" in told and "theory 2.383493e-07 s" in told
     assert_pictures(tmp_path, told, "free-bar.png")
 
 
 @pytest.mark.skipif(SINGLE, reason="the ceramic needs double precision")
 def test_ceramic_curves(tmp_path):
-    told, _ = script("bench/ceramic-curves", "--out", tmp_path, "--rates", "1e6")
+    told, _ = script("bench/studies/ceramic-curves", "--out", tmp_path, "--rates", "1e6")
     assert [text.split()[0] for text in told.splitlines()[:2]] == ["compression", "tension"]
     strongest = float(told.split(" GPa")[0].split()[-1])
     assert -10 < strongest < -4  # the static strength is that of yield, 4 GPa, and rises with the rate
@@ -84,11 +84,11 @@ def test_ceramic_curves(tmp_path):
 
 
 def test_intrinsic(tmp_path):
-    told, _ = script("bench/intrinsic", "--out", tmp_path, "--only", "spall", "--set", "mesh.cells=[1, 1, 10]", "--set",
+    told, _ = script("bench/studies/intrinsic", "--out", tmp_path, "--only", "spall", "--set", "mesh.cells=[1, 1, 10]", "--set",
                      "time.end=0.2e-6")
     assert told.count("(theory 0.1123), plateau ") == 3
     assert_pictures(tmp_path, told, "spall-history.png", "spall-snapshots.png")
-    told, _ = script("bench/intrinsic", "--out", tmp_path, "--only", "slopes", "speed", "--set", "mesh.cells=[1, 1, 4]",
+    told, _ = script("bench/studies/intrinsic", "--out", tmp_path, "--only", "slopes", "speed", "--set", "mesh.cells=[1, 1, 4]",
                      "--set", "time.steps=60")
     assert told.count("by (3.10)") == 6 and told.count("formula (3.10)") == 5
     assert_pictures(tmp_path, told, "interface-stress.png", "wave-speed.png")
@@ -96,9 +96,9 @@ def test_intrinsic(tmp_path):
 
 def test_mesh_study(tmp_path):
     """With a coarse mesh in place of the one that it would make."""
-    made = launch("mesh", BENCH / "spall.yaml", "-o", tmp_path / "uniform.h5", "--set", "mesh.cells=[2, 2, 20]")
+    made = launch("mesh", example("spall.yaml"), "-o", tmp_path / "uniform.h5", "--set", "mesh.cells=[2, 2, 20]")
     assert made.returncode == 0, made.stderr
-    words = ["bench/mesh-study", "--only", "uniform", "--out", tmp_path, "--end", "0.3e-6", "--safety", "0.5"]
+    words = ["bench/studies/mesh-study", "--only", "uniform", "--out", tmp_path, "--end", "0.3e-6", "--safety", "0.5"]
     told, _ = script(*words, expect=1)  # too coarse for its limits
     assert "flat plane 5.44 uJ, waves meet at 0.2246 us" in told and told.count("  NO\n") >= 1
     assert_pictures(tmp_path, told, "energy.png", "cracks.png")
@@ -110,7 +110,7 @@ def test_mesh_study(tmp_path):
 
 
 def test_fragmentation(tmp_path):
-    told, _ = script("bench/fragmentation", "--out", tmp_path, "--rates", "1e5", "--seeds", 1, "--set", "mesh.cells=[1, 1, 20]")
+    told, _ = script("bench/studies/fragmentation", "--out", tmp_path, "--rates", "1e5", "--seeds", 1, "--set", "mesh.cells=[1, 1, 20]")
     assert "Grady 0.605 mm, Glenn-Chudnovsky 0.496 mm" in told
     assert_pictures(tmp_path, told, "fragmentation.png")
 
@@ -121,7 +121,7 @@ def rows_of(told):
 
 
 def test_endurance(tmp_path):
-    told, _ = script("bench/endurance", "--out", tmp_path, "--steps", 40, "--jobs", 2, "--set", "mesh.cells=[1, 1, 10]")
+    told, _ = script("bench/studies/endurance", "--out", tmp_path, "--steps", 40, "--jobs", 2, "--set", "mesh.cells=[1, 1, 10]")
     rows = rows_of(told)
     assert len(rows) == 12 and rows[6][:2] == ["40 m/s", "continuous"]
     energy = rhegma.energy(tmp_path / "40-0-continuous")
@@ -131,30 +131,30 @@ def test_endurance(tmp_path):
 
 @pytest.mark.skipif(not (BUILD / "rhegma-mesh").exists(), reason="built without Gmsh")
 def test_meshes(tmp_path):
-    told, _ = script("bench/meshes", "part", "--out", tmp_path)
+    told, _ = script("bench/studies/meshes", "part", "--out", tmp_path)
     (row,) = rows_of(told)
     assert 10_000 < int(row[2].replace(",", "")) < 25_000 and float(row[6]) > 1.5 and not list(tmp_path.iterdir())
     assert float(row[5]) / float(row[4]) == pytest.approx(float(row[6]), abs=0.01)
 
 
 def test_mistakes_are_the_programs_own(tmp_path):
-    _, complaint = script("bench/fragmentation", "--out", tmp_path, "--rates", "1e5", "--seeds", 1, "--set", "mesh.jiter=1",
+    _, complaint = script("bench/studies/fragmentation", "--out", tmp_path, "--rates", "1e5", "--seeds", 1, "--set", "mesh.jiter=1",
                           expect=2)
     assert complaint.startswith("fragmentation: ") and "mesh.jiter: unknown key; did you mean 'mesh.jitter'?" in complaint
 
 
 def test_large(tmp_path):
-    _, _ = script("bench/large", "--out", tmp_path, "--quick", expect=1)  # so small a mesh takes too many bytes per tet
+    _, _ = script("bench/studies/large", "--out", tmp_path, "--quick", expect=1)  # so small a mesh takes too many bytes per tet
     assert json.loads((tmp_path / "large/summary.json").read_text())["elements"] == 12960
 
 
 def test_large_tells_its_limits(tmp_path):
-    told, _ = script("bench/large", "--help")
+    told, _ = script("bench/studies/large", "--help")
     assert "--quick" in told
 
 
 def test_checkpoint(tmp_path):
-    told, _ = script("bench/checkpoint", "--cells", "2,2,20", "--rounds", 1, "--ranks", 2, "--threads", 1, "--directory",
+    told, _ = script("bench/studies/checkpoint", "--cells", "2,2,20", "--rounds", 1, "--ranks", 2, "--threads", 1, "--directory",
                      tmp_path)
     assert told.splitlines()[-1].startswith("480 elements, ") and not list(tmp_path.iterdir())
 

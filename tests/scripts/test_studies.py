@@ -9,7 +9,7 @@ import types
 import numpy as np
 import pytest
 import synthetic_run as synthetic
-from conftest import BENCH
+from conftest import example
 from matplotlib.colors import to_rgba
 from pictures import assert_panels_apart, assert_readable, labels, legend, line, look, script, segments, style, texts, title
 
@@ -69,21 +69,21 @@ def start(module, monkeypatch, *words):
 
 
 def case_text(name, **sections):
-    """A case of bench/cases with sections replaced, as text."""
-    return json.dumps({**rhegma.read_case(BENCH / name), **sections})
+    """A case of bench/examples with sections replaced, as text."""
+    return json.dumps({**rhegma.read_case(example(name)), **sections})
 
 
 @pytest.mark.parametrize("name", ["free-bar", "ceramic-curves", "intrinsic", "mesh-study", "fragmentation"])
 def test_bars_of_two_materials_are_refused_before_anything_runs(name, tmp_path, monkeypatch, runs):
     fake = runs(lambda out, sets: None)
     with pytest.raises(rhegma.BadInput, match="of one material; this case has material, steel"):
-        start(script(f"bench/{name}"), monkeypatch, "--out", tmp_path, "--set", TWO_MATERIALS)
+        start(script(f"bench/studies/{name}"), monkeypatch, "--out", tmp_path, "--set", TWO_MATERIALS)
     assert not fake.calls
 
 
-# ---- bench/free-bar ----
+# ---- bench/studies/free-bar ----
 
-free_bar = script("bench/free-bar")
+free_bar = script("bench/studies/free-bar")
 STEP = 20 * np.arange(1.0, 801)
 RING = {"step": STEP, "time": 1e-9 * STEP, "kinetic": 2 + np.cos(2 * np.pi * 1e-9 * STEP / 2.3834e-7)}
 
@@ -106,7 +106,7 @@ def test_free_bar(tmp_path, monkeypatch, runs, saved, capsys):
     said = capsys.readouterr().out
     table = rhegma.energy(tmp_path / "variational")
     drift = np.abs(table["total"] / table["total"][0] - 1).max()
-    expected = theory.free_bar_half_period(rhegma.read_case(BENCH / "free-bar.yaml"))
+    expected = theory.free_bar_half_period(rhegma.read_case(example("free-bar.yaml")))
     assert "variational: completed" in said and "incomplete: stopped" in said
     assert f"energy constant to {drift:.2g}; half period 2.3834" in said and f"theory {expected:.7g} s" in said
     found = float(said.split("half period ")[1].split()[0])
@@ -137,9 +137,9 @@ def test_free_bar_takes_as_many_steps_as_it_says(tmp_path, monkeypatch, runs, sa
     assert figures["free-bar.png"].axes[0].get_xlim() == (0, 20000)
 
 
-# ---- bench/ceramic-curves ----
+# ---- bench/studies/ceramic-curves ----
 
-ceramic = script("bench/ceramic-curves")
+ceramic = script("bench/studies/ceramic-curves")
 
 
 def cube_result(out, sets):
@@ -208,9 +208,9 @@ def test_ceramic_has_four_rates_unless_told(tmp_path, monkeypatch, runs, saved):
     assert [call.out.name for call in fake.calls[:4]] == [f"compression-1e+0{k}" for k in (3, 4, 5, 6)] and len(fake.calls) == 8
 
 
-# ---- bench/intrinsic ----
+# ---- bench/studies/intrinsic ----
 
-intrinsic = script("bench/intrinsic")
+intrinsic = script("bench/studies/intrinsic")
 
 
 MOMENTS = [0.07e-6, 0.1e-6, 0.15e-6, 0.2e-6, 0.31e-6, 0.36e-6, 0.42e-6, 0.5e-6]
@@ -218,7 +218,7 @@ MOMENTS = [0.07e-6, 0.1e-6, 0.15e-6, 0.2e-6, 0.31e-6, 0.36e-6, 0.42e-6, 0.5e-6]
 
 def spall_result(out, sets):
     """The wave comes a tenth late and is a tenth low; a mesh of two elements, of which the upper one has a side in y+."""
-    case = rhegma.read_case(BENCH / "spall.yaml")
+    case = rhegma.read_case(example("spall.yaml"))
     bar = theory.Spall(case)
     time = np.linspace(0, 0.5e-6 if out.name == "intrinsic" else 0.45e-6, 5001 if out.name == "intrinsic" else 4501)
     points = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 1, 1], [0, 1, 1.5]])
@@ -242,7 +242,7 @@ def test_intrinsic_spall(tmp_path, monkeypatch, runs, saved, capsys):
                      ("spall.yaml", "continuous", ["a=1"])]
     assert fake.calls[0].sets == fake.calls[1].sets == {}
     assert fake.calls[2].sets == {"interface.form": "continuous", "interface.faces": "abs(z) < 1e-6", "output.fields": []}
-    bar = theory.Spall(rhegma.read_case(BENCH / "spall.yaml"))
+    bar = theory.Spall(rhegma.read_case(example("spall.yaml")))
     late = 1e-4 * math.ceil(1.1e7 / bar.speed)  # us, of the table
     said = capsys.readouterr().out.splitlines()
     assert said == [f"{name}: 100 MPa at {late:.4f} us (theory 0.1123), plateau {0.9 * bar.high / 1e6:.1f} MPa (theory 200), "
@@ -284,7 +284,7 @@ def test_intrinsic_spall(tmp_path, monkeypatch, runs, saved, capsys):
 
 def test_passage_of_the_wave_on_the_other_side():
     """A probe below the middle sees the wave of the lower end first."""
-    case = rhegma.read_case(BENCH / "spall.yaml")
+    case = rhegma.read_case(example("spall.yaml"))
     case["boundary"][1]["velocity"] = -3.0
     bar = theory.Spall(case, np.array([[0, 0, 3e-3], [1e-4, 1e-4, 7e-3]]))
     time = np.linspace(0, 0.4e-6, 4001)
@@ -296,7 +296,7 @@ def test_passage_of_the_wave_on_the_other_side():
 
 
 def test_plateau_is_taken_from_its_middle():
-    bar = theory.Spall(rhegma.read_case(BENCH / "spall.yaml"))
+    bar = theory.Spall(rhegma.read_case(example("spall.yaml")))
     begin, span = 1e-3 / bar.speed, 2e-3 / bar.speed
     time = begin + span * np.linspace(-0.5, 1.2, 1701)
     part = (time - begin) / span
@@ -320,7 +320,7 @@ def test_side_of_a_mesh():
         assert [sorted(t) for t in triangles] == [[0, 1, 2]] and owners.tolist() == [0]
 
 
-ROW = rhegma.read_case(BENCH / "spring-bar.yaml")
+ROW = rhegma.read_case(example("spring-bar.yaml"))
 ROW_SPEED = theory.rhegma.one_material(ROW, "").dilatational_speed
 
 
@@ -431,10 +431,10 @@ def test_intrinsic_does_all_parts_unless_told(monkeypatch):
     assert done == ["spall", "slopes", "speed", "speed", "spall"]
 
 
-# ---- bench/mesh-study ----
+# ---- bench/studies/mesh-study ----
 
-study = script("bench/mesh-study")
-BAR = theory.Spall(rhegma.read_case(BENCH / "spall.yaml"))
+study = script("bench/studies/mesh-study")
+BAR = theory.Spall(rhegma.read_case(example("spall.yaml")))
 CORNERS = np.array([[[0, 0, 0], [1, 0, 0], [0, 1, 0.0]], [[0, 0, 2.9], [1, 0, 2.9], [0, 1, 2.9]],
                     [[0, 0, 0], [1, 0, 0], [0, 1, 3.1]],
                     [[0, 0, -1], [1, 0, -1], [0, 1, -1]]]) * 1e-4
@@ -547,7 +547,7 @@ def test_pictures_of_the_study():
 def test_cracks_of_a_bar_anywhere():
     """Of another bar, wider in y than in x and not around the origin, the faces around its middle."""
     box = np.array([[1.0, 2.0, 5.0], [1.2, 2.6, 9.0]])  # half its width: 0.3; so 0.45 on both sides of z = 7
-    bar = theory.Spall(rhegma.read_case(BENCH / "spall.yaml"), box)
+    bar = theory.Spall(rhegma.read_case(example("spall.yaml")), box)
     at = [7.44, 6.56, 7.46, 6.54]
     corners = np.array([[[0, 0, 7], [1, 0, 7], [0, 1, z]] for z in at])
     faces, half = study.near_middle({"points": corners, "damage": np.ones(4)}, bar)
@@ -577,7 +577,7 @@ def test_mesh_study(tmp_path, monkeypatch, runs, saved, capsys):
     status = start(study, monkeypatch, "--out", tmp_path.name, "--ranks", 2, "--threads", 3, "--end", "0.5e-6", "--safety", 0.7,
                    "--only", "graded", "uniform", "--set", "c=3")
     ((words, options),) = meshed
-    assert words == [launch.program(), "mesh", BENCH / "spall-uniform.geo", "-o", tmp_path / "uniform.h5", "--scale", "1e-3",
+    assert words == [launch.program(), "mesh", example("spall-uniform.geo"), "-o", tmp_path / "uniform.h5", "--scale", "1e-3",
                      "--improve"]
     assert float((tmp_path / "uniform.mesh-s").read_text()) < 1 and not (tmp_path / "graded.mesh-s").exists()
     for call, name in zip(fake.calls, ("graded", "uniform")):
@@ -632,10 +632,10 @@ def test_threads_of_the_study(tmp_path, monkeypatch):
     assert asked == [3, 1, 5]
 
 
-# ---- bench/fragmentation ----
+# ---- bench/studies/fragmentation ----
 
-fragmentation = script("bench/fragmentation")
-STRETCHED = rhegma.read_case(BENCH / "fragmentation.yaml")
+fragmentation = script("bench/studies/fragmentation")
+STRETCHED = rhegma.read_case(example("fragmentation.yaml"))
 
 
 def test_settings_of_a_stretched_bar():

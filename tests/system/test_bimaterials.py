@@ -7,11 +7,11 @@ import re
 import h5py
 import numpy as np
 import pytest
-from conftest import BENCH, CASES, SINGLE, launch, overrides, rounding
+from conftest import CASES, SINGLE, example, launch, overrides, rounding
 from figures import ROUNDING
 from test_meshes import convert, file_case
 
-BAR = BENCH / "bimaterial.yaml"
+BAR = example("bimaterial.yaml")
 ALUMINA = {"model": "neo-hookean", "young": 260e9, "poisson": 0.21, "density": 3690}
 STEEL = {"model": "neo-hookean", "young": 210e9, "poisson": 0.3, "density": 7800}
 ZZ = 5  # of a stress field: xx xy xz yy yz zz
@@ -155,8 +155,8 @@ TORN = {"mesh.cells": [3, 3, 12], "mesh.jitter": 0.12, "time.end": 0.8e-6, "outp
 
 def test_one_material_named_twice_is_one_material(run):
     """The elements lie in another order in their tiles; each computes the same."""
-    bar = run(BENCH / "torn-bar.yaml", sets=TORN)
-    twice = run(BENCH / "torn-bar.yaml", threads=2,
+    bar = run(example("torn-bar.yaml"), sets=TORN)
+    twice = run(example("torn-bar.yaml"), threads=2,
                 sets={**TORN, "materials": [{"name": "again", "where": "z > 2e-3 + x", **ALUMINA}]})
     assert bar.summary["broken_area_m2"] > 0
     assert twice.summary["state_hash"] == bar.summary["state_hash"]

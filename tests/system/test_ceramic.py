@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from conftest import BENCH, CASES, SINGLE
+from conftest import CASES, SINGLE, example
 from figures import ROUNDING
 from test_parallel import LAYOUTS, assert_same_bits
 
@@ -124,7 +124,7 @@ def test_uniaxial_strength_is_that_of_a_point(run, figure, load, sign, end, stre
     sets = {"initial.velocity": {"x": f"{-0.2 * rate}*x", "y": f"{-0.2 * rate}*y", "z": f"{rate}*z"},
             "boundary": [{"set": side, "component": "z", "velocity": f"{rate}*z"} for side in ("z-", "z+")],
             "time.end": end, "output.energy_limit": 1e9}
-    history = run(BENCH / "ceramic-cube.yaml", sets=sets).history
+    history = run(example("ceramic-cube.yaml"), sets=sets).history
     top = np.argmax(np.abs(history["middle_szz"]))
     figure(f"ceramic cube, {load} at 1e4/s: strength", 1e-9 * abs(history["middle_szz"][top]), theory=strength, bound=0.006,
            unit="GPa", relative=True, why=DIGITS)
@@ -136,7 +136,7 @@ def test_uniaxial_strength_is_that_of_a_point(run, figure, load, sign, end, stre
 @pytest.mark.parametrize("safety, bound", [(0.5, 0.03), (0.25, 0.012)])
 def test_ledger_of_a_cube_that_fails_all_at_once(run, figure, safety, bound):
     """What is lost within a few steps is seen to first order in the step."""
-    cube = run(BENCH / "ceramic-cube.yaml", sets={"time.safety": safety})
+    cube = run(example("ceramic-cube.yaml"), sets={"time.safety": safety})
     assert cube.summary["damage_J"] > 0.25 * cube.summary["energy_largest_J"]
     figure(f"ceramic cube that is crushed, at {safety} of the critical step: energy error", cube.summary["energy_error_rel"],
            bound=bound)

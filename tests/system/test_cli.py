@@ -10,9 +10,9 @@ import time
 
 import pytest
 import yaml
-from conftest import BENCH, CASES, ENVIRONMENT, PROGRAM, ROOT, TIMEOUT, launch, overrides
+from conftest import CASES, ENVIRONMENT, PROGRAM, ROOT, TIMEOUT, example, launch, overrides
 
-SPALL = BENCH / "spall.yaml"
+SPALL = example("spall.yaml")
 FRAGMENTS = CASES / "fragments.yaml"
 SHORT = {"time.steps": 40}
 KEYS = """case elements interfaces dofs ranks threads steps time_end dt_first dt_last limiting_element wall_s
@@ -243,7 +243,7 @@ def test_check_asks_for_the_units_of_impossible_waves(sets, speed):
 @pytest.mark.parametrize("sets, bound", [({}, None), ({"time.safety": 0.51}, "0.5"), ({"interface.onset": 0.075}, "0.25"),
                                          ({"interface.beta": 2}, "0.25"), ({"interface.activation": "continuous"}, None)])
 def test_check_warns_of_an_onset_too_stiff_for_the_step(sets, bound):
-    process = launch("check", BENCH / "endurance.yaml", *overrides(sets))
+    process = launch("check", example("endurance.yaml"), *overrides(sets))
     assert process.returncode == 0
     assert ("no step of time.safety above" in process.stdout) == (bound is not None)
     assert bound is None or f"no step of time.safety above {bound} follows" in process.stdout

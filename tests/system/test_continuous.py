@@ -3,7 +3,7 @@ middle plane alone."""
 
 import numpy as np
 import pytest
-from conftest import BENCH, CASES, rounding
+from conftest import CASES, example, rounding
 from figures import ROUNDING
 from test_invariance import drift, momentum_scale, spin
 from test_spall import ARRIVAL, AREA, MEETING, STRESS, TOUGHNESS, passage, plateau
@@ -43,7 +43,7 @@ def test_momenta_of_a_free_bar_are_constant(run, figure):
 def test_free_bar_rings_at_its_frequency(run, figure):
     """As late as the lumped mass is in the DG form: 5e-4."""
     sets = {**WHOLE, "time.end": 1.0, "time.steps": 4000, "output.interval": 10, "output.fields": []}
-    bar = run(BENCH / "free-bar.yaml", sets=sets)
+    bar = run(example("free-bar.yaml"), sets=sets)
     figure("free bar, shared nodes: half period against Rayleigh and Love", 1e6 * half_period(bar.energy),
            theory=1e6 * bar_half_period(), bound=1e-3, unit="us", relative=True)
     figure("free bar, shared nodes, 4,000 steps: energy error", bar.summary["energy_error_rel"], bound=3e-4)
@@ -53,7 +53,7 @@ def test_free_bar_rings_at_its_frequency(run, figure):
 def plane(run):
     """The spall test with interfaces on the middle plane alone."""
     sets = {"interface.form": "continuous", "interface.faces": "abs(z) < 1e-6", "output.fields": ["crack"]}
-    return run(BENCH / "spall.yaml", threads=2, sets=sets)
+    return run(example("spall.yaml"), threads=2, sets=sets)
 
 
 def test_plane_breaks_when_the_waves_meet(plane, figure):
@@ -74,9 +74,9 @@ def test_plane_costs_its_area_times_the_energy(plane, figure):
 def lumped(run, spall):
     """The spall test in the DG form with the lumped mass, at the step size of the consistent one."""
     sets = {"mass": "lumped", "output.fields": []}
-    critical = run(BENCH / "spall.yaml", sets={**sets, "time.steps": 1}).summary["dt_critical"]
+    critical = run(example("spall.yaml"), sets={**sets, "time.steps": 1}).summary["dt_critical"]
     safety = spall.summary["dt_first"] / critical
-    return run(BENCH / "spall.yaml", threads=2, sets={**sets, "time.end": 0.25e-6, "time.safety": safety})
+    return run(example("spall.yaml"), threads=2, sets={**sets, "time.end": 0.25e-6, "time.safety": safety})
 
 
 def test_lumped_mass_is_late(lumped, spall, figure):

@@ -168,7 +168,7 @@ def test_fragments_of_a_stretched_bar_are_of_the_size_that_energy_allows(scratch
     """Within a factor of 3 of Glenn & Chudnovsky (1986), whose theory is one of order of magnitude, and not a matter of the
     mesh, which has 160 planes."""
     environment = {**os.environ, **ENVIRONMENT, "RHEGMA": str(PROGRAM), "OMP_NUM_THREADS": "2"}
-    command = [ROOT / "bench" / "fragmentation", "--out", scratch / "stretched", "--rates", "3e4", "--seeds", "1"]
+    command = [ROOT / "bench/studies/fragmentation", "--out", scratch / "stretched", "--rates", "3e4", "--seeds", "1"]
     process = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=300)
     assert process.returncode == 0, process.stderr
     count = int(re.search(r": (\d+) fragments", process.stdout)[1])

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from conftest import BENCH, CASES
+from conftest import CASES, example
 from figures import ROUNDING
 
 MODULUS = 260e9 * 0.79 / (1.21 * 0.58)  # of spring-bar.yaml, without strain across (Pa)
@@ -59,7 +59,7 @@ LEDGERS = {"linear": 0.03, "rate": 0.027, "fatigue": 0.03, "free": 0.03,
 @pytest.mark.parametrize("law", LEDGERS)
 def test_ledger_closes(run, figure, law):
     name, *conserving = law.split()
-    run = run(BENCH / "spall.yaml", threads=2,
+    run = run(example("spall.yaml"), threads=2,
               sets={**PULLED, **interface(name, **({"activation": "conserving"} if conserving else {}))})
     energy = run.energy
     figure(f"bar pulled apart, law {law}: energy error", run.summary["energy_error_rel"], bound=LEDGERS[law])
@@ -76,7 +76,7 @@ def test_step_follows_the_opening(run, figure):
     def pulled(steps):
         sets = {**PULLED, **interface("bilinear", bilinear={"ascent": 0.05, "steps": steps}),
                 "output.interval": 2e-8, "output.probes": [{"name": "a", "at": [1e-5, 1e-5, 1e-5]}]}
-        return run(BENCH / "spall.yaml", threads=2, sets=sets)
+        return run(example("spall.yaml"), threads=2, sets=sets)
 
     fixed, once, twice = (np.diff(pulled(steps).history["time"])[:-1] for steps in (0, 60, 120))
     assert np.ptp(fixed) < 1e-9 * fixed[0] and once[0] == pytest.approx(fixed[0])
@@ -95,7 +95,7 @@ def test_wave_speed_of_intrinsic_faces(run, figure):
     expected = 2e-3 / rate
     sets = {"mesh.cells": [1, 1, 20], "mesh.size": [0.1e-3, 0.1e-3, 2e-3], "interface.energy": 1e18 * 1e-4 / MODULUS,
             "initial.velocity": {"z": "cos(pi*z/2e-3)"}, "time.end": 1.1 * expected, "output.interval": 2e-9}
-    run = run(BENCH / "spring-bar.yaml", threads=2, sets=sets)
+    run = run(example("spring-bar.yaml"), threads=2, sets=sets)
     time, kinetic = run.energy["time"], run.energy["kinetic"]
 
     def misfit(half):
@@ -113,7 +113,7 @@ def test_wave_speed_of_intrinsic_faces(run, figure):
 def test_intrinsic_wave_is_late_and_low_and_does_not_spall(run, figure):
     """A coarse bar; theory: 100 MPa at 0.1123 us, 200 MPa, spall at 0.2246 us."""
     sets = {"mesh.cells": [2, 2, 30], "output.fields": [], "time.end": 0.35e-6}
-    run = run(BENCH / "intrinsic.yaml", threads=2, sets=sets)
+    run = run(example("intrinsic.yaml"), threads=2, sets=sets)
     time, stress = run.history["time"], run.history["p1mm_szz"]
     assert time[np.argmax(stress > 100e6)] > 1.05 * 0.1123e-6
     assert stress[(time > 0.2e-6) & (time < 0.3e-6)].mean() < 0.94 * 200e6

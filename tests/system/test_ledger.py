@@ -2,13 +2,13 @@
 
 import numpy as np
 import pytest
-from conftest import BENCH, CASES
+from conftest import CASES, example
 from figures import ROUNDING
 
 TOUGHNESS = 34.0  # J/m^2, of every case here
 RUNS = {
-    "spall": (BENCH / "spall.yaml", {}),
-    "jittered": (BENCH / "spall-jittered.yaml", {"output.fields": ["crack"]}),
+    "spall": (example("spall.yaml"), {}),
+    "jittered": (example("spall-jittered.yaml"), {"output.fields": ["crack"]}),
     "fragments": (CASES / "fragments.yaml", {}),
     "collision": (CASES / "collision.yaml", {}),
 }
@@ -50,11 +50,11 @@ def test_total_is_the_sum_of_its_parts(energy, figure):
 
 @pytest.mark.parametrize("jitter, velocity, bounds", [(0, 15, (1.0, 0.02)), (0.12, 15, (0.3, 0.014)), (0, 40, (0.3, 0.2))])
 def test_conserving_activation_keeps_the_energy_of_a_violent_break(run, figure, jitter, velocity, bounds):
-    """The first 500 steps of the bars of bench/endurance.md, undamped; bounds in %: the default is worse, the other better."""
+    """The first 500 steps of the bars of bench/examples/endurance, undamped; bounds in %: the default is worse, the other better."""
     sets = {"mesh.jitter": jitter, "initial.velocity": {"z": f"-{velocity}*cos(pi*z/4e-3)"}, "time.steps": 500,
             "viscosity.linear": 0, "output.interval": 10, "output.fields": []}
-    default = run(BENCH / "endurance.yaml", threads=2, sets={**sets, "interface.activation": "continuous"})
-    conserving = run(BENCH / "endurance.yaml", threads=2, sets=sets)
+    default = run(example("endurance.yaml"), threads=2, sets={**sets, "interface.activation": "continuous"})
+    conserving = run(example("endurance.yaml"), threads=2, sets=sets)
     assert default.summary["energy_error_rel"] > bounds[0] / 100
     figure(f"bar torn at {velocity} m/s, jittered by {jitter}, activation conserving: energy error after 500 steps",
            conserving.summary["energy_error_rel"], bound=bounds[1] / 100)
@@ -80,7 +80,7 @@ def test_lumped_mass_keeps_the_energy_of_a_violent_break_better(run, figure, vel
     """At the same step size, to 1 us."""
     def torn(**sets):
         start = {"initial.velocity.z": f"-{velocity}*cos(pi*z/4e-3)", "time.end": 1e-6, "output.fields": []}
-        return run(BENCH / "torn-bar.yaml", threads=2, sets={**start, **sets}).summary
+        return run(example("torn-bar.yaml"), threads=2, sets={**start, **sets}).summary
 
     consistent = torn()
     safety = consistent["dt_first"] / torn(**{"mass": "lumped", "time.steps": 1})["dt_critical"]

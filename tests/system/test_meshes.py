@@ -1,4 +1,4 @@
-"""Mesh files: imports in every format that Gmsh here writes, the meshes of bench/cases, runs from a file."""
+"""Mesh files: imports in every format that Gmsh here writes, the meshes of bench/examples, runs from a file."""
 
 import re
 import shutil
@@ -7,7 +7,7 @@ import subprocess
 import h5py
 import numpy as np
 import pytest
-from conftest import BENCH, CASES, PROGRAM, launch, overrides
+from conftest import CASES, PROGRAM, example, launch, overrides
 
 GMSH = shutil.which("gmsh")
 needs_gmsh = pytest.mark.skipif(GMSH is None or not PROGRAM.with_name("rhegma-mesh").exists(),
@@ -230,12 +230,12 @@ def test_wrong_arguments(tmp_path, arguments, message):
 
 
 def test_output_does_not_replace_its_input(tmp_path):
-    case = shutil.copy(BENCH / "spall.yaml", tmp_path / "a.yaml")
+    case = shutil.copy(example("spall.yaml"), tmp_path / "a.yaml")
     other = tmp_path / "b.yaml"
     other.symlink_to(case)
     process = launch("mesh", case, "-o", other)
     assert process.returncode == 2 and "it would take the place of what it is made from: -o" in process.stderr
-    assert case.read_text() == (BENCH / "spall.yaml").read_text()
+    assert case.read_text() == (example("spall.yaml")).read_text()
 
 
 # ---- Abaqus ----
@@ -315,7 +315,7 @@ def test_abaqus_that_is_refused(tmp_path, old, new, message):
     assert message in refused(inp(tmp_path, (PART + END).replace(old, new)), tmp_path / "out.h5")
 
 
-# ---- The meshes of bench/cases ----
+# ---- The meshes of bench/examples ----
 
 THESIS = {"spall-uniform": 13683, "spall-middle": 150742, "spall-graded": 223394,
           "plate-structured": 183673, "plate-unstructured": 198431}
@@ -330,7 +330,7 @@ def thesis(scratch):
     def make(name):
         if name not in made:
             improve = ["--improve"] if name in REFINED else []
-            made[name] = convert(BENCH / f"{name}.geo", scratch / f"{name}.h5", "--scale", "1e-3", *improve)[0]
+            made[name] = convert(example(f"{name}.geo"), scratch / f"{name}.h5", "--scale", "1e-3", *improve)[0]
         return made[name]
 
     return make
@@ -387,14 +387,14 @@ def smallest_height(c):
 @pytest.mark.parametrize("name, gain", [("spall-uniform", 1.6), ("part", 1.5)])
 def test_improvement(thesis, tmp_path, name, gain):
     plain = thesis(name)
-    better, _ = convert(BENCH / f"{name}.geo", tmp_path / "better.h5", "--scale", "1e-3", "--improve")
+    better, _ = convert(example(f"{name}.geo"), tmp_path / "better.h5", "--scale", "1e-3", "--improve")
     before, after = corners(plain), corners(better)
     assert smallest_height(after) > gain * smallest_height(before)
     assert volumes(after).sum() == pytest.approx(volumes(before).sum(), rel=1e-9)
     sizes = [{key: face_areas(c)[file["set"][:] == i].sum() for i, key in enumerate(names(file, "surface"))}
              for file, c in ((plain, before), (better, after))]
     assert sizes[1] == pytest.approx(sizes[0], rel=1e-9)  # curved surfaces included
-    again, _ = convert(BENCH / f"{name}.geo", tmp_path / "again.h5", "--scale", "1e-3", "--improve")
+    again, _ = convert(example(f"{name}.geo"), tmp_path / "again.h5", "--scale", "1e-3", "--improve")
     assert (tmp_path / "again.h5").read_bytes() == (tmp_path / "better.h5").read_bytes()
 
 
@@ -413,13 +413,13 @@ def test_improvement_keeps_surfaces_between_volumes(tmp_path):
 @needs_gmsh
 def test_meshing_twice_gives_the_same_file(thesis, tmp_path):
     thesis("spall-uniform")
-    _, _ = convert(BENCH / "spall-uniform.geo", tmp_path / "again.h5", "--scale", "1e-3")
+    _, _ = convert(example("spall-uniform.geo"), tmp_path / "again.h5", "--scale", "1e-3")
     assert (tmp_path / "again.h5").read_bytes() == open(thesis("spall-uniform").filename, "rb").read()
 
 
 @needs_gmsh
 def test_part_with_holes(tmp_path):
-    file, _ = convert(BENCH / "part.geo", tmp_path / "part.h5", "--scale", "1e-3")
+    file, _ = convert(example("part.geo"), tmp_path / "part.h5", "--scale", "1e-3")
     c = corners(file)
     areas = face_areas(c)
     area = {name: areas[file["set"][:] == i].sum() for i, name in enumerate(names(file, "surface"))}
@@ -500,7 +500,7 @@ def test_run_on_an_import(run, thesis, tmp_path_factory):
     """The spall test on the unstructured mesh: the wave arrives with the stress of the theory."""
     folder = tmp_path_factory.mktemp("import")
     shutil.copy(thesis("spall-uniform").filename, folder / "bar.h5")
-    case = file_case(folder, folder / "bar.h5", BENCH / "spall.yaml")
+    case = file_case(folder, folder / "bar.h5", example("spall.yaml"))
     sets = {"time.end": 0.2e-6, "output.fields": []}
     one, two = run(case, threads=2, sets=sets), run(case, ranks=2, sets=sets)
     plateau = one.history["time"] > 0.15e-6

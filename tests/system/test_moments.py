@@ -3,7 +3,7 @@ fields, history and energies against what was prescribed, each at its own time."
 
 import numpy as np
 import pytest
-from conftest import BENCH, rounding
+from conftest import example, rounding
 from figures import ROUNDING
 
 YOUNG, POISSON, DENSITY, EDGE = 260e9, 0.21, 3690.0, 0.1e-3
@@ -36,7 +36,7 @@ def moved(run):
     """The top moves up and down, the left side as a displacement; a wall that touches nothing moves too."""
     boundary = [{"set": "z+", "component": "z", "velocity": f"3*sin({RATE}*t)*(1 + 1e3*x)"},
                 {"set": "x-", "component": "x", "displacement": f"1e-8*(1 - cos({RATE}*t))"}]
-    return run(BENCH / "torn-bar.yaml", sets={**BOX, "boundary": boundary, "bodies": [BODY], "mass": "lumped", "time.end": 1,
+    return run(example("torn-bar.yaml"), sets={**BOX, "boundary": boundary, "bodies": [BODY], "mass": "lumped", "time.end": 1,
                                               "time.steps": 200})
 
 
@@ -109,7 +109,7 @@ def test_fields_are_those_of_the_prescribed_motion(moved, figure):
 def test_history_has_the_fields_of_the_same_step(run, figure):
     """At a corner, which is a node, of a body that is shaken."""
     at = [2 * EDGE, EDGE, EDGE]
-    shaken = run(BENCH / "torn-bar.yaml", sets={
+    shaken = run(example("torn-bar.yaml"), sets={
         **BOX, "boundary": [{"set": "z-", "component": "z", "velocity": f"3*sin({RATE}*t)"}],
         "time.end": 1, "time.steps": 50, "output": {**BOX["output"], "probes": [{"name": "corner", "at": at}]}})
     node = np.flatnonzero(np.abs(shaken.points() - at).max(axis=1) < 1e-9 * EDGE)
@@ -148,7 +148,7 @@ def test_stress_energy_and_work_are_those_of_their_time(run, figure):
               for axis, row in zip("xyz", rate.tolist())}
     boundary = [{"set": axis + side, "component": c, "velocity": motion[c]}
                 for axis in "xyz" for side in "-+" for c in "xyz"]
-    still = run(BENCH / "torn-bar.yaml", sets={**BOX, "boundary": boundary, "initial.velocity": motion, "time.end": 1,
+    still = run(example("torn-bar.yaml"), sets={**BOX, "boundary": boundary, "initial.velocity": motion, "time.end": 1,
                                                "time.steps": 100})
     strain = (rate + rate.T) / 2  # per second
     growth = LAMBDA * np.trace(strain) * np.eye(3) + 2 * MU * strain

@@ -3,7 +3,7 @@
 import pathlib
 
 import pytest
-from conftest import BENCH, CASES, launch
+from conftest import CASES, example, launch
 
 LAYOUTS = [(1, 2), (2, 1), (2, 2), (3, 1)]  # ranks, threads; all compared with (1, 1)
 PROBES = [{"name": "a", "at": [0.01e-3, 0.03e-3, 0.5e-3]}, {"name": "b", "at": [-0.05e-3, 0.02e-3, -1.1e-3]}]
@@ -45,7 +45,7 @@ def assert_same_bits(one, other):
 def test_spall_is_the_same_on_any_layout(run, ranks, threads):
     def spall(ranks, threads):
         sets = {"time.end": 0.25e-6, "output.fields": ["crack"]}
-        return run(BENCH / "spall-jittered.yaml", ranks=ranks, threads=threads, sets=sets)
+        return run(example("spall-jittered.yaml"), ranks=ranks, threads=threads, sets=sets)
 
     one, other = spall(1, 1), spall(ranks, threads)
     assert (other.summary["ranks"], other.summary["threads"]) == (ranks, threads)

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from conftest import BENCH, CASES, SINGLE, launch, overrides, rounding
+from conftest import CASES, SINGLE, example, launch, overrides, rounding
 from figures import ROUNDING
 from test_parallel import assert_same_bits
 
@@ -14,7 +14,7 @@ PLASTIC_SPEED = np.sqrt((K + 4 / 3 * G * HARDENING / (3 * G + HARDENING)) / DENS
 LIMIT = YIELD * (K + 4 / 3 * G) / (2 * G)
 
 double_only = pytest.mark.skipif(SINGLE, reason="J2 plasticity needs double precision")
-TORN = BENCH / "torn-bar.yaml"
+TORN = example("torn-bar.yaml")
 SOLIDS = {
     "linear": {"material.model": "linear-elastic"},
     "kirchhoff": {"material.model": "st-venant-kirchhoff"},

@@ -3,7 +3,7 @@ strength of 400 MPa and break the bar on its mid-plane, at a cost of 5.44 uJ."""
 
 import numpy as np
 import pytest
-from conftest import BENCH
+from conftest import example
 
 AREA, TOUGHNESS = 0.4e-3 * 0.4e-3, 34.0  # m^2, of the bar; J/m^2
 YOUNG, POISSON, DENSITY = 260e9, 0.21, 3690.0
@@ -16,7 +16,7 @@ MESHES = ["regular", "jittered"]
 @pytest.fixture
 def bar(run, spall):
     """bar(mesh): the case as it stands; the fields that are not looked at are left out of the jittered one."""
-    return lambda mesh: spall if mesh == "regular" else run(BENCH / "spall-jittered.yaml", threads=2,
+    return lambda mesh: spall if mesh == "regular" else run(example("spall-jittered.yaml"), threads=2,
                                                             sets={"output.fields": ["crack"]})
 
 
@@ -83,7 +83,7 @@ def test_energy_balance(bar, figure, mesh):
 
 
 def test_a_longer_step_costs_energy(run, spall, figure):
-    long = run(BENCH / "spall.yaml", threads=2, sets={"time.safety": 0.9, "output.fields": []})
+    long = run(example("spall.yaml"), threads=2, sets={"time.safety": 0.9, "output.fields": []})
     assert long.summary["dt_first"] == pytest.approx(1.8 * spall.summary["dt_first"], rel=1e-12)
     figure("spall, regular, time.safety 0.9: energy error", long.summary["energy_error_rel"], bound=0.012)
     figure("spall, regular, time.safety 0.9 against 0.5: first fracture", 1e6 * long.summary["first_fracture_time_s"],

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from conftest import BENCH, CASES
+from conftest import CASES, example
 
 YOUNG, POISSON, DENSITY = 260e9, 0.21, 3690.0  # of both cases
 
@@ -37,7 +37,7 @@ def half_period(energy):
 
 
 def test_energy_stays_for_20000_steps(run, figure):
-    bar = run(BENCH / "free-bar.yaml", sets=BAR)
+    bar = run(example("free-bar.yaml"), sets=BAR)
     assert bar.summary["steps"] == 20000
     figure("free bar, 20,000 steps: energy error", bar.summary["energy_error_rel"], bound=5e-5)
 
@@ -45,7 +45,7 @@ def test_energy_stays_for_20000_steps(run, figure):
 @pytest.mark.parametrize("mass, bound", [("consistent", 7e-7), ("lumped", 1.4e-3)])
 def test_bar_rings_at_its_frequency(run, figure, mass, bound):
     sets = BAR if mass == "consistent" else {**BAR, "time.steps": 4000, "output.interval": 10, "mass": mass}
-    energy = run(BENCH / "free-bar.yaml", sets=sets).energy
+    energy = run(example("free-bar.yaml"), sets=sets).energy
     assert len(energy) > 400
     figure(f"free bar, {mass} mass: half period against Rayleigh and Love", 1e6 * half_period(energy),
            theory=1e6 * bar_half_period(), bound=bound, unit="us", relative=True)
@@ -53,7 +53,7 @@ def test_bar_rings_at_its_frequency(run, figure, mass, bound):
 
 def test_incomplete_form_grows_without_bound(run, figure):
     sets = {**BAR, "interface.form": "incomplete", "output.energy_limit": 1e9}
-    bar = run(BENCH / "free-bar.yaml", sets=sets, expect=1)
+    bar = run(example("free-bar.yaml"), sets=sets, expect=1)
     assert "the time step collapsed" in bar.stderr
     assert bar.summary["status"] != "completed"
     figure("free bar, incomplete form: steps until it is lost", bar.summary["steps"], bound=500, unit="steps")

@@ -12,7 +12,7 @@
 #define RG_SOURCE_ROOT "." /* run from the root of the tree */
 #endif
 
-#define CASES RG_SOURCE_ROOT "/bench/cases/"
+#define CASES RG_SOURCE_ROOT "/bench/examples/"
 
 /* ---- what a case means ---- */
 
@@ -234,13 +234,13 @@ static void check_round_trip(const char *file, int overrides, const char *const 
 
 static void test_round_trip_of_cases(void **state) {
     (void)state;
-    check_round_trip(CASES "spall.yaml", 0, NULL);
-    check_round_trip(CASES "spall-jittered.yaml", 0, NULL);
-    check_round_trip(CASES "free-bar.yaml", 0, NULL);
-    check_round_trip(CASES "torn-bar.yaml", 0, NULL);
-    check_round_trip(CASES "bimaterial.yaml", 0, NULL);
+    check_round_trip(CASES "spall/spall.yaml", 0, NULL);
+    check_round_trip(CASES "spall/spall-jittered.yaml", 0, NULL);
+    check_round_trip(CASES "free-bar/free-bar.yaml", 0, NULL);
+    check_round_trip(CASES "torn-bar/torn-bar.yaml", 0, NULL);
+    check_round_trip(CASES "bimaterial/bimaterial.yaml", 0, NULL);
     static const char *const onset[] = {"interface.onset=0.7"};
-    check_round_trip(CASES "endurance.yaml", 1, onset);
+    check_round_trip(CASES "endurance/endurance.yaml", 1, onset);
 }
 
 static void test_round_trip_of_everything(void **state) {
@@ -301,7 +301,7 @@ static void test_echo_text(void **state) {
 static void test_spall_shows_every_key(void **state) {
     (void)state;
     static char text[16384];
-    FILE *file = fopen(CASES "spall.yaml", "r");
+    FILE *file = fopen(CASES "spall/spall.yaml", "r");
     assert_non_null(file);
     text[fread(text, 1, sizeof text - 1, file)] = '\0';
     fclose(file);

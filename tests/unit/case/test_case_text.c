@@ -594,7 +594,7 @@ static void test_bytes_of_a_file(void **state) {
 
 static void test_names_of_cases(void **state) {
     (void)state;
-    static const char *const known[][2] = {{"bench/cases/spall.yaml", "spall"},
+    static const char *const known[][2] = {{"bench/examples/spall/spall.yaml", "spall"},
                                            {"a.b/c", "c"},
                                            {"x.tar.gz", "x.tar"},
                                            {"/e/.yaml", ".yaml"},

@@ -31,8 +31,8 @@ static rg_case *read_case(void) {
         "mesh.origin=[0, 0, 0]",       "output.probes=[]",       PULL,
         "interface.form=intrinsic",    "interface.law=bilinear", "interface.bilinear.ascent=0.1",
         "interface.bilinear.steps=200"};
-    rg_case *c = rg_case_read(RG_SOURCE_ROOT "/bench/cases/spall.yaml", sizeof override / sizeof *override,
-                              override, stderr);
+    rg_case *c = rg_case_read(RG_SOURCE_ROOT "/bench/examples/spall/spall.yaml",
+                              sizeof override / sizeof *override, override, stderr);
     assert_non_null(c);
     return c;
 }

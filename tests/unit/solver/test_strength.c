@@ -26,7 +26,7 @@ static rg_case *read_case(int overrides, const char *const override[]) {
     for (int i = 0; i < overrides; i++) {
         all[2 + i] = override[i];
     }
-    rg_case *c = rg_case_read(RG_SOURCE_ROOT "/bench/cases/spall.yaml", overrides + 2, all, stderr);
+    rg_case *c = rg_case_read(RG_SOURCE_ROOT "/bench/examples/spall/spall.yaml", overrides + 2, all, stderr);
     assert_non_null(c);
     return c;
 }
@@ -206,7 +206,7 @@ static void test_numbers(void **state) {
     const double rounding = sizeof(rg_real) == sizeof(double) ? 1e-14 : 1.2e-7;
     for (int regular = 0; regular < 2; regular++) {
         const char *all[] = {"mesh.cells=[4, 4, 8]", set[0], set[1], jitter[regular]};
-        rg_case *c = rg_case_read(RG_SOURCE_ROOT "/bench/cases/spall.yaml", 4, all, stderr);
+        rg_case *c = rg_case_read(RG_SOURCE_ROOT "/bench/examples/spall/spall.yaml", 4, all, stderr);
         assert_non_null(c);
         size_t count, others;
         face *f = faces_in(c, AS_IT_IS, &count);
@@ -280,7 +280,7 @@ static const char *asked;
 static void make(void) {
     const char *const set[] = {"mesh.cells=[1, 1, 2]", "mesh.size=[1e-3, 1e-3, 2e-3]",
                                "mesh.origin=[-1e-3, 0, 0]", "mesh.jitter=0", asked};
-    rg_case *c = rg_case_read(RG_SOURCE_ROOT "/bench/cases/spall.yaml", 5, set, stderr);
+    rg_case *c = rg_case_read(RG_SOURCE_ROOT "/bench/examples/spall/spall.yaml", 5, set, stderr);
     rg_solver_make(c, MPI_COMM_WORLD);
 }
 
