@@ -8,14 +8,8 @@
 
 void rg_progress_begin(rg_progress *p, bool speaks, const rg_solver *s) {
     bool terminal = isatty(STDOUT_FILENO) == 1 && isatty(STDERR_FILENO) == 1; /* mpirun fakes one of them */
-    *p = (rg_progress){speaks, terminal, s->input->time.end, MPI_Wtime(), s->step, s->input->time.steps};
-}
-
-/* The ledger, one line an interval. */
-static void show_ledger(const rg_energy *e) {
-    printf("energy (J): kinetic %.4e  bulk %.4e  penalty %.2e  cohesive %.2e  contact %.2e  dissipated %.4e  "
-           "work %.4e\n",
-           e->kinetic, e->bulk, e->penalty, e->cohesive, e->contact, e->dissipated, e->external);
+    *p = (rg_progress){
+        speaks, terminal, false, s->input->time.end, MPI_Wtime(), s->step, s->input->time.steps};
 }
 
 /* The step shrinks while bodies break: a share of time, or of the steps estimated at the start, would promise
@@ -29,15 +23,30 @@ double rg_progress_left(const rg_progress *p, const rg_solver *s) {
     return done > 0 ? (MPI_Wtime() - p->started) / (double)done * steps : 0;
 }
 
+/* In five columns. */
+static void show_left(double seconds) {
+    if (seconds < 1000) {
+        printf("%3.0f s", seconds);
+    } else if (seconds < 60000) {
+        printf("%2.0f min", seconds / 60);
+    } else {
+        printf("%3.0f h", seconds / 3600);
+    }
+}
+
+/* At most 80 columns; all else of the ledger is in energy.csv. */
 void rg_progress_show(rg_progress *p, const rg_solver *s, const rg_energy *e) {
     if (!p->speaks) {
         return;
     }
-    double left = rg_progress_left(p, s);
-    printf("%s", p->terminal ? "\r\033[K" : "");
-    show_ledger(e);
-    printf("step %7" PRId64 "  time %.4e s  dt %.3e s  energy error %+.1e  broken %.4e m2  left %.0f s%s",
-           s->step, s->time, s->dt, e->error, e->broken_area, left, p->terminal ? "" : "\n");
+    if (!p->headed) {
+        printf("    step    time (s)    dt (s)  energy error  failed (m2)  broken (m2)   left\n");
+        p->headed = true;
+    }
+    printf("%s%8" PRId64 "  %10.4e  %8.2e  %+12.1e  %11.3e  %11.3e  ", p->terminal ? "\r\033[K" : "", s->step,
+           s->time, s->dt, e->error, e->failed_area, e->broken_area);
+    show_left(rg_progress_left(p, s));
+    printf("%s", p->terminal ? "" : "\n");
     fflush(stdout);
 }
 

@@ -1,12 +1,13 @@
-/* What a person sees while a run goes on: the ledger every interval, and the live line with step, time, dt,
- * energy error, broken area, time left. */
+/* What a person sees while a run goes on, a line for each output: step, time, dt, energy error, area that has
+ * failed (carries nothing any more) and that is broken (its cohesive law acts), wall time left. On a terminal
+ * one line that is written anew. */
 #ifndef RG_PROGRESS_H
 #define RG_PROGRESS_H
 
 #include "diagnostics/ledger.h"
 
 typedef struct {
-    bool speaks, terminal;
+    bool speaks, terminal, headed;
     double end, started; /* simulated time at which the run ends; wall clock at its start (s) */
     int64_t first, last; /* step at its start, and the last one that the case allows; 0: no limit */
 } rg_progress;

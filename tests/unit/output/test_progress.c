@@ -59,21 +59,9 @@ static const char *heard(void) {
 
 static rg_case input;
 static rg_solver solver;
-static const rg_energy energy = {.kinetic = 1.25e-3,
-                                 .bulk = 2.5e-4,
-                                 .penalty = 3.5e-5,
-                                 .cohesive = 4.5e-6,
-                                 .contact = 5.5e-7,
-                                 .dissipated = 6.25e-5,
-                                 .external = 7.5e-2,
-                                 .error = -2.5e-4,
-                                 .broken_area = 8.125e-7};
-#define LEDGER                                                                                               \
-    "energy (J): kinetic 1.2500e-03  bulk 2.5000e-04  penalty 3.50e-05  cohesive 4.50e-06  contact "         \
-    "5.50e-07  dissipated 6.2500e-05  work 7.5000e-02\n"
-#define STATE                                                                                                \
-    "step      30  time 4.0000e-06 s  dt 2.000e-07 s  energy error -2.5e-04  broken 8.1250e-07 m2  left 60 " \
-    "s"
+static const rg_energy energy = {.error = -2.5e-4, .broken_area = 8.125e-7, .failed_area = 3.125e-7};
+#define HEAD  "    step    time (s)    dt (s)  energy error  failed (m2)  broken (m2)   left\n"
+#define STATE "      30  4.0000e-06  2.00e-07      -2.5e-04    3.125e-07    8.125e-07   60 s"
 
 static int set_up(void **state) {
     (void)state;
@@ -133,9 +121,10 @@ static void lines_to_a_file(void **state) {
     rg_progress p = begun(true);
     listen();
     rg_progress_show(&p, &solver, &energy);
+    rg_progress_show(&p, &solver, &energy);
     rg_progress_say(&p, "word %d of %s", 3, "many");
     rg_progress_end(&p);
-    assert_string_equal(heard(), LEDGER STATE "\nword 3 of many\n");
+    assert_string_equal(heard(), HEAD STATE "\n" STATE "\nword 3 of many\n");
 }
 
 static void live_line_on_a_terminal(void **state) {
@@ -146,7 +135,25 @@ static void live_line_on_a_terminal(void **state) {
     rg_progress_show(&p, &solver, &energy);
     rg_progress_say(&p, "word");
     rg_progress_end(&p);
-    assert_string_equal(heard(), "\r\033[K" LEDGER STATE "\r\033[Kword\n\n");
+    assert_string_equal(heard(), HEAD "\r\033[K" STATE "\r\033[Kword\n\n");
+}
+
+static void units_of_the_time_left(void **state) {
+    (void)state;
+    static const struct {
+        double left;
+        const char *words;
+    } times[] = {{999, " 999 s\n"}, {1020, " 17 min\n"}, {59940, " 999 min\n"}, {61200, "  17 h\n"}};
+    for (size_t i = 0; i < sizeof times / sizeof *times; i++) {
+        rg_progress p = begun(true);
+        wall = 100 + times[i].left * 2 / 3; /* 20 of 50 steps are done */
+        listen();
+        rg_progress_show(&p, &solver, &energy);
+        const char *line = heard();
+        assert_string_equal(line + strlen(line) - strlen(times[i].words), times[i].words);
+        assert_true(strlen(strchr(line, '\n') + 1) <= 81);
+        set_up(NULL);
+    }
 }
 
 static void half_a_terminal_is_none(void **state) {
@@ -177,6 +184,7 @@ int main(void) {
         cmocka_unit_test_setup(time_left_to_the_last_step, set_up),
         cmocka_unit_test_setup(lines_to_a_file, set_up),
         cmocka_unit_test_setup(live_line_on_a_terminal, set_up),
+        cmocka_unit_test_setup(units_of_the_time_left, set_up),
         cmocka_unit_test_setup(half_a_terminal_is_none, set_up),
         cmocka_unit_test_setup(nothing_where_it_does_not_speak, set_up),
     };
