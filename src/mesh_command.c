@@ -137,6 +137,23 @@ static void tell_parts(const rg_mesh *mesh, const char *input) {
     rg_free(part);
 }
 
+/* A unit forgotten shows in the size. */
+static void tell(const rg_mesh *mesh, const char *output) {
+    double low[3], high[3];
+    for (int i = 0; i < 3; i++) {
+        low[i] = INFINITY;
+        high[i] = -INFINITY;
+    }
+    for (size_t k = 0; k < 4 * (size_t)mesh->elements; k++) {
+        for (int i = 0; i < 3; i++) {
+            low[i] = fmin(low[i], mesh->x[3 * mesh->corner[k] + i]);
+            high[i] = fmax(high[i], mesh->x[3 * mesh->corner[k] + i]);
+        }
+    }
+    printf("%s: %.4g x %.4g x %.4g m, %" PRId64 " elements, %" PRId64 " vertices", output, high[0] - low[0],
+           high[1] - low[1], high[2] - low[2], mesh->elements, mesh->vertices);
+}
+
 static void improve(rg_mesh *mesh) {
     rg_gid before = mesh->elements;
     rg_improvement done = rg_mesh_improve(mesh);
@@ -158,8 +175,8 @@ void rg_mesh_finish(rg_mesh *mesh, const rg_mesh_arguments *a) {
         rg_mesh_check(mesh, a->input);
     }
     rg_mesh_file_write(a->output, mesh, 0, NULL);
-    printf("%s: %" PRId64 " elements, %" PRId64 " vertices, %d surface sets, %d volume sets\n", a->output,
-           mesh->elements, mesh->vertices, mesh->sets, mesh->regions);
+    tell(mesh, a->output);
+    printf(", %d surface sets, %d volume sets\n", mesh->sets, mesh->regions);
 }
 
 static bool ends_with(const char *text, const char *end) {
@@ -177,7 +194,8 @@ static int from_case(const rg_mesh_arguments *a) {
     }
     rg_mesh *mesh = rg_mesh_of_case(c);
     rg_mesh_file_write(a->output, mesh, 0, NULL);
-    printf("%s: %" PRId64 " elements, %" PRId64 " vertices\n", a->output, mesh->elements, mesh->vertices);
+    tell(mesh, a->output);
+    putchar('\n');
     rg_mesh_free(mesh);
     rg_case_free(c);
     return RG_OK;

@@ -298,6 +298,11 @@ static void open_outputs(run *r) {
     refuse_overwriting(r);
     rg_make_directory(c->output.dir, r->solver->comm);
     if (r->solver->rank == 0) {
+        if (!r->options->overwrite && rg_completed(c->output.dir)) {
+            rg_warn(
+                "%s: this run takes the place of one that had ended; pictures there are still of that one",
+                c->output.dir);
+        }
         rg_checkpoints_remove(c->output.dir,
                               true); /* first: none may outlive the files that it goes on with */
     }

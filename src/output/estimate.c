@@ -57,6 +57,21 @@ static double largest_edge(const rg_solver *s) {
     return sqrt(square);
 }
 
+enum { DAY = 86400 };
+
+/* Seconds in the unit that a person would take. */
+static void print_seconds(double seconds, FILE *out) {
+    static const struct {
+        double length;
+        const char *unit;
+    } unit[] = {{1, "s"}, {60, "min"}, {3600, "h"}, {DAY, "days"}, {365.25 * DAY, "years"}};
+    size_t k = 0;
+    while (k + 1 < sizeof unit / sizeof *unit && seconds >= 2 * unit[k + 1].length) {
+        k++;
+    }
+    fprintf(out, "%.3g %s", seconds / unit[k].length, unit[k].unit);
+}
+
 /* Of the fields, or at most: with cracks everywhere and the buffers of field output. */
 static double bytes_per_element(const rg_solver *s, bool at_most) {
     double crack = (double)s->domain->iblocks * (double)s->crack_stride * sizeof *s->crack;
@@ -172,8 +187,13 @@ void rg_estimate_print(const rg_solver *s, const rg_estimate *e, FILE *out) {
         "memory         %.0f bytes per element, at most %.0f (output, cracks everywhere); %.3g GB in all\n",
         e->bytes_per_element, e->peak_bytes_per_element,
         e->peak_bytes_per_element * (double)e->elements * 1e-9);
-    fprintf(out, "time loop      about %.3g s on %d ranks x %d threads (%s, %s precision)\n", e->seconds,
-            s->ranks, s->threads, s->kernels->name, RG_PRECISION);
+    fprintf(out, "time loop      about ");
+    print_seconds(e->seconds, out);
+    fprintf(out, " on %d ranks x %d threads (%s, %s precision)\n", s->ranks, s->threads, s->kernels->name,
+            RG_PRECISION);
+    if (e->seconds > 30.0 * DAY) {
+        fprintf(out, "warning: it would run for months: is time.end in seconds, and the mesh in metres?\n");
+    }
     if (s->law.onset > 0 && c->time.safety > steady_safety(&s->law)) {
         fprintf(out,
                 "warning: with interface.onset %.3g no step of time.safety above %.2g follows points that "

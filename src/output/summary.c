@@ -135,8 +135,8 @@ void rg_summary_print(const rg_summary *m, const rg_solver *s, const rg_ledger *
             m->setup_seconds, m->loop_seconds, m->output_seconds, m->us_per_tet_step);
     fprintf(out, "energy error %.2g of the largest energy, %.4g J\n", l->worst, l->largest);
     if (isfinite(m->first_fracture)) {
-        fprintf(out, "first fracture at %.5g s; broken %.4g m2, dissipated %.4g J\n", m->first_fracture,
-                l->last.broken_area, l->last.dissipated);
+        fprintf(out, "first fracture at %.5g s; failed %.4g m2, broken %.4g m2, dissipated %.4g J\n",
+                m->first_fracture, l->last.failed_area, l->last.broken_area, l->last.dissipated);
     }
     for (int i = 0; i < s->bodies->count; i++) {
         const rg_body_seen *b = &s->bodies->body[i].seen;

@@ -88,6 +88,15 @@ def test_version_is_that_of_the_summary(run):
     assert process.stdout == f"rhegma {version} ({summary['revision']}), {summary['precision']} precision\n"
 
 
+def test_a_finished_run_is_not_replaced_in_silence(tmp_path):
+    words = ["run", FRAGMENTS, "-q", "-o", tmp_path / "out", "--set", "time.steps=2"]
+    said = [launch(*words, *more) for more in ([], [], ["--overwrite"])]
+    assert [process.returncode for process in said] == [0, 0, 0]
+    assert said[0].stderr == said[2].stderr == ""
+    assert said[1].stderr == (f"rhegma: warning: {tmp_path / 'out'}: this run takes the place of one that had ended; "
+                              "pictures there are still of that one\n")
+
+
 @pytest.mark.parametrize("arguments", [["--help"], ["-h"], ["run", "--help"], ["check", "a.yaml", "-h"], ["verify", "--help"]])
 def test_help_names_every_option(arguments):
     process = launch(*arguments)
@@ -284,7 +293,9 @@ def test_quiet_run_says_nothing(run):
 def test_run_shows_its_progress_and_result(tmp_path):
     process = launch("run", FRAGMENTS, "-o", tmp_path / "out", *overrides({**SHORT, "output.interval": 10}))
     assert process.returncode == 0
-    assert len(re.findall(r"^step +\d+ +time", process.stdout, re.MULTILINE)) == 5
+    head, *rows = re.findall(r"^ +(?:step|\d+) .* (?:left|s)$", process.stdout, re.MULTILINE)
+    assert head.split()[0] == "step" and [int(row.split()[0]) for row in rows] == [0, 10, 20, 30, 40]
+    assert max(map(len, [head, *rows])) < 80
     assert str(tmp_path / "out") in process.stdout.splitlines()[-1]
 
 

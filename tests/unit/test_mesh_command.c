@@ -135,18 +135,18 @@ static void test_import(void **state) {
     (void)state;
     write_text("pair.inp", pair);
     expect(WORDS("pair.inp", "-o", "pair.h5", "--scale", "2"), RG_OK,
-           "pair.h5: 2 elements, 5 vertices, 1 surface sets, 0 volume sets\n");
+           "pair.h5: 10 x 12 x 14 m, 2 elements, 5 vertices, 1 surface sets, 0 volume sets\n");
     rg_mesh *m = rg_mesh_file_read("pair.h5");
     assert_true(m->x[0] == 2 && m->x[3 * 4 + 2] == 20 && m->elements == 2);
     rg_mesh_free(m);
-    expect(WORDS("box.yaml", "-o", "box.h5"), RG_OK, "box.h5: 72 elements, 36 vertices\n");
+    expect(WORDS("box.yaml", "-o", "box.h5"), RG_OK, "box.h5: 1 x 2 x 3 m, 72 elements, 36 vertices\n");
     expect(WORDS("box.yaml", "-o", "box.h5", "--set", "mesh.cells=[1, 2, 1]"), RG_OK,
-           "box.h5: 12 elements, 12 vertices\n");
+           "box.h5: 1 x 2 x 3 m, 12 elements, 12 vertices\n");
     m = rg_mesh_file_read("box.h5");
     assert_int_equal(m->elements, 12);
     rg_mesh_free(m);
     assert_int_equal(link("box.yaml", "box.yml"), 0);
-    expect(WORDS("box.yml", "-o", "box.h5"), RG_OK, "box.h5: 72 elements, 36 vertices\n");
+    expect(WORDS("box.yml", "-o", "box.h5"), RG_OK, "box.h5: 1 x 2 x 3 m, 72 elements, 36 vertices\n");
     unlink("box.yml");
     expect(WORDS("none.yaml", "-o", "none.h5"), RG_USAGE,
            "none.yaml: cannot be read: No such file or directory\n");
@@ -189,8 +189,8 @@ static void test_parts(void **state) {
         }
         rg_mesh_free(m);
         snprintf(said + used, sizeof said - (size_t)used,
-                 "parts.h5: %d elements, %d vertices, 0 surface sets, 0 volume sets\n", parts + 1,
-                 4 * parts + 1);
+                 "parts.h5: %d x 1 x 1.5 m, %d elements, %d vertices, 0 surface sets, 0 volume sets\n",
+                 3 * parts - 2, parts + 1, 4 * parts + 1);
         assert_string_equal(found, said);
     }
     unlink("parts.inp");
@@ -221,7 +221,8 @@ static void test_improve(void **state) {
                moved, &moves),
         2);
     assert_true(strtod(moved, NULL) > 0.94);
-    assert_non_null(strstr(said, "flat.h5: 3 elements, 5 vertices, 0 surface sets, 0 volume sets\n"));
+    assert_non_null(
+        strstr(said, "flat.h5: 4.5 x 5.1 x 1 m, 3 elements, 5 vertices, 0 surface sets, 0 volume sets\n"));
     unlink("wrong.inp");
     unlink("flat.inp");
     unlink("flat.h5");
@@ -246,7 +247,7 @@ static void test_other_formats(void **state) {
 static void test_show(void **state) {
     (void)state;
     char said[8000];
-    expect(WORDS("box.yaml", "-o", "box.h5"), RG_OK, "box.h5: 72 elements, 36 vertices\n");
+    expect(WORDS("box.yaml", "-o", "box.h5"), RG_OK, "box.h5: 1 x 2 x 3 m, 72 elements, 36 vertices\n");
     words = WORDS("--info", "box.h5");
     assert_int_equal(run_child(run_command, said, sizeof said), RG_OK);
     assert_int_equal(
@@ -283,7 +284,7 @@ static void test_show(void **state) {
 static void test_partitions(void **state) {
     (void)state;
     char said[2000];
-    expect(WORDS("box.yaml", "-o", "box.h5"), RG_OK, "box.h5: 72 elements, 36 vertices\n");
+    expect(WORDS("box.yaml", "-o", "box.h5"), RG_OK, "box.h5: 1 x 2 x 3 m, 72 elements, 36 vertices\n");
     expect(WORDS("--partition", "1", "box.h5"), RG_USAGE, REFUSED("1"));
     expect(WORDS("--partition", "73", "box.h5"), RG_USAGE, REFUSED("73"));
     expect(WORDS("--partition", "2,", "box.h5"), RG_USAGE, REFUSED("2,"));

@@ -220,9 +220,10 @@ static const rg_estimate plain = {.elements = 1234,
     "plastic waves  4748.6 m/s, beyond 1.75e+09 Pa in uniaxial strain\n"
 #define STEP  "time step      1e-09 s = 0.5 of the critical 2e-09 s, set by element 77 with its faces closed\n"
 #define STEPS "steps          1001 to 1e-06 s\n"
-#define LAST                                                                                                 \
-    "memory         3210 bytes per element, at most 5432 (output, cracks everywhere); 0.0067 GB in all\n"    \
-    "time loop      about 12.3 s on %d ranks x 2 threads (%s, %s precision)\n"
+#define MEMORY                                                                                               \
+    "memory         3210 bytes per element, at most 5432 (output, cracks everywhere); 0.0067 GB in all\n"
+#define LOOP " on %d ranks x 2 threads (%s, %s precision)\n"
+#define LAST MEMORY "time loop      about 12.3 s" LOOP
 
 static bool words_are(const rg_solver *s, const rg_estimate *e, const char *wanted, const char *more) {
     char *found = NULL, all[4000];
@@ -300,6 +301,22 @@ static bool check_words(void) {
            good;
     e.largest_edge = 0;
     good = words_are(s, &e, BODY BOTH STEP STEPS LAST, "") && good;
+    static const struct {
+        double seconds;
+        const char *words;
+    } times[] = {{119, BODY BOTH STEP STEPS MEMORY "time loop      about 119 s" LOOP},
+                 {150, BODY BOTH STEP STEPS MEMORY "time loop      about 2.5 min" LOOP},
+                 {7200, BODY BOTH STEP STEPS MEMORY "time loop      about 2 h" LOOP},
+                 {2591999, BODY BOTH STEP STEPS MEMORY "time loop      about 30 days" LOOP},
+                 {1.7e8, BODY BOTH STEP STEPS MEMORY "time loop      about 5.39 years" LOOP}};
+    for (size_t i = 0; i < sizeof times / sizeof *times; i++) {
+        e.seconds = times[i].seconds;
+        good = words_are(s, &e, times[i].words,
+                         e.seconds < 2592000 ? ""
+                                             : "warning: it would run for months: is time.end in seconds, "
+                                               "and the mesh in metres?\n") &&
+               good;
+    }
     s->ranks = 3;
     s->part->quality = (rg_partition_quality){1.25, 1.25, 50, 2, 1.5};
     s->part->interfaces = 500;

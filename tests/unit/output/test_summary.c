@@ -250,7 +250,7 @@ static void words(void **state) {
     snprintf(wanted, sizeof wanted,
              "set-up 0.25 s, time loop 8.00 s, output 4.00 s: 0.123 us of core time per element and step\n"
              "energy error 0.0039 of the largest energy, 8.5 J\n"
-             "first fracture at 1.5e-07 s; broken 1.5 m2, dissipated 0.5 J\n"
+             "first fracture at 1.5e-07 s; failed 1.25 m2, broken 1.5 m2, dissipated 0.5 J\n"
              "ball: at (1, 2, 3) m, velocity (4, 5, 6) m/s\n"
              "wall: at (11, 12, 13) m, velocity (14, 15, 16) m/s\n"
              "results in %s\n",
