@@ -1,0 +1,22 @@
+# Completion of rhegma's command line for bash.
+_rhegma() {
+    local word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD - 1]} command=${COMP_WORDS[1]}
+    local options="--set -o --quiet --help"
+    case $before in
+    -o | --restart) COMPREPLY=($(compgen -d -- "$word")) && return ;;
+    --walltime | --scale) return ;;
+    esac
+    case $command in
+    run) options+=" --restart --overwrite --walltime" ;;
+    mesh) options="-o --scale --improve --set --info --case --partition --help" ;;
+    verify) options="--help" ;;
+    esac
+    if [ "$COMP_CWORD" = 1 ]; then
+        COMPREPLY=($(compgen -W "run check verify mesh --version --help" -- "$word"))
+    elif [[ $word == -* ]]; then
+        COMPREPLY=($(compgen -W "$options" -- "$word"))
+    else
+        COMPREPLY=($(compgen -f -- "$word"))
+    fi
+}
+complete -o filenames -F _rhegma rhegma

@@ -1,0 +1,66 @@
+"""What `meson install` puts where, under a DESTDIR and a prefix, and that it works from there."""
+
+import os
+import re
+import subprocess
+
+import pytest
+from conftest import ENVIRONMENT, PROGRAM, ROOT, SINGLE, TIMEOUT
+
+FILES = """bin/rhegma bin/rhegma-plot share/rhegma/plot share/rhegma/rhegma.py share/rhegma/examples/spall/spall.yaml
+    share/man/man1/rhegma.1 share/bash-completion/completions/rhegma""".split()
+
+
+def command(*words, cwd=None, **more):
+    process = subprocess.run(list(map(str, words)), env={**os.environ, **ENVIRONMENT, **more}, cwd=cwd, capture_output=True,
+                             text=True, timeout=TIMEOUT)
+    assert process.returncode == 0, process.stdout + process.stderr
+    return process.stdout
+
+
+@pytest.fixture(scope="module")
+def prefix(tmp_path_factory):
+    root = tmp_path_factory.mktemp("root")
+    command("/usr/bin/meson", "install", "-C", PROGRAM.parent, "--no-rebuild", "--destdir", root, PATH="/usr/bin:/bin")
+    return next(path.parent.parent for path in root.rglob("rhegma") if path.parent.name == "bin")
+
+
+def test_all_files_are_there(prefix):
+    assert [name for name in FILES if not (prefix / name).is_file()] == []
+    assert all(os.access(prefix / name, os.X_OK) for name in FILES if name.startswith("bin/"))
+    static = [path for path in prefix.rglob("*") if path.suffix in (".a", ".o")]
+    assert static == []
+
+
+def test_an_installed_example_is_run_and_drawn(prefix, tmp_path):
+    assert command(prefix / "bin/rhegma", "--version") == command(PROGRAM, "--version")
+    case = prefix / "share/rhegma/examples/spall/spall.yaml"
+    command(prefix / "bin/rhegma", "run", case, "-q", "--set", "mesh.cells=[2,2,20]", "--set", "time.steps=20", cwd=tmp_path)
+    (tmp_path / "elsewhere").mkdir()
+    (tmp_path / "elsewhere/drawn").symlink_to(prefix / "bin/rhegma-plot")
+    said = command("elsewhere/drawn", "results/spall", cwd=tmp_path)
+    assert (tmp_path / "results/spall/energy.png").stat().st_size > 10000 and "energy.png" in said
+
+
+@pytest.mark.skipif(SINGLE, reason="once is enough")
+def test_the_page_and_the_completion_name_every_option(prefix):
+    """Of those that the usage names."""
+    usage = command(PROGRAM, "--help") + command(PROGRAM, "mesh", "--help")
+    options = set(re.findall(r"(?<![\w-])--?[a-z][\w-]*", usage)) - {"-n"}
+    page = (prefix / "share/man/man1/rhegma.1").read_text().replace("\\-", "-")
+    completion = (ROOT / "bench/install/rhegma.bash").read_text()
+    assert {"--set", "--walltime", "--improve"} <= options
+    assert [option for option in options if option not in page and option not in ("--help", "--version")] == []
+    assert [option for option in options if option not in completion and option not in ("-q",)] == []
+
+
+def complete(prefix, *words):
+    script = (f". {prefix}/share/bash-completion/completions/rhegma; COMP_WORDS=({' '.join(words)}); COMP_CWORD={len(words) - 1}; "
+              "_rhegma; printf '%s\\n' \"${COMPREPLY[@]}\"")
+    return command("bash", "-c", script).split()
+
+
+def test_completion(prefix):
+    assert complete(prefix, "rhegma", "r") == ["run"]
+    assert complete(prefix, "rhegma", "run", "--re") == ["--restart"]
+    assert complete(prefix, "rhegma", "check", "--re") == []
