@@ -1,5 +1,6 @@
 """Tables in the documents that commands print from the program or from stored records: each row stands there as printed."""
 
+import re
 import subprocess
 import sys
 
@@ -33,3 +34,51 @@ def test_tables_of_records_are_those_that_scripts_print(document, script, argume
 def test_cost_model_of_the_document_is_that_of_the_program():
     said = subprocess.run([PROGRAM.parent / "rhegma-bench", "--cost"], capture_output=True, text=True, check=True).stdout
     assert missing_rows("perf/model.md", said) == []
+
+
+DOCUMENTS = sorted(path.relative_to(ROOT) for path in ROOT.rglob("*.md")
+                   if not any(part.startswith((".", "build", "results")) for part in path.relative_to(ROOT).parts[:-1]))
+
+
+def dead_links(document):
+    """Relative links and pictures of a document whose file or heading is not there."""
+    found = []
+    for link in re.findall(r"\]\(([^)\s]+)\)", re.sub(r"```.*?```", "", document.read_text(), flags=re.S)):
+        if re.match(r"\w+:", link):
+            continue
+        name, _, heading = link.partition("#")
+        target = document.parent / name if name else document
+        if not target.exists():
+            found.append(link)
+        elif heading and heading not in headings(target):
+            found.append(link)
+    return found
+
+
+def headings(document):
+    """Anchors of the headings, as GitHub makes them."""
+    titles = re.findall(r"^#+ (.*)", document.read_text(), re.M)
+    return {re.sub(r"[^\w -]", "", title.lower()).replace(" ", "-") for title in titles}
+
+
+@pytest.mark.parametrize("document", DOCUMENTS, ids=str)
+def test_links_and_pictures_are_there(document):
+    assert dead_links(ROOT / document) == []
+
+
+def test_dead_links_are_told(tmp_path):
+    text = "# A, b!\n[a](a.md) [b](https://b) ![c](c.png)\n[d](#a-b) [e](#e) [f](../{0}/t.md#a-b) [g](t.md#g)\n"
+    (tmp_path / "t.md").write_text(text.format(tmp_path.name))
+    assert dead_links(tmp_path / "t.md") == ["a.md", "c.png", "#e", "t.md#g"]
+
+
+def test_each_example_has_a_readme_that_the_gallery_names():
+    folders = [folder for folder in (ROOT / "bench/examples").iterdir() if folder.is_dir()]
+    gallery = (ROOT / "bench/README.md").read_text()
+    assert [folder.name for folder in folders if f"](examples/{folder.name}/README.md)" not in gallery] == []
+    studies = [path.name for path in (ROOT / "bench/studies").iterdir() if path.is_file()]
+    assert [name for name in studies if f"(studies/{name})" not in gallery] == []
+    for folder in folders:  # its files are named, each picture is shown
+        text, files = (folder / "README.md").read_text(), [path.name for path in folder.iterdir() if path.suffix != ".h5"]
+        unshown = [name for name in files if name.endswith(".png") and f"]({name})" not in text]
+        assert unshown == [] and any(name in text for name in files if name.endswith((".yaml", ".geo"))), folder

@@ -430,6 +430,15 @@ def test_part_with_holes(tmp_path):
     assert area["rim"] == pytest.approx(np.pi * (18e-3**2 - 11e-3**2), rel=0.03)
 
 
+@needs_gmsh
+def test_plate_with_a_hole_is_what_its_case_pulls(tmp_path):
+    """The geometry of bench/examples/plate-with-hole fits its case: scale, names of the ends, probes inside the body."""
+    file, _ = convert(example("plate-with-hole.geo"), tmp_path / "plate.h5", "--scale", "1e-3", "--improve")
+    assert volumes(corners(file)).sum() == pytest.approx((3 * 6 - np.pi * 0.4**2) * 0.2e-9, rel=0.003)
+    checked = launch("check", example("plate-with-hole.yaml"), *overrides({"mesh.file": str(tmp_path / "plate.h5")}))
+    assert checked.returncode == 0 and "0.003 x 0.006 x 0.0002 m" in checked.stdout, checked.stderr
+
+
 # ---- Runs ----
 
 BOX = {"mesh.cells": [3, 3, 24], "time.steps": 60, "output.fields": []}
