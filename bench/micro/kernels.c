@@ -358,7 +358,7 @@ static void print_cost(const char *name, const rg_cost *c) {
            c->actual / RG_LANES);
 }
 
-/* Of the mesh that perf/model.md speaks of: large, without padding, and all faces whole or all broken. */
+/* Of the mesh that perf/README.md speaks of: large, without padding, and all faces whole or all broken. */
 static rg_cost_variant large_mesh(rg_cost_variant flags, bool broken) {
     flags.damaged = broken ? 1 : 0;
     flags.points = broken ? RG_POINTS : 0;

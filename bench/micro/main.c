@@ -22,10 +22,10 @@ static const char usage[] =
     "  --repeats R     samples per row, 3 to 100 (default 21; 5 if quick)\n"
     "  --efficiency N  instead: what the ranks' cores gain over one core, in N rounds (3 to 100); see "
     "bench/studies/efficiency\n"
-    "  --cost          instead: operations and bytes of the cost model (perf/model.md)\n"
+    "  --cost          instead: operations and bytes of the cost model (perf/README.md)\n"
     "  --help\n"
     "us/tet counts two interfaces as one tet; the other columns follow kernels/cost/model.c "
-    "(perf/model.md).\n"
+    "(perf/README.md).\n"
     "ranks: mpirun -n N rhegma-bench ...; every rank works at the same time, rates are sums over the ranks.\n"
     "exit status: 0; 1 if a kernel differs from the reference; 2 for wrong options\n";
 

@@ -1,5 +1,5 @@
 /* What a kernel call costs: floating-point operations and bytes, written down by hand from the equations, so
- * that a measured time can be held against what the machine could do. perf/model.md explains the terms; a
+ * that a measured time can be held against what the machine could do. perf/README.md explains the terms; a
  * test compares the operations with those the object code executes and the bytes with those a call is seen to
  * read and write. */
 #ifndef RG_COST_MODEL_H

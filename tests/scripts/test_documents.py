@@ -1,4 +1,4 @@
-"""Tables in the documents that commands print from the program or from stored records: each row stands there as printed."""
+"""Documents: each row of a table that a command prints stands there as printed; links, files and identifiers exist."""
 
 import re
 import subprocess
@@ -9,10 +9,10 @@ from conftest import PROGRAM, ROOT, SINGLE
 
 RECORDS = ROOT / "perf/results"
 PRINTED = {
-    "time of a step": ("README.md", "perf/table", RECORDS / "2026-11-22-epyc-2core-tiles.json"),
-    "efficiency": ("README.md", "perf/table", RECORDS / "2026-11-22-epyc-2core-efficiency.json"),
-    "scaling": ("README.md", "bench/scaling", "plot", RECORDS, "--out", "{out}/picture"),
-    "simulated clusters": ("README.md", "perf/simulate", "table", RECORDS / "2026-11-22-simulated.json"),
+    "time of a step": ("perf/README.md", "perf/table", RECORDS / "2026-11-22-epyc-2core-tiles.json"),
+    "efficiency": ("perf/README.md", "perf/table", RECORDS / "2026-11-22-epyc-2core-efficiency.json"),
+    "scaling": ("perf/README.md", "bench/scaling", "plot", RECORDS, "--out", "{out}/picture"),
+    "simulated clusters": ("perf/README.md", "perf/simulate", "table", RECORDS / "2026-11-22-simulated.json"),
 }
 
 
@@ -33,7 +33,7 @@ def test_tables_of_records_are_those_that_scripts_print(document, script, argume
 @pytest.mark.skipif(SINGLE or not (PROGRAM.parent / "rhegma-bench").exists(), reason="needs -Dbench=true, double precision")
 def test_cost_model_of_the_document_is_that_of_the_program():
     said = subprocess.run([PROGRAM.parent / "rhegma-bench", "--cost"], capture_output=True, text=True, check=True).stdout
-    assert missing_rows("perf/model.md", said) == []
+    assert missing_rows("perf/README.md", said) == []
 
 
 DOCUMENTS = sorted(path.relative_to(ROOT) for path in ROOT.rglob("*.md")
@@ -59,6 +59,49 @@ def headings(document):
     """Anchors of the headings, as GitHub makes them."""
     titles = re.findall(r"^#+ (.*)", document.read_text(), re.M)
     return {re.sub(r"[^\w -]", "", title.lower()).replace(" ", "-") for title in titles}
+
+
+def prose(document):
+    """What stands in backticks, but for whole blocks of code."""
+    return re.findall(r"`([^`\n]+)`", re.sub(r"```.*?```", "", document.read_text(), flags=re.S))
+
+
+EXAMPLE = re.compile("NAME|fung|trapezoid")  # of what a reader makes
+
+
+def dead_paths(document):
+    """Files of this project that a document names in backticks and that are not there: from the root, from its own folder or from
+    src or kernels on; the mere name of a source, anywhere."""
+    tops = "|".join(("bench", "kernels", "perf", "src", "tests"))
+    named = [text for text in prose(document) if re.fullmatch(rf"(?:{tops})/[\w./-]+|[\w/-]+\.[ch]", text)]
+    bases = ROOT, document.parent, ROOT / "src", ROOT / "kernels"
+    sources = {path.name for top in ("src", "kernels", "tests") for path in (ROOT / top).rglob("*.[ch]")}
+    return [name for name in named if not EXAMPLE.search(name) and name not in sources
+            and not any((folder / name).exists() for folder in bases)]
+
+
+def dead_names(document, sources):
+    """Identifiers of the program, rg_ or RG_, that no source has."""
+    named = [name for text in prose(document) for name in re.findall(r"\b(?:rg|RG)_\w+", text) if not EXAMPLE.search(name)]
+    return [name for name in named if not re.search(rf"\b{name}\b", sources)]
+
+
+@pytest.fixture(scope="module")
+def sources():
+    return "\n".join(path.read_text() for top in ("src", "kernels") for path in sorted((ROOT / top).rglob("*.[ch]")))
+
+
+@pytest.mark.parametrize("document", DOCUMENTS, ids=str)
+def test_files_and_identifiers_that_documents_name_exist(document, sources):
+    assert dead_paths(ROOT / document) == []
+    assert dead_names(ROOT / document, sources) == []
+
+
+def test_dead_files_and_identifiers_are_told(tmp_path):
+    (tmp_path / "t.md").write_text("`src/run.c` `src/gone.c` `gone.h` `solver/step.c` `step.c` `rg_solver` `rg_gone(x)` `rg_NAME_x`\n"
+                                   "```\n`src/no.c`\n```\n")
+    assert dead_paths(tmp_path / "t.md") == ["src/gone.c", "gone.h"]
+    assert dead_names(tmp_path / "t.md", "rg_solver rg_gone_too") == ["rg_gone"]
 
 
 @pytest.mark.parametrize("document", DOCUMENTS, ids=str)
