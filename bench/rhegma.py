@@ -1,18 +1,23 @@
-"""What a run of Rhegma left in its output directory, as numpy arrays, and moduli and wave speeds of the materials of its
-case; SI units. What pictures, studies and tests have in common.
+"""Runs Rhegma and reads what a run left in its output directory, as numpy arrays; moduli and wave speeds of the materials
+of its case. SI units. What pictures, studies and tests have in common.
 
-    case, energy = rhegma.case(out), rhegma.energy(out)
-    speed = rhegma.one_material(case, "the study").dilatational_speed
+    bar = rhegma.run(rhegma.example("spall.yaml"), "results/spall", {"time.end": 0.3e-6})
+    bar = rhegma.Run("results/spall")              # or one that is there
+    bar.summary["first_fracture_time_s"], bar.case["material"]["young"]
+    bar.energy["time"], bar.history["p1mm_szz"], bar.fragments["mass"]
+    bar.fields(-1)["stress"], bar.crack(-1)["damage"]
+    rhegma.one_material(bar.case, "the study").dilatational_speed
 """
 
 import contextlib
 import dataclasses
 import math
+import pathlib
 import re
 import sys
 
 import launch
-from launch import NAME, BadInput, read_mapping, read_text
+from launch import NAME, BadInput, example, read_mapping, read_text  # noqa: F401  (example: for those who import this)
 
 try:
     import h5py
@@ -128,13 +133,13 @@ def frame_times(directory):
         return np.array([file["frames"][name].attrs["time"] for name in _frame_names(file, directory)])
 
 
-def frame(directory, number=-1, fields=None):
+def fields(directory, number=-1, names=None):
     """A moment of the field output, -1 the last one: {"time", field name, "crack/" + field name: array}, of all fields
     or of these, as far as the run wrote them."""
     values = {}
 
     def keep(name, node):
-        if isinstance(node, h5py.Dataset) and (fields is None or name.split("/")[0] in fields):
+        if isinstance(node, h5py.Dataset) and (names is None or name.split("/")[0] in names):
             values[name] = node[:]
 
     with _fields(directory) as file:
@@ -144,11 +149,11 @@ def frame(directory, number=-1, fields=None):
     return values
 
 
-def whole_frame(directory, number, fields):
+def whole_fields(directory, number, names):
     """The same of a run that must have written all of these fields."""
-    values = frame(directory, number, fields)
+    values = fields(directory, number, names)
     written = {name.split("/")[0] for name in values}
-    missing = [name for name in fields if name not in written]
+    missing = [name for name in names if name not in written]
     if missing:
         raise BadInput(f"{directory / 'fields.h5'}: the run did not write {missing[0]} (output.fields)")
     return values
@@ -163,9 +168,64 @@ def crack_of(values):
             if name != "cells"}
 
 
+def crack(directory, number=-1):
+    """The crack surface of a moment of the field output, as crack_of."""
+    return crack_of(fields(directory, number, ["crack"]))
+
+
 def box_of(points):
     """The smallest and the largest coordinates [2][3]."""
     return np.array([points.min(axis=0), points.max(axis=0)])
+
+
+# ---- runs ----
+
+
+class Run:
+    """What a run left. Each file is read when it is asked for."""
+
+    def __init__(self, directory):
+        self.dir = pathlib.Path(directory)
+
+    @property
+    def summary(self):
+        return summary(self.dir)
+
+    @property
+    def case(self):
+        return case(self.dir)
+
+    @property
+    def energy(self):
+        return energy(self.dir)
+
+    @property
+    def history(self):
+        return history(self.dir)
+
+    @property
+    def fragments(self):
+        return fragments(self.dir)
+
+    def points(self):
+        """Reference positions of the nodes, in the order of the nodal fields."""
+        return mesh(self.dir)[0]
+
+    def fields(self, number=-1, names=None):
+        return fields(self.dir, number, names)
+
+    def frames(self):
+        """The fields of every moment."""
+        return [self.fields(k) for k in range(len(frame_times(self.dir)))]
+
+    def crack(self, number=-1):
+        return crack(self.dir, number)
+
+
+def run(case_file, out, sets=None, overrides=(), **keywords):
+    """Runs a case to its end, as launch.run."""
+    launch.run(case_file, out, sets, overrides, **keywords)
+    return Run(out)
 
 
 # ---- materials ----

@@ -4,7 +4,6 @@ The program is the one that environment variable RHEGMA names, else build/rhegma
 a run may take."""
 
 import functools
-import json
 import os
 import pathlib
 import shutil
@@ -18,7 +17,8 @@ import pytest
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "bench"))
 import rhegma  # noqa: E402  (of bench/)
-from launch import example  # noqa: E402
+from launch import example, ranks_launcher  # noqa: E402
+from launch import options as overrides  # noqa: E402
 
 PROGRAM = pathlib.Path(os.environ.get("RHEGMA", ROOT / "build" / "rhegma")).resolve()
 CASES = ROOT / "tests" / "cases"
@@ -42,47 +42,17 @@ def rounding(double, single):
 
 def launch(*arguments, ranks=1, threads=1, cwd=None, **environment):
     """The program with these arguments, to its end: a CompletedProcess with text."""
-    mpirun = ["mpirun", "--bind-to", "none", "-n", str(ranks)] if ranks > 1 else []
     env = {**os.environ, **ENVIRONMENT, "OMP_NUM_THREADS": str(threads), **environment}
-    return subprocess.run([*mpirun, str(PROGRAM), *map(str, arguments)], env=env, cwd=cwd, capture_output=True,
+    return subprocess.run([*map(str, ranks_launcher(ranks)), str(PROGRAM), *map(str, arguments)], env=env, cwd=cwd, capture_output=True,
                           text=True, timeout=TIMEOUT)
 
 
-def overrides(sets):
-    """{"a.b": value} as command-line options; JSON is YAML."""
-    return [word for key, value in sets.items() for word in ("--set", f"{key}={json.dumps(value)}")]
-
-
-class Run:
-    """A run that has ended: its streams and what it left in its output directory."""
+class Run(rhegma.Run):
+    """A run that has ended, with its streams."""
 
     def __init__(self, directory, process):
-        self.dir = directory
+        super().__init__(directory)
         self.stdout, self.stderr = process.stdout, process.stderr
-
-    @property
-    def summary(self):
-        return rhegma.summary(self.dir)
-
-    @property
-    def energy(self):
-        return rhegma.energy(self.dir)
-
-    @property
-    def history(self):
-        return rhegma.history(self.dir)
-
-    @property
-    def fragments(self):
-        return rhegma.fragments(self.dir)
-
-    def frames(self):
-        """Every output moment: {"time", field name, "crack/" + field name: array}."""
-        return [rhegma.frame(self.dir, k) for k in range(len(rhegma.frame_times(self.dir)))]
-
-    def points(self):
-        """Reference positions of the nodes, in the order of the nodal fields."""
-        return rhegma.mesh(self.dir)[0]
 
 
 @pytest.fixture(scope="session")
@@ -100,7 +70,7 @@ def run(scratch):
     finished = {}
 
     def go(case, ranks=1, threads=1, sets=None, expect=0, **environment):
-        arguments = ["run", case, "-q", *overrides(sets or {})]
+        arguments = ["run", case, "-q", *overrides(sets)]
         key = (ranks, threads, *arguments, *sorted(environment.items()))
         if key not in finished:
             directory = scratch / f"{len(finished):03d}-{pathlib.Path(case).stem}"

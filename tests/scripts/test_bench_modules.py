@@ -223,21 +223,21 @@ def test_fields(fields):
     assert points.tolist() == [[1, 2, 3], [-4, 5, 6]] and cells.tolist() == [list(range(10))]
     assert rhegma.box_of(points).tolist() == [[-4, 2, 3], [1, 5, 6]]
     assert rhegma.frame_times(fields).tolist() == [1e-7, 2e-7]
-    first, last = rhegma.frame(fields, 0), rhegma.frame(fields)
+    first, last = rhegma.fields(fields, 0), rhegma.fields(fields)
     assert first["time"] == 1e-7 and sorted(first) == ["stress", "time"] and rhegma.crack_of(first) is None
     assert last["time"] == 2e-7 and (last["stress"] == FRAMES[1]["stress"]).all()
     crack = rhegma.crack_of(last)
     assert sorted(crack) == ["damage", "points"] and crack["damage"].tolist() == [0.5, 1.0]
     assert (crack["points"] == np.arange(18.0).reshape(2, 3, 3)).all()
-    assert sorted(rhegma.frame(fields, fields=["crack"])) == ["crack/cells", "crack/damage", "crack/points", "time"]
-    assert sorted(rhegma.whole_frame(fields, 1, ["stress", "crack"])) == sorted(last)
+    assert sorted(rhegma.fields(fields, names=["crack"])) == ["crack/cells", "crack/damage", "crack/points", "time"]
+    assert sorted(rhegma.whole_fields(fields, 1, ["stress", "crack"])) == sorted(last)
 
 
 def test_fields_that_are_not_there(fields, tmp_path):
     with pytest.raises(rhegma.BadInput, match=r"fields.h5: the run did not write crack \(output.fields\)"):
-        rhegma.whole_frame(fields, 0, ["stress", "crack"])
+        rhegma.whole_fields(fields, 0, ["stress", "crack"])
     synthetic.write_fields(tmp_path, np.zeros((1, 3)), np.zeros((1, 10), int), [])
-    for read in (rhegma.frame, rhegma.frame_times):
+    for read in (rhegma.fields, rhegma.frame_times):
         with pytest.raises(rhegma.BadInput, match="fields.h5: has no frames"):
             read(tmp_path)
     (tmp_path / "fields.h5").write_text("no HDF5")
@@ -520,3 +520,30 @@ def test_notes_are_small_words_beside_their_place():
     assert words.get_fontsize() == 8 and words.get_color() == drawing.GREY
     assert drawing.note(axes, "red", (0, 0), (7, 8), color="r").xyann == (7, 8) and axes.texts[1].get_color() == "r"
     drawing.plt.close("all")
+
+
+def test_a_run_is_made_and_read(tmp_path, monkeypatch):
+    """Everything that Run reads is of its directory, and what the functions of the module read."""
+    seen = []
+    monkeypatch.setattr(launch, "run", lambda *words, **keywords: seen.append((words, keywords)))
+    synthetic.write_run(tmp_path, history={"time": [1.0], "p-1_szz": [2.0]}, fragments={"time": [1.0], "id": [0.0], "mass": [3.0]})
+    cells, corners = np.arange(10).reshape(1, 10), np.arange(9.0).reshape(3, 3)
+    synthetic.write_fields(tmp_path, synthetic.box_points([0, 0, 0], [1, 2, 3]), cells, [
+        {"time": 1.0, "stress": np.full((2, 6), 4.0)}, {"time": 2.0, "crack/points": corners, "crack/damage": np.array([[0.5]])}])
+    made = rhegma.run("a.yaml", tmp_path, {"b": 1}, ["c=2"], quiet=False)
+    assert seen == [(("a.yaml", tmp_path, {"b": 1}, ["c=2"]), {"quiet": False})]
+    assert made.summary["elements"] == 12345 and made.case["material"]["young"] == 4e9
+    assert made.energy["step"].tolist() == [10, 20, 30, 40] and made.history["p-1_szz"].tolist() == [2]
+    assert made.fragments["mass"].tolist() == [3] and np.ptp(made.points(), axis=0).tolist() == [1, 2, 3]
+    assert [frame["time"] for frame in made.frames()] == [1, 2] and made.fields(0)["stress"].shape == (2, 6)
+    assert sorted(made.fields(names=["crack"])) == ["crack/damage", "crack/points", "time"]
+    assert made.crack()["points"].tolist() == [corners.tolist()] and made.crack()["damage"].tolist() == [0.5]
+    assert made.crack(0) is None
+
+
+def test_an_example_is_found_by_the_name_of_a_file():
+    assert rhegma.example("spall-jittered.yaml") == launch.ROOT / "bench/examples/spall/spall-jittered.yaml"
+    with pytest.raises(rhegma.BadInput, match="no files are called spal.yaml"):
+        rhegma.example("spal.yaml")
+    with pytest.raises(rhegma.BadInput, match=r"\d+ files are called README.md"):
+        rhegma.example("README.md")

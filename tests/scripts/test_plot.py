@@ -597,7 +597,7 @@ def test_plot_of_a_real_run(run, monkeypatch):
     time, stress = line(figures["history.png"].axes[0], "computed")
     after = (time > 0.13) & (time < 0.22)
     assert stress[after].mean() == pytest.approx(200, rel=0.03)
-    crack = rhegma.crack_of(rhegma.frame(result.dir))
+    crack = rhegma.crack(result.dir)
     areas = np.linalg.norm(np.cross(crack["points"][:, 1] - crack["points"][:, 0],
                                     crack["points"][:, 2] - crack["points"][:, 0]), axis=1) / 2
     bars = sum(patch.get_height() for patch in figures["crack.png"].axes[-1].patches)

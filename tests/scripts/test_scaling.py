@@ -9,6 +9,7 @@ import subprocess
 import sys
 
 import pytest
+import rhegma
 from conftest import CASES, ENVIRONMENT, PROGRAM, ROOT, SINGLE, TIMEOUT, launch, overrides
 
 BUILD = PROGRAM.parent
@@ -31,7 +32,7 @@ def test_delayed_messages_change_time_but_no_bit(tmp_path):
     command("mpirun", "--bind-to", "none", "-n", 2, "env", f"LD_PRELOAD={BUILD / 'libmpi_delay.so'}", PROGRAM, "run",
             CASES / "fragments.yaml", "-q", "-o", tmp_path / "slow", *sets, RHEGMA_DELAY_US=str(1e6 * delay),
             OMP_NUM_THREADS="1")
-    one, other = (json.loads((tmp_path / name / "summary.json").read_text()) for name in ("quick", "slow"))
+    one, other = (rhegma.summary(tmp_path / name) for name in ("quick", "slow"))
     assert one["state_hash"] == other["state_hash"]
     assert other["wall_s"] > 29 * 2 * delay  # two exchanges a step, one after the other; the first one before the clock
 

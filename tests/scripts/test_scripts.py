@@ -58,7 +58,7 @@ def test_impact_and_its_pictures(tmp_path):
              "output.times=[0.4e-6]"]
     told, _ = script("bench/studies/impact", *words)
     out = tmp_path / "structured"
-    assert json.loads((out / "summary.json").read_text())["ranks"] == 2
+    assert rhegma.summary(out)["ranks"] == 2
     assert_pictures(out, told, "history.png", "energy.png", "crack.png", "impact-0.40us.png", "views.png")
     assert "plane waves take 1.170 us" in told and "fully broken" in told
     change, speed = re.search(r"changes by (\S+) of itself at most; the ball flies on at (\S+) m/s", told).groups()
@@ -145,7 +145,7 @@ def test_mistakes_are_the_programs_own(tmp_path):
 
 def test_large(tmp_path):
     _, _ = script("bench/studies/large", "--out", tmp_path, "--quick", expect=1)  # so small a mesh takes too many bytes per tet
-    assert json.loads((tmp_path / "large/summary.json").read_text())["elements"] == 12960
+    assert rhegma.summary(tmp_path / "large")["elements"] == 12960
 
 
 def test_large_tells_its_limits(tmp_path):

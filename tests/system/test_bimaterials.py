@@ -1,12 +1,12 @@
 """More than one material: waves at their interfaces, equilibrium across them, who is of which, and the same bits whatever
 the ranks, threads and mesh file."""
 
-import json
 import re
 
 import h5py
 import numpy as np
 import pytest
+import rhegma
 from conftest import CASES, SINGLE, example, launch, overrides, rounding
 from figures import ROUNDING
 from test_meshes import convert, file_case
@@ -224,7 +224,7 @@ def test_restart_on_other_ranks(three, tmp_path):
     case.write_text(text)
     process = launch("run", "--restart", stop.dir, "-q", "--set", "time.steps=100000", ranks=3)
     assert process.returncode == 0, process.stderr
-    assert json.loads((stop.dir / "summary.json").read_text())["state_hash"] == three(**sets).summary["state_hash"]
+    assert rhegma.summary(stop.dir)["state_hash"] == three(**sets).summary["state_hash"]
 
 
 @pytest.fixture(scope="module")
@@ -289,7 +289,7 @@ def test_and_only_once_where_tiles_are_dealt_anew(tmp_path):
             "output.fields": [], "output.energy_limit": 1e9}
     process = launch("run", CASES / "fragments.yaml", "-q", "-o", tmp_path / "out", *overrides(sets), ranks=2)
     assert process.returncode == 0
-    assert json.loads((tmp_path / "out" / "summary.json").read_text())["partitions"] > 1
+    assert rhegma.summary(tmp_path / "out")["partitions"] > 1
     assert process.stderr.count("materials: steel: later materials claim all of its elements") == 1
 
 

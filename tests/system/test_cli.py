@@ -9,6 +9,7 @@ import subprocess
 import time
 
 import pytest
+import rhegma
 import yaml
 from conftest import CASES, ENVIRONMENT, PROGRAM, ROOT, TIMEOUT, example, launch, overrides
 
@@ -352,7 +353,7 @@ def test_unwritable_output(tmp_path, place, ranks):
 
 
 def summary_of(out):
-    return json.loads((out / "summary.json").read_text())
+    return rhegma.summary(out)
 
 
 @pytest.mark.parametrize("ranks", [1, 2])
@@ -461,7 +462,7 @@ def test_long_paths(tmp_path, ranks):
     out = tmp_path / fits
     assert launch("run", FRAGMENTS, "-q", "-o", out, *overrides(sets), ranks=ranks).returncode == 0
     assert launch("run", "--restart", out, "-q", *overrides({"time.steps": 60}), ranks=ranks).returncode == 0
-    assert json.loads((out / "summary.json").read_text())["steps"] == 60
+    assert rhegma.summary(out)["steps"] == 60
     process = launch("run", FRAGMENTS, "-q", "-o", beyond, *overrides(sets), ranks=ranks, cwd=tmp_path)
     assert process.returncode == 2 and process.stderr.count("rhegma: ") == 1
     assert f"{beyond}/energy.csv: the path is too long" in process.stderr

@@ -1,7 +1,6 @@
 """Fragments of runs: they add up to the body, are the same bits on any layout, and overlaps are told. Their values
 against closed forms are in test_fragment.c."""
 
-import json
 import os
 import re
 import shutil
@@ -9,6 +8,7 @@ import subprocess
 
 import numpy as np
 import pytest
+import rhegma
 from conftest import CASES, ENVIRONMENT, PROGRAM, ROOT, launch, rounding
 from figures import ROUNDING
 
@@ -139,7 +139,7 @@ def test_overlap_is_told_once(scratch, ranks, table):
 def test_overlap_is_not_told_again_after_a_restart(scratch):
     """A run goes on once before and once after the overlap."""
     folder, process = meet(scratch, 1, 1, "--set", "checkpoint={steps: 60, keep: 1000}")
-    summary = json.loads((folder / "out" / "summary.json").read_text())
+    summary = rhegma.summary(folder / "out")
     for share in (0.5, 1.2):
         directory = folder / f"from-{share}"
         shutil.copytree(folder / "out", directory)
@@ -149,7 +149,7 @@ def test_overlap_is_not_told_again_after_a_restart(scratch):
         again = launch("run", "--restart", directory, "-q", ranks=2)
         assert again.returncode == 0, again.stderr
         assert again.stderr.count("overlap") == (share < 1)
-        found = json.loads((directory / "summary.json").read_text())
+        found = rhegma.summary(directory)
         assert 0 < found["restarted_from_step"] < summary["steps"] - 20
         for key in ("overlap_time_s", "overlap_fragments", "state_hash"):
             assert found[key] == summary[key]
