@@ -21,7 +21,7 @@ void RG_ISA_NAME(rg_interface_state)(const rg_interface_state_args *args, size_t
 void RG_ISA_NAME(rg_viscosity)(const rg_viscosity_args *args, size_t begin, size_t end);
 
 /* One of each for every material. */
-#define RG_BULK_KERNELS(name, NAME, word, history, inside)                                                   \
+#define RG_BULK_KERNELS(name, NAME, word, meaning, history, inside)                                          \
     void RG_ISA_NAME(rg_bulk_##name)(const rg_bulk_args *args, size_t begin, size_t end);                    \
     void RG_ISA_NAME(rg_bulk_state_##name)(const rg_bulk_state_args *args, size_t begin, size_t end);
 RG_MATERIALS_HERE(RG_BULK_KERNELS)

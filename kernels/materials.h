@@ -24,16 +24,21 @@ enum {
     RG_J2_HISTORY = 7,
 };
 
-/* name in C, name of the enum, name in a case file, values of history per point, bits of the above */
+/* name in C, name of the enum, name in a case file, what it is, values of history per point, bits of the
+ * above */
 #define RG_MATERIALS_ANY(X)                                                                                  \
-    X(neo_hookean, NEO_HOOKEAN, "neo-hookean", 0, RG_TAKES_YOUNG)                                            \
-    X(linear_elastic, LINEAR_ELASTIC, "linear-elastic", 0, RG_TAKES_YOUNG)                                   \
-    X(st_venant_kirchhoff, ST_VENANT_KIRCHHOFF, "st-venant-kirchhoff", 0, RG_TAKES_YOUNG)
+    X(neo_hookean, NEO_HOOKEAN, "neo-hookean", "elastic at any strain", 0, RG_TAKES_YOUNG)                   \
+    X(linear_elastic, LINEAR_ELASTIC, "linear-elastic", "for small strains and small rotations alone", 0,    \
+      RG_TAKES_YOUNG)                                                                                        \
+    X(st_venant_kirchhoff, ST_VENANT_KIRCHHOFF, "st-venant-kirchhoff",                                       \
+      "elastic at moderate strains and any rotation", 0, RG_TAKES_YOUNG)
 /* ... and those that exist in double precision only */
 #define RG_MATERIALS_DOUBLE(X)                                                                               \
-    X(deshpande_evans, DESHPANDE_EVANS, "deshpande-evans", RG_DE_HISTORY,                                    \
+    X(deshpande_evans, DESHPANDE_EVANS, "deshpande-evans",                                                   \
+      "a ceramic with growing microcracks and plastic flow", RG_DE_HISTORY,                                  \
       RG_HAS_DAMAGE | RG_HAS_REGIME | RG_HAS_PLASTIC)                                                        \
-    X(j2, J2, "j2", RG_J2_HISTORY, RG_TAKES_YOUNG | RG_HAS_PLASTIC)
+    X(j2, J2, "j2", "a metal that flows: J2 plasticity with isotropic hardening", RG_J2_HISTORY,             \
+      RG_TAKES_YOUNG | RG_HAS_PLASTIC)
 
 #define RG_MATERIALS(X) RG_MATERIALS_ANY(X) RG_MATERIALS_DOUBLE(X)
 #ifdef RG_SINGLE
@@ -42,22 +47,28 @@ enum {
 #define RG_MATERIALS_HERE(X) RG_MATERIALS(X)
 #endif
 
-#define RG_MATERIAL_ENUM(name, NAME, word, history, inside) RG_MATERIAL_##NAME,
+#define RG_MATERIAL_ENUM(name, NAME, word, meaning, history, inside) RG_MATERIAL_##NAME,
 typedef enum { RG_MATERIALS(RG_MATERIAL_ENUM) RG_MATERIAL_MODELS } rg_material_model;
 
-#define RG_MATERIAL_BIT(name, NAME, word, history, inside) RG_MATERIAL_BIT_##NAME = 1 << RG_MATERIAL_##NAME,
+#define RG_MATERIAL_BIT(name, NAME, word, meaning, history, inside)                                          \
+    RG_MATERIAL_BIT_##NAME = 1 << RG_MATERIAL_##NAME,
 enum { RG_MATERIALS(RG_MATERIAL_BIT) };
 
 /* Parameters besides density, elastic constants and those of the ceramic alone: name of the enum, key in the
  * block of a material, unit, whether it is needed (then > 0, else >= 0, and 0 where it is not given), models
- * that use it. */
+ * that use it, meaning. */
 #define RG_MATERIAL_PARAMETERS(X)                                                                            \
-    X(YIELD_STRESS, "yield_stress", "Pa", true, RG_MATERIAL_BIT_J2 | RG_MATERIAL_BIT_DESHPANDE_EVANS)        \
-    X(HARDENING, "hardening", "Pa", false, RG_MATERIAL_BIT_J2)                                               \
-    X(SATURATION_STRESS, "saturation_stress", "Pa", false, RG_MATERIAL_BIT_J2)                               \
-    X(SATURATION_RATE, "saturation_rate", NULL, false, RG_MATERIAL_BIT_J2)
+    X(YIELD_STRESS, "yield_stress", "Pa", true, RG_MATERIAL_BIT_J2 | RG_MATERIAL_BIT_DESHPANDE_EVANS,        \
+      "yield stress before any plastic strain")                                                              \
+    X(HARDENING, "hardening", "Pa", false, RG_MATERIAL_BIT_J2,                                               \
+      "slope of the yield stress over plastic strain")                                                       \
+    X(SATURATION_STRESS, "saturation_stress", "Pa", false, RG_MATERIAL_BIT_J2,                               \
+      "yield stress to which hardening of Voce's kind goes up, not below yield_stress; goes with "           \
+      "saturation_rate")                                                                                     \
+    X(SATURATION_RATE, "saturation_rate", NULL, false, RG_MATERIAL_BIT_J2,                                   \
+      "how fast it goes there: as 1 - exp(-saturation_rate times plastic strain)")
 
-#define RG_PARAMETER_ENUM(NAME, key, unit, needed, models) RG_PARAMETER_##NAME,
+#define RG_PARAMETER_ENUM(NAME, key, unit, needed, models, meaning) RG_PARAMETER_##NAME,
 enum { RG_MATERIAL_PARAMETERS(RG_PARAMETER_ENUM) RG_PARAMETERS };
 
 /* A material as a kernel takes it. */

@@ -13,29 +13,14 @@
 #include "base/interrupt.h"
 #include "base/mem.h"
 #include "case/read.h"
+#include "keys_command.h"
 #include "layout.h"
 #include "mesh_command.h"
 #include "revision.h"
 #include "run.h"
+#include "usage.h"
 #include "verify/verify.h"
 #include "version.h"
-
-static const char usage[] =
-    "usage: rhegma run CASE.yaml [options]     run a case\n"
-    "       rhegma check CASE.yaml [options]   say what a run would do, without running\n"
-    "       rhegma verify                      check the program on this machine against theory\n"
-    "       rhegma mesh IN -o OUT.h5 [options]  make a mesh file; rhegma mesh --help says more\n"
-    "       rhegma --version | --help\n"
-    "options:\n"
-    "  --set a.b=value   override a value of the case file (repeatable)\n"
-    "  -o DIR            output directory (output.dir)\n"
-    "  -q, --quiet       no progress\n"
-    "  --restart DIR     run: go on with the run in DIR from its newest good checkpoint; CASE.yaml may be "
-    "left out\n"
-    "  --overwrite       run: start anew where an unfinished run left checkpoints\n"
-    "  --walltime H:M:S  run: write a checkpoint and stop (exit status 3) before so much time has passed\n"
-    "signals: USR1 writes a checkpoint; TERM, INT, HUP, USR2 write one and stop\n"
-    "ranks: mpirun -n N rhegma ...; threads: OMP_NUM_THREADS; instruction set: RHEGMA_ISA\n";
 
 typedef struct {
     const char *command, *path;
@@ -46,9 +31,9 @@ typedef struct {
     rg_run_options run;
 } arguments;
 
-static int complain(int rank, const char *what, const char *argument) {
+static int complain(int rank, const char *command, const char *what, const char *argument) {
     if (rank == 0) {
-        fprintf(stderr, "rhegma: %s%s%s\n%s", what, argument[0] ? ": " : "", argument, usage);
+        fprintf(stderr, "rhegma: %s%s%s\n%s", what, argument[0] ? ": " : "", argument, rg_usage(command));
     }
     return RG_USAGE;
 }
@@ -80,7 +65,7 @@ static int parse(int argc, char **argv, int rank, arguments *a) {
         bool takes_value = strcmp(argv[i], "--set") == 0 || strcmp(argv[i], "-o") == 0 ||
                            strcmp(argv[i], "--restart") == 0 || strcmp(argv[i], "--walltime") == 0;
         if (takes_value && i + 1 == argc) {
-            return complain(rank, "missing value after", argv[i]);
+            return complain(rank, a->command, "missing value after", argv[i]);
         }
         if (strcmp(argv[i], "--set") == 0) {
             a->override[a->overrides++] = argv[++i];
@@ -93,33 +78,34 @@ static int parse(int argc, char **argv, int rank, arguments *a) {
             a->override[a->overrides++] = directory_override(argv[i]);
         } else if (strcmp(argv[i], "--walltime") == 0) {
             if (!rg_interrupt_parse(argv[++i], &a->run.walltime)) {
-                return complain(rank, "--walltime takes H:M:S, not", argv[i]);
+                return complain(rank, a->command, "--walltime takes H:M:S, not", argv[i]);
             }
         } else if (strcmp(argv[i], "--overwrite") == 0) {
             a->run.overwrite = true;
         } else if (strcmp(argv[i], "-q") == 0 || strcmp(argv[i], "--quiet") == 0) {
             a->run.quiet = true;
         } else if (argv[i][0] == '-') {
-            return complain(rank, "unknown option", argv[i]);
+            return complain(rank, a->command, "unknown option", argv[i]);
         } else if (a->command == NULL) {
             a->command = argv[i];
         } else if (a->path == NULL) {
             a->path = argv[i];
         } else {
-            return complain(rank, "one case at a time; not understood", argv[i]);
+            return complain(rank, a->command, "one case at a time; not understood", argv[i]);
         }
     }
     if (a->command == NULL) {
-        return complain(rank, "nothing to do", "");
+        return complain(rank, a->command, "nothing to do", "");
     }
     if (strcmp(a->command, "run") != 0 && strcmp(a->command, "check") != 0) {
-        return complain(rank, "unknown command", a->command);
+        return complain(rank, NULL, "unknown command", a->command);
     }
     if (a->run.restart && (a->has_directory || a->run.overwrite)) {
-        return complain(rank, "--restart goes on in its own directory: neither -o nor --overwrite", "");
+        return complain(rank, a->command,
+                        "--restart goes on in its own directory: neither -o nor --overwrite", "");
     }
     a->path = a->path == NULL ? a->restart_case : a->path;
-    return a->path == NULL ? complain(rank, "no case file given", "") : RG_OK;
+    return a->path == NULL ? complain(rank, a->command, "no case file given", "") : RG_OK;
 }
 
 /* The text of the case on all ranks, NULL with errno if it cannot be read. Rank 0 reads it: a pipe can be
@@ -183,13 +169,13 @@ static int execute(int argc, char **argv, int rank) {
     }
     if (asks_for_help(argc, argv)) {
         if (rank == 0) {
-            fputs(usage, stdout);
+            fputs(rg_usage(argv[1]), stdout);
         }
         return RG_OK;
     }
     if (argc > 1 && strcmp(argv[1], "verify") == 0) {
         if (argc > 2) {
-            return complain(rank, "verify takes nothing else; not understood", argv[2]);
+            return complain(rank, "verify", "verify takes nothing else; not understood", argv[2]);
         }
         rg_flush_denormals();
         rg_interrupt_deafen();
@@ -225,6 +211,9 @@ int main(int argc, char **argv) {
     fill_streams();
     if (argc > 1 && strcmp(argv[1], "mesh") == 0) {
         return answer(asks_for_help(argc, argv) ? rg_mesh_help() : rg_mesh_command(argc, argv));
+    }
+    if (argc > 1 && strcmp(argv[1], "keys") == 0 && !asks_for_help(argc, argv)) {
+        return answer(rg_keys_command(argc, argv));
     }
     /* Open MPI's own I/O layer has been reported to hang or corrupt HDF5's collective writes
      * (HDFGroup/hdf5#1227, open-mpi/ompi#12718): use ROMIO unless the user chose otherwise. */

@@ -3,18 +3,26 @@ _rhegma() {
     local word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD - 1]} command=${COMP_WORDS[1]}
     local options="--set -o --quiet --help"
     case $before in
+    --set)
+        COMPREPLY=($(compgen -S = -W "$(rhegma keys 2>/dev/null | grep '^[a-z][^[]*$')" -- "$word"))
+        compopt -o nospace 2>/dev/null
+        return
+        ;;
     -o | --restart) COMPREPLY=($(compgen -d -- "$word")) && return ;;
     --walltime | --scale) return ;;
     esac
     case $command in
     run) options+=" --restart --overwrite --walltime" ;;
     mesh) options="-o --scale --improve --set --info --case --partition --help" ;;
+    keys) options="--markdown --schema --help" ;;
     verify) options="--help" ;;
     esac
     if [ "$COMP_CWORD" = 1 ]; then
-        COMPREPLY=($(compgen -W "run check verify mesh --version --help" -- "$word"))
+        COMPREPLY=($(compgen -W "run check keys verify mesh --version --help" -- "$word"))
     elif [[ $word == -* ]]; then
         COMPREPLY=($(compgen -W "$options" -- "$word"))
+    elif [ "$command" = keys ]; then
+        COMPREPLY=($(compgen -W "$(rhegma keys 2>/dev/null | grep '^[a-z]')" -- "$word"))
     else
         COMPREPLY=($(compgen -f -- "$word"))
     fi

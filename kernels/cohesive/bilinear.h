@@ -53,10 +53,13 @@ static void rg_bilinear_reference(const rg_law_query *p, double state[], rg_law_
 #endif
 
 #ifdef RG_LAW
-RG_LAW(BILINEAR, bilinear, "bilinear", RG_FORMS_INTRINSIC | RG_LIMITS_STEP, 0.5, 1, 1 / shape[0],
-       beta *beta / shape[0], RG_LIMITER_MEMORY)
+RG_LAW(BILINEAR, bilinear, "bilinear", "up to the strength, then down to 0 (Espinosa & Zavattieri 2003)",
+       RG_FORMS_INTRINSIC | RG_LIMITS_STEP, 0.5, 1, 1 / shape[0], beta *beta / shape[0], RG_LIMITER_MEMORY)
 #endif
 #ifdef RG_LAW_PARAMETER
-RG_LAW_PARAMETER(BILINEAR, 0, "interface.bilinear.ascent", NULL, 1e-6, 0.999, 0.01)
-RG_LAW_PARAMETER(BILINEAR, RG_LIMITER_STEPS, "interface.bilinear.steps", NULL, 0, 1e6, 0)
+RG_LAW_PARAMETER(BILINEAR, 0, "interface.bilinear.ascent", NULL, 1e-6, 0.999, 0.01,
+                 "opening at the strength, over the critical one")
+RG_LAW_PARAMETER(BILINEAR, RG_LIMITER_STEPS, "interface.bilinear.steps", NULL, 0, 1e6, 0,
+                 "steps that the way from 0 to the strength, and from there to 0, takes at least, by a "
+                 "shorter time step; 0: not asked for")
 #endif

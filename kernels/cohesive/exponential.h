@@ -38,6 +38,8 @@ static void rg_exponential_reference(const rg_law_query *p, double state[], rg_l
 #endif
 
 #ifdef RG_LAW
-RG_LAW(EXPONENTIAL, exponential, "exponential", RG_FORMS_INTRINSIC, 2.71828182845904523536, 7.64,
-       2.71828182845904523536, 2.71828182845904523536 * beta * beta, 0)
+RG_LAW(EXPONENTIAL, exponential, "exponential",
+       "universal binding energy, irreversible (Rose, Smith & Ferrante; Ortiz & Pandolfi 1999)",
+       RG_FORMS_INTRINSIC, 2.71828182845904523536, 7.64, 2.71828182845904523536,
+       2.71828182845904523536 * beta * beta, 0)
 #endif

@@ -5,7 +5,7 @@
 
 rg_law_facts rg_law_facts_of(rg_law law, const double *shape, double beta) {
     const rg_law_facts facts[] = {
-#define RG_LAW(NAME, name, word, forms, work, separation, normal_slope, shear_slope, memory)                 \
+#define RG_LAW(NAME, name, word, meaning, forms, work, separation, normal_slope, shear_slope, memory)        \
     {word, forms, work, separation, {normal_slope, shear_slope}, memory},
 #include "laws.h"
 #undef RG_LAW

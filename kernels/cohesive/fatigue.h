@@ -68,8 +68,10 @@ static void rg_fatigue_reference(const rg_law_query *p, double state[], rg_law_a
 #endif
 
 #ifdef RG_LAW
-RG_LAW(FATIGUE, fatigue, "fatigue", RG_FORMS_DG, 0.5, 1, 0, 0, 4)
+RG_LAW(FATIGUE, fatigue, "fatigue", "linear, with a reloading slope that wears (Nguyen et al. 2001)",
+       RG_FORMS_DG, 0.5, 1, 0, 0, 4)
 #endif
 #ifdef RG_LAW_PARAMETER
-RG_LAW_PARAMETER(FATIGUE, 0, "interface.fatigue.decay", NULL, 1e-3, 1e6, 1)
+RG_LAW_PARAMETER(FATIGUE, 0, "interface.fatigue.decay", NULL, 1e-3, 1e6, 1,
+                 "opening over which reloading wears the slope, over the critical one")
 #endif

@@ -33,5 +33,5 @@ static void rg_free_reference(const rg_law_query *p, double state[], rg_law_answ
 #endif
 
 #ifdef RG_LAW
-RG_LAW(FREE, free, "free", RG_FORMS_DG | RG_FORMS_INTRINSIC, 0, 0, 0, 0, 0)
+RG_LAW(FREE, free, "free", "no traction at all: for tests", RG_FORMS_DG | RG_FORMS_INTRINSIC, 0, 0, 0, 0, 0)
 #endif

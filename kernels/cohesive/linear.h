@@ -45,5 +45,6 @@ static void rg_linear_reference(const rg_law_query *p, double state[], rg_law_an
 #endif
 
 #ifdef RG_LAW
-RG_LAW(LINEAR, linear, "linear", RG_FORMS_DG | RG_ENVELOPE, 0.5, 1, 0, 0, 0)
+RG_LAW(LINEAR, linear, "linear", "traction falls linearly with opening (Camacho & Ortiz 1996)",
+       RG_FORMS_DG | RG_ENVELOPE, 0.5, 1, 0, 0, 0)
 #endif

@@ -47,9 +47,10 @@ static void rg_needleman_reference(const rg_law_query *p, double state[], rg_law
 #endif
 
 #ifdef RG_LAW /* (9/16) z^2 = e z, rounded up */
-RG_LAW(NEEDLEMAN, needleman, "needleman", RG_FORMS_INTRINSIC | RG_NORMAL_MEASURE, 0.5625, 1.6,
-       13.137 * (1 + shape[0]), 13.137 * shape[0], 0)
+RG_LAW(NEEDLEMAN, needleman, "needleman", "exponential potential, reversible (Needleman 1990)",
+       RG_FORMS_INTRINSIC | RG_NORMAL_MEASURE, 0.5625, 1.6, 13.137 * (1 + shape[0]), 13.137 * shape[0], 0)
 #endif
 #ifdef RG_LAW_PARAMETER
-RG_LAW_PARAMETER(NEEDLEMAN, 0, "interface.needleman.alpha", NULL, 0, 100, 1)
+RG_LAW_PARAMETER(NEEDLEMAN, 0, "interface.needleman.alpha", NULL, 0, 100, 1,
+                 "stiffness of sliding over that of opening")
 #endif

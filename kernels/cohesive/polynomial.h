@@ -52,9 +52,11 @@ static void rg_polynomial_reference(const rg_law_query *p, double state[], rg_la
 #endif
 
 #ifdef RG_LAW
-RG_LAW(POLYNOMIAL, polynomial, "polynomial", RG_FORMS_INTRINSIC | RG_NORMAL_MEASURE, 0.5625, 1,
-       6.75 * (1 + shape[0]), 6.75 * shape[0], 0)
+RG_LAW(POLYNOMIAL, polynomial, "polynomial",
+       "cubic, from a potential of opening and sliding (Needleman 1987)",
+       RG_FORMS_INTRINSIC | RG_NORMAL_MEASURE, 0.5625, 1, 6.75 * (1 + shape[0]), 6.75 * shape[0], 0)
 #endif
 #ifdef RG_LAW_PARAMETER
-RG_LAW_PARAMETER(POLYNOMIAL, 0, "interface.polynomial.alpha", NULL, 0, 100, 1)
+RG_LAW_PARAMETER(POLYNOMIAL, 0, "interface.polynomial.alpha", NULL, 0, 100, 1,
+                 "stiffness of sliding over that of opening")
 #endif

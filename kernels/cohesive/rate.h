@@ -60,9 +60,13 @@ static void rg_rate_reference(const rg_law_query *p, double state[], rg_law_answ
 #endif
 
 #ifdef RG_LAW
-RG_LAW(RATE, rate, "rate", RG_FORMS_DG | RG_ENVELOPE, 0.5, 1, 0, 0, 3)
+RG_LAW(RATE, rate, "rate",
+       "linear, with a critical opening that grows with the opening rate; double precision",
+       RG_FORMS_DG | RG_ENVELOPE, 0.5, 1, 0, 0, 3)
 #endif
 #ifdef RG_LAW_PARAMETER
-RG_LAW_PARAMETER(RATE, 0, "interface.rate.speed", "m/s", 1e-9, 1e9, 10)
-RG_LAW_PARAMETER(RATE, 1, "interface.rate.exponent", NULL, 0.01, 10, 1)
+RG_LAW_PARAMETER(RATE, 0, "interface.rate.speed", "m/s", 1e-9, 1e9, 10,
+                 "opening rate at which the critical opening is twice that of slow opening")
+RG_LAW_PARAMETER(RATE, 1, "interface.rate.exponent", NULL, 0.01, 10, 1,
+                 "the critical opening is multiplied by 1 + (opening rate/speed)^exponent")
 #endif

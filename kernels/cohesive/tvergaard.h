@@ -41,5 +41,6 @@ static void rg_tvergaard_reference(const rg_law_query *p, double state[], rg_law
 #endif
 
 #ifdef RG_LAW
-RG_LAW(TVERGAARD, tvergaard, "tvergaard", RG_FORMS_INTRINSIC, 0.5625, 1, 6.75, 6.75 * beta * beta, 0)
+RG_LAW(TVERGAARD, tvergaard, "tvergaard", "cubic in the effective opening (Tvergaard 1990)",
+       RG_FORMS_INTRINSIC, 0.5625, 1, 6.75, 6.75 * beta * beta, 0)
 #endif

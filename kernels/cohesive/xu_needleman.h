@@ -63,11 +63,16 @@ static void rg_xu_needleman_reference(const rg_law_query *p, double state[], rg_
 #endif
 
 #ifdef RG_LAW
-RG_LAW(XU_NEEDLEMAN, xu_needleman, "xu-needleman", RG_FORMS_INTRINSIC, 2.71828182845904523536, 7.64,
+RG_LAW(XU_NEEDLEMAN, xu_needleman, "xu-needleman",
+       "exponential in opening and sliding, reversible (Xu & Needleman 1993)", RG_FORMS_INTRINSIC,
+       2.71828182845904523536, 7.64,
        2.71828182845904523536 * (1 + fabs(1 - shape[0]) * (1 + shape[1]) / (1 - shape[1])),
        2 * 2.71828182845904523536 * fmax(shape[0], (shape[0] - shape[1]) / (1 - shape[1])) * beta * beta, 0)
 #endif
 #ifdef RG_LAW_PARAMETER
-RG_LAW_PARAMETER(XU_NEEDLEMAN, 0, "interface.xu-needleman.q", NULL, 0, 10, 1)
-RG_LAW_PARAMETER(XU_NEEDLEMAN, 1, "interface.xu-needleman.r", NULL, 0, 0.9, 0)
+RG_LAW_PARAMETER(XU_NEEDLEMAN, 0, "interface.xu-needleman.q", NULL, 0, 10, 1,
+                 "work of separation by sliding over that by opening")
+RG_LAW_PARAMETER(
+    XU_NEEDLEMAN, 1, "interface.xu-needleman.r", NULL, 0, 0.9, 0,
+    "opening after complete separation by sliding without normal traction, over the critical one")
 #endif

@@ -330,7 +330,7 @@ RG_INLINE void damaged(interface *s, law_respond *respond, int memory, bool cons
 }
 
 /* The same around each law; conserving around those that can be (empty for the others). */
-#define RG_LAW(NAME, name, word, forms, work, separation, normal_slope, shear_slope, memory)                 \
+#define RG_LAW(NAME, name, word, meaning, forms, work, separation, normal_slope, shear_slope, memory)        \
     static __attribute__((noinline)) void damaged_##name(interface *s) {                                     \
         damaged(s, rg_##name##_respond, memory, false);                                                      \
     }                                                                                                        \
@@ -529,7 +529,7 @@ RG_INLINE void crack_energy(interface *s, rg_vec sum[RG_E_INTERFACE], law_energy
     }
 }
 
-#define RG_LAW(NAME, name, word, forms, work, separation, normal_slope, shear_slope, memory)                 \
+#define RG_LAW(NAME, name, word, meaning, forms, work, separation, normal_slope, shear_slope, memory)        \
     static __attribute__((noinline)) void energy_##name(interface *s, rg_vec sum[RG_E_INTERFACE]) {          \
         crack_energy(s, sum, rg_##name##_energy, memory, false);                                             \
     }                                                                                                        \

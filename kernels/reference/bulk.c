@@ -143,7 +143,7 @@ static void add_traction(const element *el, int g, double p[3][3],
 enum { MOST_HISTORY = 16 }; /* values per point */
 
 static rg_reference_law *law_of(const rg_material *m) {
-#define LAW(name, NAME, word, history, inside) [RG_MATERIAL_##NAME] = rg_reference_point_##name,
+#define LAW(name, NAME, word, meaning, history, inside) [RG_MATERIAL_##NAME] = rg_reference_point_##name,
     static rg_reference_law *const laws[] = {RG_MATERIALS(LAW)};
     return laws[m->model];
 }

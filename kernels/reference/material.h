@@ -12,7 +12,8 @@ typedef struct {
 typedef void rg_reference_law(const rg_material *m, bool advance, double F[3][3], double history[],
                               double P[3][3], rg_reference_point *out);
 
-#define RG_REFERENCE_POINT(name, NAME, word, history, inside) rg_reference_law rg_reference_point_##name;
+#define RG_REFERENCE_POINT(name, NAME, word, meaning, history, inside)                                       \
+    rg_reference_law rg_reference_point_##name;
 RG_MATERIALS(RG_REFERENCE_POINT)
 
 /* Inverse of a 3x3 matrix; returns the determinant. */

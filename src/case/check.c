@@ -19,38 +19,45 @@ static bool check_table(rg_check *ck, const rg_key_table *table, const rg_node *
 
 /* ---- which keys are there ---- */
 
-static void report_key(const scan *s, const rg_node *node, const char *name, const char *nearest,
-                       const char *what) {
+static void report_key(const scan *s, const rg_node *node, const char *name, const char *what) {
     char *path = rg_text_format("%s%s", s->path, name);
-    rg_subject subject = {.key = path, .nearest = nearest};
+    rg_subject subject = {.key = path};
     rg_problem_add(s->ck->problems, node->key_at, &subject, "%s", what);
     rg_free(path);
 }
 
-static void report_unknown(const scan *s, const rg_node *node, const char *name) {
-    char nearest[64];
-    report_key(s, node, name, rg_key_nearest(s->table, name, nearest, sizeof nearest), "unknown key");
+/* With the key that was probably meant, or else with what there is. `section`: with a dot behind it, or "".
+ */
+static void report_unknown(const scan *s, const rg_node *node, const char *name, const char *section) {
+    char *path = rg_text_format("%s%s", s->path, name), near[64], known[1024];
+    rg_subject subject = {.key = path, .nearest = rg_key_nearest(s->table, name, near, sizeof near)};
+    if (subject.nearest == NULL) {
+        subject.allowed = rg_keys_in(s->table, section, known, sizeof known);
+    }
+    rg_problem_add(s->ck->problems, node->key_at, &subject, "unknown key");
+    rg_free(path);
 }
 
 static void report_repeated(const scan *s, const rg_node *node, const char *name, rg_place first) {
     char *what = rg_text_format("given twice, first at line %d column %d", first.line, first.column);
-    report_key(s, node, name, NULL, what);
+    report_key(s, node, name, what);
     rg_free(what);
 }
 
 static void collect(scan *s, const rg_node *mapping, const char *prefix);
 
-static void collect_one(scan *s, const rg_node *mapping, const rg_node *node, const char *name) {
+static void collect_one(scan *s, const rg_node *mapping, const rg_node *node, const char *section,
+                        const char *name) {
     const rg_node *first = rg_node_find(mapping, node->key, strlen(node->key));
     const rg_key *key = rg_key_find(s->table, name);
     if (strchr(node->key, '.') != NULL) {
-        report_key(s, node, name, NULL, "unknown key: the parts of a dotted key stand on lines of their own");
+        report_key(s, node, name, "unknown key: the parts of a dotted key stand on lines of their own");
     } else if (first != node) {
         report_repeated(s, node, name, first->key_at);
     } else if (key != NULL) {
         s->found[key - s->table->key] = node;
     } else if (!rg_key_is_section(s->table, name)) {
-        report_unknown(s, node, name);
+        report_unknown(s, node, name, section);
     } else if (node->kind == RG_NODE_MAPPING) {
         char *prefix = rg_text_format("%s.", name);
         collect(s, node, prefix);
@@ -72,7 +79,7 @@ static void collect(scan *s, const rg_node *mapping, const char *prefix) {
         bool bad_key = node->key[0] == '\0' && node->kind == RG_NODE_BAD;
         if (!bad_key) {
             char *name = rg_text_format("%s%s", prefix, node->key);
-            collect_one(s, mapping, node, name);
+            collect_one(s, mapping, node, prefix, name);
             rg_free(name);
         }
     }

@@ -11,6 +11,31 @@
 
 enum { VARIABLES = 7 }; /* x, y, z, t, nx, ny, nz */
 
+/* clang-format off */
+const rg_expr_word rg_expr_words[] = {
+    {"x, y, z", "reference position (m)"},
+    {"t", "time (s)"},
+    {"nx, ny, nz", "unit normal of a face, of either sign"},
+    {"pi", "3.14159..."},
+    {"_e", "2.71828..."},
+    {"+ - * / ^", "arithmetic; ^ is the power, from the right: 2^3^2 is 512, and -2^2 is -4"},
+    {"< <= > >= == !=", "comparisons: 1 where they hold, else 0"},
+    {"&& ||", "and, or"},
+    {"a ? b : c", "b where a is not 0, else c; in quotes, for the colon"},
+    {"sin(a) cos(a) tan(a)", "of an angle in radians"},
+    {"asin(a) acos(a) atan(a) atan2(a, b)", "their inverses; atan2 is the angle of the point (b, a)"},
+    {"sinh(a) cosh(a) tanh(a)", "hyperbolic functions"},
+    {"asinh(a) acosh(a) atanh(a)", "their inverses"},
+    {"exp(a) log(a) ln(a)", "exponential, natural logarithm under both names"},
+    {"log2(a) log10(a)", "logarithms of base 2 and 10"},
+    {"sqrt(a) abs(a) sign(a)", "root, absolute value, -1, 0 or 1"},
+    {"rint(a)", "nearest integer"},
+    {"min(a, ...) max(a, ...)", "least and largest of one or more"},
+    {"sum(a, ...) avg(a, ...)", "sum and mean of one or more"},
+    {NULL, NULL},
+};
+/* clang-format on */
+
 struct rg_expr {
     char *text;
     muParserHandle_t parser; /* NULL: a number */

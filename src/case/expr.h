@@ -7,6 +7,12 @@
 
 typedef struct rg_expr rg_expr;
 
+/* What expressions know, as one writes it and in words; the last one is {NULL, NULL}. */
+typedef struct {
+    const char *write, *meaning;
+} rg_expr_word;
+extern const rg_expr_word rg_expr_words[];
+
 /* True if text is a decimal number as YAML 1.2 writes it; *integer: without point and exponent. */
 bool rg_is_number(const char *text, bool *integer);
 

@@ -10,219 +10,6 @@
 #include "case/tree.h"
 #include "cohesive/facts.h"
 
-#define CASE(member)   .offset = offsetof(rg_case, member)
-#define CHOICE(list)   .type = RG_KEY_CHOICE, .choice = (list)
-#define REAL           .type = RG_KEY_REAL, .count = 1
-#define REAL3          .type = RG_KEY_REAL, .count = 3
-#define INTEGER        .type = RG_KEY_INTEGER, .count = 1
-#define INTEGER3       .type = RG_KEY_INTEGER, .count = 3
-#define ANY            .low = -INFINITY, .high = INFINITY
-#define FROM(a)        .low = (a), .high = INFINITY
-#define ABOVE(a)       .low = (a), .low_open = true, .high = INFINITY
-#define FROM_TO(a, b)  .low = (a), .high = (b)
-#define REQUIRED       .need = RG_NEED_REQUIRED
-#define OPTIONAL       .need = RG_NEED_OPTIONAL
-#define DEFAULT(value) .need = RG_NEED_DEFAULT, .fallback = (value)
-#define BOX            .group = RG_GROUP_BOX
-#define GROUP(name)    .group = RG_GROUP_##name
-#define ELASTIC        .models = 0 RG_MATERIALS(TAKES_YOUNG)
-#define CERAMIC        .models = RG_MATERIAL_BIT_DESHPANDE_EVANS
-#define MAY_CHANGE     .may_change = true /* on a restart */
-
-#define TAKES_YOUNG(name, NAME, word, history, inside)                                                       \
-    | ((inside)&RG_TAKES_YOUNG ? RG_MATERIAL_BIT_##NAME : 0)
-
-/* In the order of the enums they set. */
-#define MODEL_WORD(name, NAME, word, history, inside) word,
-static const char *const models[] = {RG_MATERIALS(MODEL_WORD) NULL};
-static const char *const interactions[] = {"thesis", "derived", NULL};
-static const char *const forms[] = {"variational", "incomplete", "intrinsic", "continuous", NULL};
-static const char *const penalties[] = {"elastic", "isotropic", NULL};
-static const char *const laws[] = {
-#define RG_LAW(NAME, name, word, ...) word,
-#include "laws.h"
-#undef RG_LAW
-    "none", NULL};
-static const char *const activations[] = {"continuous", "total", "conserving", NULL};
-static const char *const contacts[] = {"penalty", "flux", "potential", NULL};
-static const char *const precisions[] = {"double", "single", NULL};
-static const char *const keeps[] = {"energy", "opening", NULL};
-static const char *const masses[] = {"consistent", "lumped", NULL};
-static const char *const shapes[] = {"sphere", "plane", "cylinder", NULL};
-static const char *const motions[] = {"free", "prescribed", NULL};
-static const char *const components[] = {"x", "y", "z", NULL};
-static const char *const box_sets[] = {"x-", "x+", "y-", "y+", "z-", "z+", NULL};
-static const char *const fields[] = {
-    "displacement", "velocity",       "stress",      "mean_stress", "principal_stress", "crack",    "damage",
-    "regime",       "plastic_strain", "triaxiality", "rank",        "fragment",         "material", NULL};
-static const char *const fragments[] = {"each", "last", "none", NULL};
-
-#define INITIAL(name_, unit_, member)                                                                        \
-    { .name = (name_), .unit = (unit_), .type = RG_KEY_EXPR, OPTIONAL, .no_time = true, CASE(initial.member) }
-
-/* clang-format off */
-static const rg_key case_keys[] = {
-    {.name = "mesh.file", .type = RG_KEY_TEXT, OPTIONAL, MAY_CHANGE, CASE(mesh.file)},
-    {.name = "mesh.cells", INTEGER3, FROM_TO(1, 100000), REQUIRED, BOX, CASE(mesh.cells)},
-    {.name = "mesh.size", .unit = "m", REAL3, ABOVE(0), REQUIRED, BOX, CASE(mesh.size)},
-    {.name = "mesh.origin", .unit = "m", REAL3, ANY, DEFAULT(0), BOX, CASE(mesh.origin)},
-    {.name = "mesh.jitter", REAL, FROM_TO(0, 0.3), DEFAULT(0), BOX, CASE(mesh.jitter)},
-    {.name = "mesh.seed", INTEGER, FROM(0), DEFAULT(1), BOX, CASE(mesh.seed)},
-    {.name = "mesh.weight", .type = RG_KEY_EXPR, OPTIONAL, .no_time = true, MAY_CHANGE, CASE(mesh.weight)},
-    {.name = "mesh.rebalance", REAL, FROM(0), DEFAULT(0), MAY_CHANGE, CASE(mesh.rebalance)},
-
-    {.name = "material.name", .type = RG_KEY_TEXT, OPTIONAL, CASE(material.name)},
-#define KEY(word) "material." word
-#define INPUT     offsetof(rg_case, material)
-#include "case/material_keys.h"
-    {.name = "materials", .type = RG_KEY_LIST, OPTIONAL, CASE(other), .entry = &rg_material_table,
-     .offset_count = offsetof(rg_case, others)},
-
-    {.name = "interface.form", CHOICE(forms), DEFAULT(RG_FORM_VARIATIONAL), CASE(interface.form)},
-    {.name = "interface.faces", .type = RG_KEY_EXPR, OPTIONAL, .no_time = true, .normal = true, GROUP(FACES),
-     CASE(interface.faces)},
-    {.name = "interface.beta_s", REAL, ABOVE(0), DEFAULT(4), GROUP(INTERFACE), CASE(interface.beta_s)},
-    {.name = "interface.penalty", CHOICE(penalties), DEFAULT(RG_PENALTY_ELASTIC), GROUP(DG),
-     CASE(interface.penalty)},
-    {.name = "interface.law", CHOICE(laws), REQUIRED, CASE(interface.law)},
-    {.name = "interface.strength", .unit = "Pa", REAL, ABOVE(0), REQUIRED, GROUP(COHESIVE),
-     CASE(interface.strength)},
-    {.name = "interface.energy", .unit = "J/m2", REAL, ABOVE(0), REQUIRED, GROUP(ENERGY),
-     CASE(interface.energy)},
-    {.name = "interface.beta", REAL, FROM(0), DEFAULT(1), GROUP(SHEAR), CASE(interface.beta)},
-    {.name = "interface.activation", CHOICE(activations), DEFAULT(RG_ACTIVATION_CONTINUOUS), GROUP(SWITCH),
-     CASE(interface.activation)},
-    {.name = "interface.onset", REAL, FROM_TO(0, 1), .low_open = true, DEFAULT(0.3), GROUP(ONSET),
-     CASE(interface.onset)},
-    {.name = "interface.contact", CHOICE(contacts), DEFAULT(RG_CONTACT_PENALTY), GROUP(COHESIVE),
-     CASE(interface.contact)},
-    {.name = "interface.friction", REAL, FROM(0), DEFAULT(0), GROUP(COHESIVE), CASE(interface.friction)},
-#define RG_LAW_PARAMETER(NAME, index, word, unit_, low_, high_, fallback_)                                   \
-    {.name = word, .unit = unit_, REAL, FROM_TO(low_, high_), DEFAULT(fallback_), GROUP(LAW),                \
-     .law = RG_LAW_##NAME, CASE(interface.shape[RG_LAW_##NAME][index])},
-#include "laws.h"
-#undef RG_LAW_PARAMETER
-    {.name = "interface.sets", .type = RG_KEY_LIST, OPTIONAL, GROUP(COHESIVE), CASE(interface.set), .entry = &rg_face_set_table,
-     .offset_count = offsetof(rg_case, interface.sets)},
-    {.name = "interface.weibull.modulus", REAL, ABOVE(0), OPTIONAL, GROUP(COHESIVE), CASE(interface.weibull.modulus)},
-    {.name = "interface.weibull.area", .unit = "m2", REAL, ABOVE(0), REQUIRED, GROUP(WEIBULL),
-     CASE(interface.weibull.area)},
-    {.name = "interface.weibull.seed", INTEGER, FROM(0), DEFAULT(1), GROUP(WEIBULL), CASE(interface.weibull.seed)},
-    {.name = "interface.weibull.keep", CHOICE(keeps), DEFAULT(RG_KEEP_ENERGY), GROUP(WEIBULL),
-     CASE(interface.weibull.keep)},
-
-    {.name = "viscosity.linear", REAL, FROM(0), DEFAULT(0), CASE(viscosity.linear)},
-    {.name = "viscosity.quadratic", REAL, FROM(0), DEFAULT(0), CASE(viscosity.quadratic)},
-
-    {.name = "mass", CHOICE(masses), DEFAULT(RG_DEFAULT_MASS), CASE(mass)},
-
-    INITIAL("initial.displacement.x", "m", displacement[0]),
-    INITIAL("initial.displacement.y", "m", displacement[1]),
-    INITIAL("initial.displacement.z", "m", displacement[2]),
-    INITIAL("initial.velocity.x", "m/s", velocity[0]),
-    INITIAL("initial.velocity.y", "m/s", velocity[1]),
-    INITIAL("initial.velocity.z", "m/s", velocity[2]),
-
-    {.name = "boundary", .type = RG_KEY_LIST, OPTIONAL, CASE(boundary), .entry = &rg_boundary_table,
-     .offset_count = offsetof(rg_case, boundaries)},
-
-    {.name = "bodies", .type = RG_KEY_LIST, OPTIONAL, CASE(body), .entry = &rg_body_table,
-     .offset_count = offsetof(rg_case, bodies)},
-
-    {.name = "time.end", .unit = "s", REAL, ABOVE(0), REQUIRED, MAY_CHANGE, CASE(time.end)},
-    {.name = "time.safety", REAL, FROM_TO(0, 1), .low_open = true, DEFAULT(RG_DEFAULT_SAFETY), MAY_CHANGE,
-     CASE(time.safety)},
-    {.name = "time.steps", INTEGER, FROM(1), OPTIONAL, MAY_CHANGE, CASE(time.steps)},
-    {.name = "time.collapse", REAL, FROM_TO(0, 1), .high_open = true, DEFAULT(0.01), MAY_CHANGE, CASE(time.collapse)},
-
-    {.name = "output.dir", .type = RG_KEY_TEXT, OPTIONAL, MAY_CHANGE, CASE(output.dir)},
-    {.name = "output.interval", .type = RG_KEY_INTERVAL, OPTIONAL, MAY_CHANGE, CASE(output)},
-    {.name = "output.times", .unit = "s", .type = RG_KEY_REALS, FROM(0), OPTIONAL, CASE(output.time),
-     .offset_count = offsetof(rg_case, output.times)},
-    {.name = "output.probes", .type = RG_KEY_LIST, OPTIONAL, CASE(output.probe), .entry = &rg_probe_table,
-     .offset_count = offsetof(rg_case, output.probes)},
-    {.name = "output.fields", .type = RG_KEY_FLAGS, .choice = fields, DEFAULT(0), MAY_CHANGE,
-     CASE(output.fields)},
-    {.name = "output.fragments", CHOICE(fragments), DEFAULT(RG_FRAGMENTS_EACH), CASE(output.fragments)},
-    {.name = "output.region", .type = RG_KEY_EXPR, OPTIONAL, .no_time = true, CASE(output.region)},
-    {.name = "output.precision", CHOICE(precisions), DEFAULT(RG_OUTPUT_DOUBLE), CASE(output.precision)},
-    {.name = "output.compression", INTEGER, FROM_TO(0, 9), DEFAULT(0), MAY_CHANGE, CASE(output.compression)},
-    {.name = "output.energy_limit", REAL, ABOVE(0), DEFAULT(0.05), MAY_CHANGE, CASE(output.energy_limit)},
-
-    {.name = "checkpoint.steps", INTEGER, FROM(0), DEFAULT(0), MAY_CHANGE, CASE(checkpoint.steps)},
-    {.name = "checkpoint.time", .unit = "s", REAL, FROM(0), DEFAULT(0), MAY_CHANGE, CASE(checkpoint.time)},
-    {.name = "checkpoint.wall_time", .unit = "s", REAL, FROM(0), DEFAULT(0), MAY_CHANGE, CASE(checkpoint.wall_time)},
-    {.name = "checkpoint.keep", INTEGER, FROM_TO(1, 1000), DEFAULT(2), MAY_CHANGE, CASE(checkpoint.keep)},
-};
-
-static const rg_key face_set_keys[] = {
-    {.name = "where", .type = RG_KEY_EXPR, OPTIONAL, .no_time = true, .normal = true,
-     .offset = offsetof(rg_face_set, where)},
-    {.name = "between", .type = RG_KEY_TEXTS, OPTIONAL, .offset = offsetof(rg_face_set, between),
-     .offset_count = offsetof(rg_face_set, names)},
-    {.name = "strength", .unit = "Pa", REAL, ABOVE(0), OPTIONAL, .offset = offsetof(rg_face_set, strength)},
-    {.name = "energy", .unit = "J/m2", REAL, ABOVE(0), OPTIONAL, .offset = offsetof(rg_face_set, energy)},
-};
-
-static const rg_key other_material_keys[] = {
-    {.name = "name", .type = RG_KEY_TEXT, REQUIRED, .offset = offsetof(rg_other_material, is.name)},
-    {.name = "set", .type = RG_KEY_TEXT, OPTIONAL, .offset = offsetof(rg_other_material, set)},
-    {.name = "where", .type = RG_KEY_EXPR, OPTIONAL, .no_time = true, .offset = offsetof(rg_other_material, where)},
-#define KEY(word) word
-#define INPUT     offsetof(rg_other_material, is)
-#include "case/material_keys.h"
-};
-
-static const rg_key boundary_keys[] = {
-    {.name = "set", .type = RG_KEY_TEXT, .choice = box_sets, REQUIRED, .offset = offsetof(rg_boundary, set)},
-    {.name = "component", CHOICE(components), REQUIRED, .offset = offsetof(rg_boundary, component)},
-    {.name = "velocity", .unit = "m/s", .type = RG_KEY_EXPR, OPTIONAL, .group = RG_GROUP_VELOCITY,
-     .offset = offsetof(rg_boundary, value)},
-    {.name = "displacement", .unit = "m", .type = RG_KEY_EXPR, OPTIONAL, .group = RG_GROUP_DISPLACEMENT,
-     .offset = offsetof(rg_boundary, value)},
-};
-
-#define BODY(member) .offset = offsetof(rg_body_input, member)
-#define BODY_VELOCITY(name_, component)                                                                      \
-    { .name = (name_), .unit = "m/s", .type = RG_KEY_EXPR, OPTIONAL, .no_place = true, BODY(velocity[component]) }
-
-static const rg_key body_keys[] = {
-    {.name = "name", .type = RG_KEY_TEXT, REQUIRED, BODY(name)},
-    {.name = "shape", CHOICE(shapes), REQUIRED, BODY(shape)},
-    {.name = "motion", CHOICE(motions), REQUIRED, BODY(motion)},
-    {.name = "at", .unit = "m", REAL3, ANY, REQUIRED, BODY(at)},
-    {.name = "radius", .unit = "m", REAL, ABOVE(0), OPTIONAL, BODY(radius)},
-    {.name = "normal", REAL3, ANY, OPTIONAL, BODY(normal)},
-    {.name = "axis", REAL3, ANY, OPTIONAL, BODY(axis)},
-    {.name = "density", .unit = "kg/m3", REAL, ABOVE(0), OPTIONAL, BODY(density)},
-    {.name = "mass", .unit = "kg", REAL, ABOVE(0), OPTIONAL, BODY(mass)},
-    BODY_VELOCITY("velocity.x", 0),
-    BODY_VELOCITY("velocity.y", 1),
-    BODY_VELOCITY("velocity.z", 2),
-    {.name = "faces", .type = RG_KEY_TEXTS, .choice = box_sets, OPTIONAL, BODY(set),
-     .offset_count = offsetof(rg_body_input, sets)},
-    {.name = "penalty", REAL, ABOVE(0), DEFAULT(4), BODY(penalty)},
-};
-
-static const rg_key probe_keys[] = {
-    {.name = "name", .type = RG_KEY_TEXT, REQUIRED, .offset = offsetof(rg_probe, name)},
-    {.name = "at", .unit = "m", REAL3, ANY, REQUIRED, .offset = offsetof(rg_probe, at)},
-};
-/* clang-format on */
-
-#define TABLE(list, type)                                                                                    \
-    { .key = (list), .keys = sizeof(list) / sizeof(list)[0], .size = sizeof(type) }
-
-const rg_key_table rg_case_table = TABLE(case_keys, rg_case);
-const rg_key_table rg_material_table = TABLE(other_material_keys, rg_other_material);
-const rg_key_table rg_face_set_table = TABLE(face_set_keys, rg_face_set);
-const rg_key_table rg_boundary_table = TABLE(boundary_keys, rg_boundary);
-const rg_key_table rg_body_table = TABLE(body_keys, rg_body_input);
-const rg_key_table rg_probe_table = TABLE(probe_keys, rg_probe);
-
-_Static_assert(sizeof(case_keys) / sizeof(case_keys[0]) <= RG_MAX_KEYS, "RG_MAX_KEYS is too small");
-_Static_assert(sizeof(rg_form) == sizeof(int), "choices are stored as int");
-
 /* ---- words ---- */
 
 /* Each appends to `text`. */
@@ -312,10 +99,34 @@ void rg_models_words(const rg_key *key, char *text, size_t size) {
     text[0] = '\0';
     for (int m = 0; m < RG_MATERIAL_MODELS; m++) {
         if ((key->models >> m & 1U) != 0) {
-            rg_text_add(text, size, "%s%s", join, models[m]);
+            rg_text_add(text, size, "%s%s", join, rg_material_word((rg_material_model)m));
             join = ", ";
         }
     }
+}
+
+const char *rg_law_word(rg_law law) {
+    return law == RG_LAW_NONE ? "none" : rg_law_facts_of(law, (double[RG_LAW_SHAPE]){0}, 1).word;
+}
+
+const char *rg_key_default(const rg_key *key, char *text, size_t size) {
+    const char *words = key->absent;
+    text[0] = '\0';
+    if (key->alternative != RG_NO_ALTERNATIVE) {
+        rg_text_add(text, size, "this or ");
+    }
+    if (key->need == RG_NEED_REQUIRED) {
+        words = "required";
+    } else if (words == NULL && key->type == RG_KEY_CHOICE) {
+        words = key->choice[(int)key->fallback];
+    }
+    if (words != NULL) {
+        rg_text_add(text, size, "%s", words);
+    } else {
+        rg_text_add(text, size, key->count == 3 ? "[%g, %g, %g]" : "%.10g", key->fallback, key->fallback,
+                    key->fallback);
+    }
+    return text;
 }
 
 /* ---- look-up ---- */
@@ -401,6 +212,31 @@ bool rg_key_is_section(const rg_key_table *table, const char *name) {
     return false;
 }
 
+const char *rg_key_part(const rg_key *key, const char *section, size_t *size) {
+    size_t before = strlen(section);
+    if (strncmp(key->name, section, before) != 0) {
+        return NULL;
+    }
+    *size = strcspn(key->name + before, ".");
+    return key->name + before;
+}
+
+const char *rg_keys_in(const rg_key_table *table, const char *section, char *text, size_t size) {
+    const char *last = "", *join = "";
+    size_t length = 0, before = 0;
+    text[0] = '\0';
+    for (int i = 0; i < table->keys; i++) {
+        const char *part = rg_key_part(&table->key[i], section, &length);
+        if (part != NULL && (length != before || strncmp(last, part, length) != 0)) {
+            rg_text_add(text, size, "%s%.*s", join, (int)length, part);
+            join = ", ";
+            last = part;
+            before = length;
+        }
+    }
+    return text;
+}
+
 /* ---- suggestions ---- */
 
 static size_t last_part(const char *name, size_t length) {
@@ -412,6 +248,25 @@ static size_t last_part(const char *name, size_t length) {
 
 enum { FAR = 1000 };
 
+static int count_dots(const char *name, size_t length) {
+    int dots = 0;
+    for (size_t i = 0; i < length; i++) {
+        dots += name[i] == '.' ? 1 : 0;
+    }
+    return dots;
+}
+
+/* Whether the known path known[0..m), which lies in another section than `name`, may have been meant: a key
+ * that is at the wrong place, but of that very name; or one without its section, unless that is itself in
+ * one. */
+static bool may_be_elsewhere(const char *name, const char *known, size_t m) {
+    size_t n = strlen(name), i = last_part(name, n), j = last_part(known, m);
+    bool same = n - i == m - j && strncasecmp(name + i, known + j, n - i) == 0;
+    bool below = strncasecmp(name, known, i) == 0;
+    int dots = count_dots(known, m);
+    return i == 0 ? dots <= 1 : same && (below || dots <= count_dots(name, n));
+}
+
 /* How far `name` is from the known path known[0..m). The last part counts most: a key at the wrong place is
  * near, and so is one that begins like a known one (poisson_ratio). */
 static size_t key_distance(const char *name, const char *known, size_t m) {
@@ -420,10 +275,10 @@ static size_t key_distance(const char *name, const char *known, size_t m) {
     bool begins = shorter >= 3 && strncasecmp(name + i, known + j, shorter) == 0;
     size_t whole = rg_edit_distance(name, n, known, m);
     size_t last = begins && n - i != m - j ? 1 : rg_edit_distance(name + i, n - i, known + j, m - j);
-    if (last >= n - i && last >= m - j) {
+    bool same_section = i == j && strncasecmp(name, known, i) == 0;
+    if ((last >= n - i && last >= m - j) || (!same_section && !may_be_elsewhere(name, known, m))) {
         return FAR; /* nothing in common */
     }
-    bool same_section = i == j && strncasecmp(name, known, i) == 0;
     last += same_section ? 0 : 1;
     return last < whole ? last : whole;
 }

@@ -53,24 +53,31 @@ typedef enum {
     RG_GROUPS,
 } rg_key_group;
 
+/* Of keys of a table that have this some must be given. */
+typedef enum { RG_NO_ALTERNATIVE, RG_EXACTLY_ONE, RG_AT_LEAST_ONE } rg_key_alternative;
+
 struct rg_key_table;
 
 typedef struct {
-    const char *name; /* dotted path within the mapping that the table describes */
-    const char *unit; /* NULL if it has none */
+    const char *name;    /* dotted path within the mapping that the table describes */
+    const char *unit;    /* NULL if it has none */
+    const char *meaning; /* a sentence without capital and full stop */
+    const char *absent;  /* what holds where it is not given, in words; NULL: `fallback`, or 0 */
     rg_key_type type;
     rg_key_need need;
     rg_key_group group;
-    bool of_material;          /* in the block of a material */
-    size_t input;              /* of one that is: offset of its rg_material_input in the structure */
-    unsigned models;           /* materials.h: bits of the models that use it; 0: all */
-    int count;                 /* numbers: 1 or 3 */
-    double low, high;          /* numbers: range */
-    bool low_open, high_open;  /* range without its ends */
-    bool no_time, no_place;    /* expression without t; without x, y, z */
-    bool normal;               /* expression of a face, with nx, ny, nz */
-    bool may_change;           /* on a restart: nothing that was computed depends on it */
-    const char *const *choice; /* NULL-terminated; of a text: with the built-in mesh only */
+    rg_key_alternative alternative;
+    bool of_material;                  /* in the block of a material */
+    size_t input;                      /* of one that is: offset of its rg_material_input in the structure */
+    unsigned models;                   /* materials.h: bits of the models that use it; 0: all */
+    int count;                         /* numbers: 1 or 3 */
+    double low, high;                  /* numbers: range */
+    bool low_open, high_open;          /* range without its ends */
+    bool no_time, no_place;            /* expression without t; without x, y, z */
+    bool normal;                       /* expression of a face, with nx, ny, nz */
+    bool may_change;                   /* on a restart: nothing that was computed depends on it */
+    const char *const *choice;         /* NULL-terminated; of a text: with the built-in mesh only */
+    const char *const *choice_meaning; /* what each means; NULL: the words say it */
     double fallback;
     rg_law law;                       /* of a parameter of one law (RG_GROUP_LAW) */
     size_t offset;                    /* of the value in the structure */
@@ -96,6 +103,13 @@ const char *rg_key_allowed(const rg_key *key, char *text, size_t size);
 /* The models that use the key, in words. */
 void rg_models_words(const rg_key *key, char *text, size_t size);
 
+/* The law's name in a case file, "none" included. */
+const char *rg_law_word(rg_law law);
+
+/* What holds where the key is not given, in words: a default, "required", or "this or NAME" of alternatives.
+ * Returns `text`. */
+const char *rg_key_default(const rg_key *key, char *text, size_t size);
+
 /* Whether the key is used in the filled structure `base`. */
 bool rg_key_used(const rg_key *key, const void *base);
 
@@ -108,6 +122,13 @@ const rg_key *rg_key_find(const rg_key_table *table, const char *name);
 
 /* True if some key lies below `name`: "mesh", "initial.velocity". */
 bool rg_key_is_section(const rg_key_table *table, const char *name);
+
+/* The part of the key's name that stands in `section` ("interface." or ""), with its length; NULL if the key
+ * lies elsewhere. */
+const char *rg_key_part(const rg_key *key, const char *section, size_t *size);
+
+/* What stands in a section, in words. Returns `text`. */
+const char *rg_keys_in(const rg_key_table *table, const char *section, char *text, size_t size);
 
 /* The key or section probably meant by `name`, in `text`, or NULL. */
 const char *rg_key_nearest(const rg_key_table *table, const char *name, char *text, size_t size);

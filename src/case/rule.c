@@ -40,10 +40,6 @@ void rg_times_rule(rg_check *ck, const rg_node *node) {
 
 /* ---- interface: law and form ---- */
 
-static const char *law_word(rg_law law) {
-    return law == RG_LAW_NONE ? "none" : rg_law_facts_of(law, (double[RG_LAW_SHAPE]){0}, 1).word;
-}
-
 static int forms_of(rg_law law) {
     return rg_law_facts_of(law, (double[RG_LAW_SHAPE]){0}, 1).forms;
 }
@@ -96,7 +92,7 @@ const char *rg_why_unused(rg_key_group group, const rg_case *c) {
     if (group == RG_GROUP_INTERFACE || group == RG_GROUP_DG || (switches && !none)) {
         return intrinsic ? "form is intrinsic" : "form is continuous, without interface.faces";
     }
-    snprintf(text, sizeof text, "law is %s", law_word(c->interface.law));
+    snprintf(text, sizeof text, "law is %s", rg_law_word(c->interface.law));
     return text;
 }
 
@@ -106,7 +102,7 @@ static void laws_for(const demand *d, char *text, size_t size) {
     const char *join = ": ";
     for (int law = 0; law <= (int)RG_LAWS; law++) {
         if (fits(d, (rg_law)law)) {
-            rg_text_add(text, size, "%s%s", join, law_word((rg_law)law));
+            rg_text_add(text, size, "%s%s", join, rg_law_word((rg_law)law));
             join = ", ";
         }
     }
@@ -118,7 +114,7 @@ static void check_law_and_form(rg_check *ck, const rg_node *node) {
     if (!fits(d, law)) {
         char allowed[256];
         laws_for(d, allowed, sizeof allowed);
-        rg_subject subject = {.key = "interface.law", .value = law_word(law), .allowed = allowed};
+        rg_subject subject = {.key = "interface.law", .value = rg_law_word(law), .allowed = allowed};
         rg_problem_add(ck->problems, node->at, &subject, "%s", d->other);
     }
 }
@@ -126,7 +122,7 @@ static void check_law_and_form(rg_check *ck, const rg_node *node) {
 /* Its speed is the difference of two openings, of which floats leave too little. */
 static void check_rate(rg_check *ck, const rg_node *node) {
     if (sizeof(rg_real) < sizeof(double) && ck->c->interface.law == RG_LAW_RATE) {
-        rg_subject subject = {.key = "interface.law", .value = law_word(RG_LAW_RATE)};
+        rg_subject subject = {.key = "interface.law", .value = rg_law_word(RG_LAW_RATE)};
         rg_problem_add(ck->problems, node->at, &subject,
                        "needs double precision, and this program is built with -Dprecision=single");
     }
@@ -158,7 +154,7 @@ static void check_conserving(rg_check *ck, const rg_node *node) {
         laws_for(&falling_law, laws, sizeof laws);
         subject.allowed = laws;
         rg_problem_add(ck->problems, node->at, &subject, "%s, and interface.law is %s", falling_law.other,
-                       law_word(c->interface.law));
+                       rg_law_word(c->interface.law));
     }
 }
 

@@ -45,8 +45,8 @@ def test_an_installed_example_is_run_and_drawn(prefix, tmp_path):
 @pytest.mark.skipif(SINGLE, reason="once is enough")
 def test_the_page_and_the_completion_name_every_option(prefix):
     """Of those that the usage names."""
-    usage = command(PROGRAM, "--help") + command(PROGRAM, "mesh", "--help")
-    options = set(re.findall(r"(?<![\w-])--?[a-z][\w-]*", usage)) - {"-n"}
+    usage = "".join(command(PROGRAM, word, "--help") for word in ("run", "check", "verify", "keys", "mesh"))
+    options = set(re.findall(r"(?<![\w-])--?[a-z][\w-]*", usage)) - {"-n", "-language-server"}
     page = (prefix / "share/man/man1/rhegma.1").read_text().replace("\\-", "-")
     completion = (ROOT / "bench/install/rhegma.bash").read_text()
     assert {"--set", "--walltime", "--improve"} <= options
@@ -54,13 +54,17 @@ def test_the_page_and_the_completion_name_every_option(prefix):
     assert [option for option in options if option not in completion and option not in ("-q",)] == []
 
 
-def complete(prefix, *words):
+def complete(prefix, *words, **environment):
     script = (f". {prefix}/share/bash-completion/completions/rhegma; COMP_WORDS=({' '.join(words)}); COMP_CWORD={len(words) - 1}; "
               "_rhegma; printf '%s\\n' \"${COMPREPLY[@]}\"")
-    return command("bash", "-c", script).split()
+    return command("bash", "-c", script, **environment).split()
 
 
 def test_completion(prefix):
     assert complete(prefix, "rhegma", "r") == ["run"]
     assert complete(prefix, "rhegma", "run", "--re") == ["--restart"]
     assert complete(prefix, "rhegma", "check", "--re") == []
+    assert complete(prefix, "rhegma", "keys", "--s") == ["--schema"]
+    path = f"{prefix}/bin:{os.environ['PATH']}"
+    assert complete(prefix, "rhegma", "keys", "time.s", PATH=path) == ["time.safety", "time.steps"]
+    assert complete(prefix, "rhegma", "run", "--set", "time.e", PATH=path) == ["time.end="]

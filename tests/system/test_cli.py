@@ -98,19 +98,27 @@ def test_a_finished_run_is_not_replaced_in_silence(tmp_path):
                               "pictures there are still of that one\n")
 
 
-@pytest.mark.parametrize("arguments", [["--help"], ["-h"], ["run", "--help"], ["check", "a.yaml", "-h"], ["verify", "--help"]])
+HELP = {"": "run check keys mesh verify --version --help",
+        "run": "--set -o -q --quiet --restart --overwrite --walltime USR1 TERM mpirun OMP_NUM_THREADS RHEGMA_ISA",
+        "check": "--set mpirun OMP_NUM_THREADS RHEGMA_ISA",
+        "verify": "theory mpirun",
+        "keys": "PREFIX --markdown --schema yaml-language-server expressions",
+        "mesh": "-o --scale --improve --info --case --partition --set"}
+
+
+@pytest.mark.parametrize("arguments", [["--help"], ["-h"], ["run", "--help"], ["check", "a.yaml", "-h"], ["verify", "--help"],
+                                       ["keys", "--help"], ["mesh", "-h"]])
 def test_help_names_every_option(arguments):
+    """Of a command its own, in lines that fit a terminal of 110 columns."""
     process = launch(*arguments)
+    command = "" if arguments[0].startswith("-") else arguments[0]
     assert process.returncode == 0 and process.stderr == ""
-    for word in ("run", "check", "--set", "-o", "-q", "--version", "mpirun", "OMP_NUM_THREADS", "RHEGMA_ISA"):
+    assert process.stdout.startswith(f"usage: rhegma {command or 'run'}")
+    for word in HELP[command].split():
         assert word in process.stdout
-
-
-def test_help_of_mesh():
-    process = launch("mesh", "--help")
-    assert process.returncode == 0 and process.stderr == ""
-    for word in ("-o", "--scale", "--improve", "--info", "--case", "--partition", "--set"):
-        assert word in process.stdout
+    for other in {"--walltime", "--improve", "--schema"} - set(HELP[command].split()):
+        assert other not in process.stdout
+    assert max(map(len, process.stdout.splitlines())) <= 110
 
 
 # ---- Streams ----

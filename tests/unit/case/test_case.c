@@ -297,27 +297,6 @@ static void test_echo_text(void **state) {
     rg_case_free(c);
 }
 
-/* The annotated case shows every key that exists. */
-static void test_spall_shows_every_key(void **state) {
-    (void)state;
-    static char text[16384];
-    FILE *file = fopen(CASES "spall/spall.yaml", "r");
-    assert_non_null(file);
-    text[fread(text, 1, sizeof text - 1, file)] = '\0';
-    fclose(file);
-    for (int i = 0; i < rg_case_table.keys; i++) {
-        char word[64];
-        const char *name = rg_case_table.key[i].name, *dot = strrchr(name, '.');
-        if (rg_case_table.key[i].group == RG_GROUP_LAW) {
-            continue; /* the README lists what laws have of their own */
-        }
-        snprintf(word, sizeof word, "%s:", dot == NULL ? name : dot + 1);
-        if (strstr(text, word) == NULL) {
-            fail_msg("spall.yaml does not show %s", name);
-        }
-    }
-}
-
 #ifndef RG_SINGLE
 
 /* The smallest ceramic is that of the table. */
@@ -383,7 +362,6 @@ int main(void) {
         cmocka_unit_test(test_round_trip_of_everything),
         cmocka_unit_test(test_round_trip_of_long_run),
         cmocka_unit_test(test_echo_text),
-        cmocka_unit_test(test_spall_shows_every_key),
 #ifndef RG_SINGLE
         cmocka_unit_test(test_metal),
         cmocka_unit_test(test_ceramic),

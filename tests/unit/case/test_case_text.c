@@ -115,7 +115,7 @@ static void test_nearest_key(void **state) {
         {&rg_case_table, "end_time", "time.end"}, /* three letters are enough to begin alike */
         {&rg_case_table, "time.ent", "time.end"},
         {&rg_case_table, "output.intervall", "output.interval"},
-        {&rg_case_table, "checkpoint.intervall", "output.interval"},
+        {&rg_case_table, "checkpoint.intervall", NULL}, /* in another section only what is called just so */
         {&rg_case_table, "checkpoint.dir", "output.dir"},
         {&rg_case_table, "interface.linear", "viscosity.linear"},
         {&rg_case_table, "interface.weibul", "interface.weibull"},
@@ -131,6 +131,12 @@ static void test_nearest_key(void **state) {
         {&rg_body_table, "velocity", "velocity"},
         {&rg_body_table, "velocity.w", NULL},
         {&rg_body_table, "a", "at"},
+        {&rg_case_table, "initial.stress", NULL},
+        {&rg_case_table, "initial.speed", NULL}, /* of a law: deeper down than the name is */
+        {&rg_case_table, "interface.ascent", "interface.bilinear.ascent"},
+        {&rg_case_table, "material.strength", "interface.strength"},
+        {&rg_case_table, "output.mass", "mass"},
+        {&rg_case_table, "ascent", NULL},
         {&rg_case_table, "initial.velocity.zz", "initial.velocity.z"},
         {&rg_probe_table, "q", NULL},
     };

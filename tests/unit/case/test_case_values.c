@@ -214,13 +214,14 @@ static const mistake keys[] = {
      "mesh:\n",
      ":2:13: initial.velocity: 3: not a mapping of keys\n"
      ":3:17: initial.displacement: [1, 2]: not a mapping of keys\n"
-     ":4:3: initial.speed: unknown key; did you mean 'interface.rate.speed'?\n"},
+     ":4:3: initial.speed: unknown key; allowed: displacement, velocity\n"},
     {"mesh:\n",
      ": 3\n"
      "? {a: 1}\n"
      ": 4\n"
      "mesh:\n",
-     ":1:1: unknown key\n"
+     ":1:1: unknown key; allowed: mesh, material, materials, interface, viscosity, mass, initial, boundary, "
+     "bodies, time, output, checkpoint\n"
      ":2:3: a key must be a single word\n"},
     {"mesh:\n",
      "time: &x 3\n"

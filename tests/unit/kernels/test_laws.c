@@ -32,7 +32,7 @@ typedef struct {
 /* Parameters of its own: the defaults, or all a fifth off them, within their range. */
 static void own_parameters(rg_law law, bool off, double shape[RG_LAW_SHAPE]) {
     memset(shape, 0, RG_LAW_SHAPE * sizeof *shape);
-#define RG_LAW_PARAMETER(NAME, index, word, unit, low, high, fallback)                                       \
+#define RG_LAW_PARAMETER(NAME, index, word, unit, low, high, fallback, meaning)                              \
     if (law == RG_LAW_##NAME)                                                                                \
         shape[index] = off ? 0.8 * fallback + 0.2 * fmin(1, high) : fallback;
 #include "laws.h"

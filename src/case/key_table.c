@@ -1,0 +1,323 @@
+/* The registry: every key of a case file, a row each. */
+#include "case/key.h"
+
+#include <math.h>
+
+#define CASE(member)    .offset = offsetof(rg_case, member)
+#define CHOICE(list)    .type = RG_KEY_CHOICE, .choice = (list)
+#define EXPLAINED(list) .type = RG_KEY_CHOICE, .choice = (list), .choice_meaning = list##_meaning
+#define REAL            .type = RG_KEY_REAL, .count = 1
+#define REAL3           .type = RG_KEY_REAL, .count = 3
+#define INTEGER         .type = RG_KEY_INTEGER, .count = 1
+#define INTEGER3        .type = RG_KEY_INTEGER, .count = 3
+#define ANY             .low = -INFINITY, .high = INFINITY
+#define FROM(a)         .low = (a), .high = INFINITY
+#define ABOVE(a)        .low = (a), .low_open = true, .high = INFINITY
+#define FROM_TO(a, b)   .low = (a), .high = (b)
+#define REQUIRED        .need = RG_NEED_REQUIRED
+#define OPTIONAL        .need = RG_NEED_OPTIONAL
+#define ELSE(words)     OPTIONAL, .absent = (words)
+#define DEFAULT(value)  .need = RG_NEED_DEFAULT, .fallback = (value)
+#define BOX             .group = RG_GROUP_BOX
+#define GROUP(name)     .group = RG_GROUP_##name
+#define ELASTIC         .models = 0 RG_MATERIALS(TAKES_YOUNG)
+#define CERAMIC         .models = RG_MATERIAL_BIT_DESHPANDE_EVANS
+#define MAY_CHANGE      .may_change = true /* on a restart */
+#define ONE_OF          .alternative = RG_EXACTLY_ONE
+#define SOME_OF         .alternative = RG_AT_LEAST_ONE
+#define MEANS(words)    .meaning = (words)
+
+#define TAKES_YOUNG(name, NAME, word, meaning, history, inside)                                              \
+    | ((inside)&RG_TAKES_YOUNG ? RG_MATERIAL_BIT_##NAME : 0)
+
+/* Words in the order of the enums they set; behind some what each means. */
+#define WORD(name, NAME, word, ...)             word,
+#define MEANING(name, NAME, word, meaning, ...) meaning,
+static const char *const models[] = {RG_MATERIALS(WORD) NULL};
+static const char *const models_meaning[] = {RG_MATERIALS(MEANING)};
+static const char *const laws[] = {
+#define RG_LAW(NAME, name, word, ...) word,
+#include "laws.h"
+#undef RG_LAW
+    "none", NULL};
+static const char *const laws_meaning[] = {
+#define RG_LAW(NAME, name, word, meaning, ...) meaning,
+#include "laws.h"
+#undef RG_LAW
+    "faces never break"};
+/* clang-format off */
+static const char *const interactions[] = {"thesis", "derived", NULL};
+static const char *const interactions_meaning[] = {
+    "as the thesis prints it, with pi^2",
+    "as one derives it, with pi"};
+static const char *const forms[] = {"variational", "incomplete", "intrinsic", "continuous", NULL};
+static const char *const forms_meaning[] = {
+    "DG with the lifted jumps in the gradient: symmetric, conserves energy (Ten Eyck & Lew 2006)",
+    "the thesis's (4.9) without the adjoint term: gains energy, without bound where beta_s is below about 20",
+    "a cohesive law at every face from the start and no DG terms, which slows waves",
+    "elements share their nodes, with interfaces on the faces that `faces` selects alone"};
+static const char *const penalties[] = {"elastic", "isotropic", NULL};
+static const char *const penalties_meaning[] = {
+    "beta_s/h times the acoustic tensor of the face: lambda + 2 mu along its normal, mu across",
+    "lambda + 2 mu in all directions, which conserves angular momentum exactly"};
+static const char *const activations[] = {"continuous", "total", "conserving", NULL};
+static const char *const activations_meaning[] = {
+    "the opening counts from the jump at the moment of breaking, so the traction is continuous in time",
+    "the whole jump enters at once (the thesis's): gains energy",
+    "like continuous, and so that the energy of the switch adds up, for long runs of what breaks violently; "
+    "with form variational, contact penalty or potential, law linear or rate"};
+static const char *const contacts[] = {"penalty", "flux", "potential", NULL};
+static const char *const contacts_meaning[] = {
+    "one-sided penalty on the normal opening",
+    "all DG terms return (the thesis's): unstable once closed faces slide",
+    "the penalty as an exact potential, which fades as faces slide off each other: for rubble that slides far"};
+static const char *const precisions[] = {"double", "single", NULL};
+static const char *const keeps[] = {"energy", "opening", NULL};
+static const char *const keeps_meaning[] = {
+    "the fracture energy: weak faces open further",
+    "the critical opening: weak faces take less energy"};
+static const char *const masses[] = {"consistent", "lumped", NULL};
+static const char *const masses_meaning[] = {
+    "exact for the shape functions; its inverse is one constant matrix",
+    "HRZ, on the diagonal: the only one of form continuous and its default"};
+static const char *const shapes[] = {"sphere", "plane", "cylinder", NULL};
+static const char *const shapes_meaning[] = {
+    "of a radius", "all behind it is rigid", "of a radius, without ends"};
+static const char *const motions[] = {"free", "prescribed", NULL};
+static const char *const motions_meaning[] = {
+    "by the forces on it: it has a mass", "by its velocity at all times"};
+static const char *const components[] = {"x", "y", "z", NULL};
+static const char *const box_sets[] = {"x-", "x+", "y-", "y+", "z-", "z+", NULL};
+static const char *const fields[] = {
+    "displacement", "velocity",       "stress",      "mean_stress", "principal_stress", "crack",    "damage",
+    "regime",       "plastic_strain", "triaxiality", "rank",        "fragment",         "material", NULL};
+static const char *const fields_meaning[] = {
+    "of the nodes (m)",
+    "of the nodes (m/s)",
+    "Cauchy stress, mean of each element (Pa)",
+    "a third of its trace (Pa)",
+    "principal stresses, largest first (Pa)",
+    "the crack surface: opening, slip, damage, time of failure",
+    "of the ceramic, mean of each element",
+    "of the ceramic's cracks, largest of the element: 1 closed, 2 sliding, 3 open",
+    "equivalent plastic strain, mean of each element",
+    "mean stress over von Mises stress",
+    "that owns the element, and that speaks for a broken face",
+    "number of the fragment",
+    "number of the material: 0 that of `material`, then those of `materials`"};
+static const char *const fragments[] = {"each", "last", "none", NULL};
+static const char *const fragments_meaning[] = {
+    "for each output", "for the end of the run", "no file"};
+
+#define INITIAL(name_, unit_, member, words)                                                                 \
+    { .name = (name_), .unit = (unit_), .type = RG_KEY_EXPR, ELSE("0"), .no_time = true, CASE(initial.member), MEANS(words) }
+
+static const rg_key case_keys[] = {
+    {.name = "mesh.file", .type = RG_KEY_TEXT, ELSE("the box"), MAY_CHANGE, CASE(mesh.file),
+     MEANS("mesh file that `rhegma mesh` made, in place of the box; relative to the case file")},
+    {.name = "mesh.cells", INTEGER3, FROM_TO(1, 100000), REQUIRED, BOX, CASE(mesh.cells),
+     MEANS("cubes of the box along x, y, z, each cut into 6 tetrahedra")},
+    {.name = "mesh.size", .unit = "m", REAL3, ABOVE(0), REQUIRED, BOX, CASE(mesh.size),
+     MEANS("edges of the box along x, y, z")},
+    {.name = "mesh.origin", .unit = "m", REAL3, ANY, DEFAULT(0), BOX, CASE(mesh.origin),
+     MEANS("corner of the box with the smallest x, y, z")},
+    {.name = "mesh.jitter", REAL, FROM_TO(0, 0.3), DEFAULT(0), BOX, CASE(mesh.jitter),
+     MEANS("moves interior vertices at random, by up to this fraction of the smallest cell edge")},
+    {.name = "mesh.seed", INTEGER, FROM(0), DEFAULT(1), BOX, CASE(mesh.seed), MEANS("of the jitter")},
+    {.name = "mesh.weight", .type = RG_KEY_EXPR, ELSE("1"), .no_time = true, MAY_CHANGE, CASE(mesh.weight),
+     MEANS("cost of an element at its centroid over that of others, for the partition, > 0; results do not depend on it")},
+    {.name = "mesh.rebalance", REAL, FROM(0), DEFAULT(0), MAY_CHANGE, CASE(mesh.rebalance),
+     MEANS("ratio of the most to the mean work of ranks from which the mesh is repartitioned by what its parts "
+           "cost, as 1.1, if the time left makes that pay; 0: never; below 1: every 100 steps")},
+
+    {.name = "material.name", .type = RG_KEY_TEXT, ELSE("material"), CASE(material.name),
+     MEANS("by which interface.sets calls it: letters, digits, _ and -")},
+#define KEY(word) "material." word
+#define INPUT     offsetof(rg_case, material)
+#include "case/material_keys.h"
+    {.name = "materials", .type = RG_KEY_LIST, ELSE("none"), CASE(other), .entry = &rg_material_table,
+     .offset_count = offsetof(rg_case, others),
+     MEANS("others, in part of the mesh; the last one that claims an element has it, and what none claims is of `material`")},
+
+    {.name = "interface.form", EXPLAINED(forms), DEFAULT(RG_FORM_VARIATIONAL), CASE(interface.form),
+     MEANS("how elements hang together")},
+    {.name = "interface.faces", .type = RG_KEY_EXPR, ELSE("none"), .no_time = true, .normal = true, GROUP(FACES),
+     CASE(interface.faces),
+     MEANS("faces that carry an interface: those where it is not 0, by their middle and unit normal; without any the law must be none")},
+    {.name = "interface.beta_s", REAL, ABOVE(0), DEFAULT(4), GROUP(INTERFACE), CASE(interface.beta_s),
+     MEANS("interior penalty, in moduli over the height of an element")},
+    {.name = "interface.penalty", EXPLAINED(penalties), DEFAULT(RG_PENALTY_ELASTIC), GROUP(DG),
+     CASE(interface.penalty), MEANS("what beta_s multiplies")},
+    {.name = "interface.law", EXPLAINED(laws), REQUIRED, CASE(interface.law), MEANS("cohesive law")},
+    {.name = "interface.strength", .unit = "Pa", REAL, ABOVE(0), REQUIRED, GROUP(COHESIVE),
+     CASE(interface.strength), MEANS("tensile strength of a face")},
+    {.name = "interface.energy", .unit = "J/m2", REAL, ABOVE(0), REQUIRED, GROUP(ENERGY),
+     CASE(interface.energy), MEANS("fracture energy G_c, per area of new crack; of a toughness: K_Ic^2 (1 - nu^2)/E")},
+    {.name = "interface.beta", REAL, FROM(0), DEFAULT(1), GROUP(SHEAR), CASE(interface.beta),
+     MEANS("weight of shear against opening; 0: opening alone breaks")},
+    {.name = "interface.activation", EXPLAINED(activations), DEFAULT(RG_ACTIVATION_CONTINUOUS), GROUP(SWITCH),
+     CASE(interface.activation), MEANS("how the law takes over where the strength is reached")},
+    {.name = "interface.onset", REAL, FROM_TO(0, 1), .low_open = true, DEFAULT(0.3), GROUP(ONSET),
+     CASE(interface.onset),
+     MEANS("opening from which the law starts, in jumps at which the penalty alone would carry the strength; "
+           "a smaller one is stiffer")},
+    {.name = "interface.contact", EXPLAINED(contacts), DEFAULT(RG_CONTACT_PENALTY), GROUP(COHESIVE),
+     CASE(interface.contact), MEANS("how closed cracks push")},
+    {.name = "interface.friction", REAL, FROM(0), DEFAULT(0), GROUP(COHESIVE), CASE(interface.friction),
+     MEANS("Coulomb's coefficient of closed cracks, with contact penalty")},
+#define RG_LAW_PARAMETER(NAME, index, word, unit_, low_, high_, fallback_, words)                            \
+    {.name = word, .unit = unit_, REAL, FROM_TO(low_, high_), DEFAULT(fallback_), GROUP(LAW),                \
+     .law = RG_LAW_##NAME, CASE(interface.shape[RG_LAW_##NAME][index]), MEANS(words)},
+#include "laws.h"
+#undef RG_LAW_PARAMETER
+    {.name = "interface.sets", .type = RG_KEY_LIST, ELSE("none"), GROUP(COHESIVE), CASE(interface.set), .entry = &rg_face_set_table,
+     .offset_count = offsetof(rg_case, interface.sets),
+     MEANS("faces with properties of their own; of those that select a face the last one counts")},
+    {.name = "interface.weibull.modulus", REAL, ABOVE(0), ELSE("strengths are not random"), GROUP(COHESIVE), CASE(interface.weibull.modulus),
+     MEANS("m of strengths that differ at random: strength (-(A_0/A) ln(1 - U))^(1/m) on a face of area A")},
+    {.name = "interface.weibull.area", .unit = "m2", REAL, ABOVE(0), REQUIRED, GROUP(WEIBULL),
+     CASE(interface.weibull.area), MEANS("area A_0 of a face: of such 63 % are weaker than `strength`")},
+    {.name = "interface.weibull.seed", INTEGER, FROM(0), DEFAULT(1), GROUP(WEIBULL), CASE(interface.weibull.seed),
+     MEANS("U follows from it and the corners of the face, whatever the partition")},
+    {.name = "interface.weibull.keep", EXPLAINED(keeps), DEFAULT(RG_KEEP_ENERGY), GROUP(WEIBULL),
+     CASE(interface.weibull.keep), MEANS("what stays that of `energy` on each face")},
+
+    {.name = "viscosity.linear", REAL, FROM(0), DEFAULT(0), CASE(viscosity.linear),
+     MEANS("b1 of the bulk viscosity rho h (b1 c (-div v) + b2^2 h (div v)^2), against ringing behind shocks, as 0.06")},
+    {.name = "viscosity.quadratic", REAL, FROM(0), DEFAULT(0), CASE(viscosity.quadratic),
+     MEANS("b2, in compression alone, as 1.2")},
+
+    {.name = "mass", EXPLAINED(masses), DEFAULT(RG_DEFAULT_MASS), CASE(mass), MEANS("mass matrix")},
+
+    INITIAL("initial.displacement.x", "m", displacement[0], "displacement along x at the start"),
+    INITIAL("initial.displacement.y", "m", displacement[1], "along y"),
+    INITIAL("initial.displacement.z", "m", displacement[2], "along z"),
+    INITIAL("initial.velocity.x", "m/s", velocity[0], "velocity along x at the start"),
+    INITIAL("initial.velocity.y", "m/s", velocity[1], "along y"),
+    INITIAL("initial.velocity.z", "m/s", velocity[2], "along z"),
+
+    {.name = "boundary", .type = RG_KEY_LIST, ELSE("none: a free body"), CASE(boundary), .entry = &rg_boundary_table,
+     .offset_count = offsetof(rg_case, boundaries), MEANS("prescribed motion of the surface; what is not named is free")},
+
+    {.name = "bodies", .type = RG_KEY_LIST, ELSE("none"), CASE(body), .entry = &rg_body_table,
+     .offset_count = offsetof(rg_case, bodies), MEANS("rigid bodies that the solid's surface touches; they move without turning")},
+
+    {.name = "time.end", .unit = "s", REAL, ABOVE(0), REQUIRED, MAY_CHANGE, CASE(time.end), MEANS("end of the run")},
+    {.name = "time.safety", REAL, FROM_TO(0, 1), .low_open = true, DEFAULT(RG_DEFAULT_SAFETY), MAY_CHANGE,
+     CASE(time.safety), MEANS("time step as a fraction of the critical one")},
+    {.name = "time.steps", INTEGER, FROM(1), ELSE("no limit"), MAY_CHANGE, CASE(time.steps),
+     MEANS("the run ends after so many steps even before its end")},
+    {.name = "time.collapse", REAL, FROM_TO(0, 1), .high_open = true, DEFAULT(0.01), MAY_CHANGE, CASE(time.collapse),
+     MEANS("the run stops when the step falls below this fraction of that at rest")},
+
+    {.name = "output.dir", .type = RG_KEY_TEXT, ELSE("results/NAME of the case file"), MAY_CHANGE, CASE(output.dir),
+     MEANS("output directory; also option -o")},
+    {.name = "output.interval", .type = RG_KEY_INTERVAL, ELSE("time.end/50"), MAY_CHANGE, CASE(output),
+     MEANS("between outputs")},
+    {.name = "output.times", .unit = "s", .type = RG_KEY_REALS, FROM(0), ELSE("at every interval"), CASE(output.time),
+     .offset_count = offsetof(rg_case, output.times), MEANS("fields at exactly these times")},
+    {.name = "output.probes", .type = RG_KEY_LIST, ELSE("none"), CASE(output.probe), .entry = &rg_probe_table,
+     .offset_count = offsetof(rg_case, output.probes), MEANS("points whose history is recorded in every step")},
+    {.name = "output.fields", .type = RG_KEY_FLAGS, .choice = fields, .choice_meaning = fields_meaning, DEFAULT(0), MAY_CHANGE,
+     .absent = "all that the materials have but rank, and triaxiality and material where there is cause",
+     CASE(output.fields), MEANS("what to write; [] for none")},
+    {.name = "output.fragments", EXPLAINED(fragments), DEFAULT(RG_FRAGMENTS_EACH), CASE(output.fragments),
+     MEANS("rows of fragments.csv")},
+    {.name = "output.region", .type = RG_KEY_EXPR, ELSE("the whole body"), .no_time = true, CASE(output.region),
+     MEANS("fields of the elements at whose centroid this is not 0")},
+    {.name = "output.precision", CHOICE(precisions), DEFAULT(RG_OUTPUT_DOUBLE), CASE(output.precision),
+     MEANS("of the fields on the disk")},
+    {.name = "output.compression", INTEGER, FROM_TO(0, 9), DEFAULT(0), MAY_CHANGE, CASE(output.compression),
+     MEANS("of the fields on the disk, by gzip; 0: none")},
+    {.name = "output.energy_limit", REAL, ABOVE(0), DEFAULT(0.05), MAY_CHANGE, CASE(output.energy_limit),
+     MEANS("the run stops when its relative energy error passes this")},
+
+    {.name = "checkpoint.steps", INTEGER, FROM(0), DEFAULT(0), MAY_CHANGE, CASE(checkpoint.steps),
+     MEANS("a checkpoint every so many steps; 0: not for that reason")},
+    {.name = "checkpoint.time", .unit = "s", REAL, FROM(0), DEFAULT(0), MAY_CHANGE, CASE(checkpoint.time),
+     MEANS("every so much simulated time")},
+    {.name = "checkpoint.wall_time", .unit = "s", REAL, FROM(0), DEFAULT(0), MAY_CHANGE, CASE(checkpoint.wall_time),
+     MEANS("every so much time of the clock")},
+    {.name = "checkpoint.keep", INTEGER, FROM_TO(1, 1000), DEFAULT(2), MAY_CHANGE, CASE(checkpoint.keep),
+     MEANS("so many stay, the last ones")},
+};
+
+static const rg_key face_set_keys[] = {
+    {.name = "where", .type = RG_KEY_EXPR, ELSE("between"), SOME_OF, .no_time = true, .normal = true,
+     .offset = offsetof(rg_face_set, where),
+     MEANS("faces where it is not 0, by their middle and unit normal, of either sign")},
+    {.name = "between", .type = RG_KEY_TEXTS, ELSE("where"), SOME_OF, .offset = offsetof(rg_face_set, between),
+     .offset_count = offsetof(rg_face_set, names), MEANS("names of the materials on both sides, or one twice; with `where` both hold")},
+    {.name = "strength", .unit = "Pa", REAL, ABOVE(0), ELSE("interface.strength"), .offset = offsetof(rg_face_set, strength),
+     MEANS("tensile strength of these faces")},
+    {.name = "energy", .unit = "J/m2", REAL, ABOVE(0), ELSE("interface.energy"), .offset = offsetof(rg_face_set, energy),
+     MEANS("fracture energy of these faces")},
+};
+
+static const rg_key other_material_keys[] = {
+    {.name = "name", .type = RG_KEY_TEXT, REQUIRED, .offset = offsetof(rg_other_material, is.name),
+     MEANS("by which interface.sets calls it: letters, digits, _ and -")},
+    {.name = "set", .type = RG_KEY_TEXT, ELSE("where"), ONE_OF, .offset = offsetof(rg_other_material, set),
+     MEANS("a volume set of the mesh file")},
+    {.name = "where", .type = RG_KEY_EXPR, ELSE("set"), ONE_OF, .no_time = true, .offset = offsetof(rg_other_material, where),
+     MEANS("elements at whose centroid this is not 0")},
+#define KEY(word) word
+#define INPUT     offsetof(rg_other_material, is)
+#include "case/material_keys.h"
+};
+
+static const rg_key boundary_keys[] = {
+    {.name = "set", .type = RG_KEY_TEXT, .choice = box_sets, REQUIRED, .offset = offsetof(rg_boundary, set),
+     MEANS("a side of the box, or a surface set of the mesh file")},
+    {.name = "component", CHOICE(components), REQUIRED, .offset = offsetof(rg_boundary, component),
+     MEANS("of the motion that is prescribed")},
+    {.name = "velocity", .unit = "m/s", .type = RG_KEY_EXPR, ELSE("displacement"), ONE_OF, .group = RG_GROUP_VELOCITY,
+     .offset = offsetof(rg_boundary, value), MEANS("prescribed velocity")},
+    {.name = "displacement", .unit = "m", .type = RG_KEY_EXPR, ELSE("velocity"), ONE_OF, .group = RG_GROUP_DISPLACEMENT,
+     .offset = offsetof(rg_boundary, value), MEANS("prescribed displacement")},
+};
+
+#define BODY(member) .offset = offsetof(rg_body_input, member)
+#define BODY_VELOCITY(name_, component, words)                                                               \
+    { .name = (name_), .unit = "m/s", .type = RG_KEY_EXPR, ELSE("0"), .no_place = true, BODY(velocity[component]), MEANS(words) }
+
+static const rg_key body_keys[] = {
+    {.name = "name", .type = RG_KEY_TEXT, REQUIRED, BODY(name),
+     MEANS("column prefix in history.csv: letters, digits, _ and -")},
+    {.name = "shape", EXPLAINED(shapes), REQUIRED, BODY(shape), MEANS("of the body")},
+    {.name = "motion", EXPLAINED(motions), REQUIRED, BODY(motion), MEANS("how it moves")},
+    {.name = "at", .unit = "m", REAL3, ANY, REQUIRED, BODY(at),
+     MEANS("centre of the sphere, a point of the plane or of the axis, at the start")},
+    {.name = "radius", .unit = "m", REAL, ABOVE(0), ELSE("none"), BODY(radius), MEANS("of a sphere or cylinder, which must have it")},
+    {.name = "normal", REAL3, ANY, ELSE("required of it"), BODY(normal), MEANS("of a plane, which must have it: away from the body, of any length")},
+    {.name = "axis", REAL3, ANY, ELSE("required of it"), BODY(axis), MEANS("of a cylinder, which must have it: of any length")},
+    {.name = "density", .unit = "kg/m3", REAL, ABOVE(0), ELSE("none"), BODY(density), MEANS("of a free sphere, in place of its mass")},
+    {.name = "mass", .unit = "kg", REAL, ABOVE(0), ELSE("none"), BODY(mass), MEANS("of a free body, which must have it, but a sphere with a density")},
+    BODY_VELOCITY("velocity.x", 0, "along x: of a free body at the start, of a prescribed one at all times"),
+    BODY_VELOCITY("velocity.y", 1, "along y"),
+    BODY_VELOCITY("velocity.z", 2, "along z"),
+    {.name = "faces", .type = RG_KEY_TEXTS, .choice = box_sets, ELSE("all on the surface"), BODY(set),
+     .offset_count = offsetof(rg_body_input, sets), MEANS("sets of faces that may touch it")},
+    {.name = "penalty", REAL, ABOVE(0), DEFAULT(4), BODY(penalty),
+     MEANS("contact stiffness in (lambda + 2 mu)/h, h the height of an element over its face")},
+};
+
+static const rg_key probe_keys[] = {
+    {.name = "name", .type = RG_KEY_TEXT, REQUIRED, .offset = offsetof(rg_probe, name),
+     MEANS("column prefix in history.csv: letters, digits, _ and -")},
+    {.name = "at", .unit = "m", REAL3, ANY, REQUIRED, .offset = offsetof(rg_probe, at), MEANS("reference position, inside the body")},
+};
+/* clang-format on */
+
+#define TABLE(list, type)                                                                                    \
+    { .key = (list), .keys = sizeof(list) / sizeof(list)[0], .size = sizeof(type) }
+
+const rg_key_table rg_case_table = TABLE(case_keys, rg_case);
+const rg_key_table rg_material_table = TABLE(other_material_keys, rg_other_material);
+const rg_key_table rg_face_set_table = TABLE(face_set_keys, rg_face_set);
+const rg_key_table rg_boundary_table = TABLE(boundary_keys, rg_boundary);
+const rg_key_table rg_body_table = TABLE(body_keys, rg_body_input);
+const rg_key_table rg_probe_table = TABLE(probe_keys, rg_probe);
+
+_Static_assert(sizeof(case_keys) / sizeof(case_keys[0]) <= RG_MAX_KEYS, "RG_MAX_KEYS is too small");
+_Static_assert(sizeof(rg_form) == sizeof(int), "choices are stored as int");

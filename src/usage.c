@@ -1,0 +1,56 @@
+#include "usage.h"
+
+#include <stddef.h>
+#include <string.h>
+
+static const char overview[] =
+    "usage: rhegma run CASE.yaml [options]     run a case\n"
+    "       rhegma check CASE.yaml [options]   say what a run would do, without running\n"
+    "       rhegma keys [PREFIX]               the keys of a case file, with units, ranges, defaults\n"
+    "       rhegma mesh IN -o OUT.h5 [options] make a mesh file, or show what is in one\n"
+    "       rhegma verify                      check the program on this machine against theory\n"
+    "       rhegma --version | --help\n"
+    "rhegma COMMAND --help says more of each.\n";
+
+#define SET    "  --set a.b=value   override a value of the case file (repeatable); rhegma keys lists them\n"
+#define LAYOUT "ranks: mpirun -n N rhegma ...; threads: OMP_NUM_THREADS; instruction set: RHEGMA_ISA\n"
+
+static const struct {
+    const char *command, *text;
+} usages[] = {
+    {"run", "usage: rhegma run CASE.yaml [options]\n"
+            "       rhegma run --restart DIR [CASE.yaml] [options]\n"
+            "Runs a case and writes what comes out to its output directory.\n"
+            "options:\n" SET "  -o DIR            output directory (output.dir)\n"
+            "  -q, --quiet       no progress\n"
+            "  --restart DIR     go on with the run in DIR from its newest good checkpoint\n"
+            "  --overwrite       start anew where an unfinished run left checkpoints\n"
+            "  --walltime H:M:S  write a checkpoint and stop (exit status 3) before so much time has passed\n"
+            "signals: USR1 writes a checkpoint; TERM, INT, HUP, USR2 write one and stop\n"
+            "exit status: 0 done, 1 failed, 2 bad input, 3 stopped with a checkpoint to go on from\n" LAYOUT},
+    {"check",
+     "usage: rhegma check CASE.yaml [options]\n"
+     "Says what a run would do: size, wave speeds, time step, steps, memory, and warnings; writes nothing.\n"
+     "options:\n" SET
+     "exit status: 0 a case that can run, 2 one that is wrong, with all that is wrong with it\n" LAYOUT},
+    {"verify",
+     "usage: rhegma verify\n"
+     "Runs small cases that have an exact answer and prints theory, measured value, deviation and limit.\n"
+     "exit status: 0 all hold, 1 not all\n" LAYOUT},
+    {"keys",
+     "usage: rhegma keys [PREFIX] [--markdown]   keys of a case file whose names begin with PREFIX, as\n"
+     "                                           interface or material.young; \"expressions\": what they "
+     "know\n"
+     "       rhegma keys --schema                a JSON Schema of case files, for editors. To use it, begin\n"
+     "                                           a case with\n"
+     "                                           # yaml-language-server: $schema=PATH\n"},
+};
+
+const char *rg_usage(const char *command) {
+    for (size_t i = 0; command != NULL && i < sizeof usages / sizeof *usages; i++) {
+        if (strcmp(usages[i].command, command) == 0) {
+            return usages[i].text;
+        }
+    }
+    return overview;
+}

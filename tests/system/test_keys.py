@@ -1,0 +1,152 @@
+"""`rhegma keys`: the reference that stands in src/case/README.md, and the JSON Schema by which editors check a case."""
+
+import copy
+import functools
+import json
+
+import jsonschema
+import pytest
+import rhegma
+from conftest import ROOT, launch
+
+CASES = sorted(path for folder in ("bench", "tests/cases") for path in (ROOT / folder).rglob("*.yaml"))
+SPALL = next(path for path in CASES if path.name == "spall.yaml")
+CERAMIC = next(path for path in CASES if path.name == "ceramic-cube.yaml")
+INTRINSIC = next(path for path in CASES if path.name == "intrinsic.yaml")
+
+
+def said(*arguments):
+    process = launch("keys", *arguments)
+    assert process.returncode == 0 and process.stderr == ""
+    return process.stdout
+
+
+@functools.cache
+def validator():
+    schema = json.loads(said("--schema"))
+    jsonschema.Draft7Validator.check_schema(schema)
+    return jsonschema.Draft7Validator(schema)
+
+
+def wrong(case):
+    """Where the schema finds a case wrong."""
+    return {".".join(map(str, error.absolute_path)) for error in validator().iter_errors(case)}
+
+
+# ---- the document ----
+
+
+def test_the_document_is_what_the_program_prints():
+    """Else: build/rhegma keys --markdown, below the preface of src/case/README.md."""
+    document = (ROOT / "src/case/README.md").read_text()
+    assert document.startswith("# Case files\n") and document.endswith("\n\n" + said("--markdown"))
+
+
+def test_part_of_it():
+    assert said("time.s") == "\n\n".join(block for block in said().split("\n\n") if block.startswith("time.s")) + "\n"
+    assert said("time.s", "--markdown").count("\n| `time.") == 2
+
+
+@pytest.mark.parametrize("arguments, complaint", [
+    (["yung"], "rhegma: no key begins with yung; did you mean 'material.young'?\n"),
+    (["qqqqqq"], "rhegma: no key begins with qqqqqq\n"),
+    (["--frob"], "rhegma: keys: unknown option: --frob\nusage: rhegma keys"),
+    (["mesh", "time"], "rhegma: keys: one prefix at a time; not understood: time\nusage: rhegma keys"),
+    (["--schema", "mesh"], "rhegma: keys: --schema is that of the whole case; not understood with it: mesh\nusage"),
+    (["--markdown", "--schema"], "rhegma: keys: --schema is that of the whole case; not understood with it: --markdown\n"),
+])
+def test_wrong_arguments(arguments, complaint):
+    process = launch("keys", *arguments)
+    assert process.returncode == 2 and process.stdout == "" and process.stderr.startswith(complaint)
+
+
+# ---- the schema ----
+
+
+@pytest.mark.parametrize("path", CASES, ids=lambda path: path.stem)
+def test_every_case_is_valid(path):
+    assert wrong(rhegma.read_case(path)) == set()
+
+
+def changed(path, changes):
+    """The case with values put in at "a.b" or "a.0.b", or taken out (None)."""
+    case = copy.deepcopy(rhegma.read_case(path))
+    for name, value in changes.items():
+        *sections, last = [int(part) if part.isdigit() else part for part in name.split(".")]
+        inner = case
+        for section in sections:
+            inner = inner.setdefault(section, {}) if isinstance(inner, dict) else inner[section]
+        if value is None:
+            del inner[last]
+        else:
+            inner[last] = value
+    return case
+
+
+@pytest.mark.parametrize("path, changes, places", [
+    # values
+    (SPALL, {"material.yung": 1}, {"material"}),
+    (SPALL, {"fracture": True}, {""}),
+    (SPALL, {"material.young": 0}, {"material.young"}),
+    (SPALL, {"material.young": "260 GPa"}, {"material.young"}),
+    (SPALL, {"material.poisson": 0.5}, {"material.poisson"}),
+    (SPALL, {"mesh.cells": [2, 2]}, {"mesh.cells"}),
+    (SPALL, {"mesh.cells": [2, 2, 2, 2]}, {"mesh.cells"}),
+    (SPALL, {"mesh.cells": [2, 2.5, 0]}, {"mesh.cells.1", "mesh.cells.2"}),
+    (SPALL, {"mesh.jitter": 0.31}, {"mesh.jitter"}),
+    (SPALL, {"interface.form": "weird"}, {"interface.form"}),
+    (SPALL, {"initial.velocity.x": [1]}, {"initial.velocity.x"}),
+    (SPALL, {"output.interval": 0}, {"output.interval"}),
+    (SPALL, {"output.interval": 1.5}, {"output.interval"}),
+    (SPALL, {"output.fields": ["stres"]}, {"output.fields.0"}),
+    (SPALL, {"output.fields": ["crack", "crack"]}, {"output.fields"}),
+    (SPALL, {"output.times": []}, {"output.times"}),
+    (SPALL, {"output.probes.0.at": 3}, {"output.probes.0.at"}),
+    (SPALL, {"output.dir": 12}, {"output.dir"}),
+    (SPALL, {"boundary.0.set": 3}, {"boundary.0.set"}),
+    # what is missing
+    (SPALL, {"time.end": None}, {"time"}),
+    (SPALL, {"time": None}, {""}),
+    (SPALL, {"mesh": None}, {""}),
+    (SPALL, {"mesh.size": None}, {"mesh"}),
+    (SPALL, {"material.young": None}, {"material"}),
+    (SPALL, {"material.density": None}, {"material"}),
+    (SPALL, {"interface.law": None}, {"interface"}),
+    (SPALL, {"interface.strength": None}, {"interface"}),
+    (SPALL, {"interface.energy": None}, {"interface"}),
+    (SPALL, {"interface.weibull.modulus": 10}, {"interface.weibull"}),
+    (SPALL, {"output.probes.0.name": None}, {"output.probes.0"}),
+    (CERAMIC, {"material.shear": None}, {"material"}),
+    (SPALL, {"boundary.0.velocity": None}, {"boundary.0"}),
+    (SPALL, {"materials": [{"name": "s", "where": 1, "model": "j2", "young": 1, "poisson": 0, "density": 1}]}, {"materials.0"}),
+    # what is not used
+    (SPALL, {"mesh.file": "bar.h5"}, {"mesh.cells", "mesh.size", "mesh.origin"}),
+    (SPALL, {"material.shear": 1}, {"material.shear"}),
+    (CERAMIC, {"material.young": 1}, {"material.young"}),
+    (CERAMIC, {"interface.strength": 1}, {"interface.strength"}),
+    (SPALL, {"interface.law": "free"}, {"interface.energy"}),
+    (SPALL, {"interface.bilinear.ascent": 0.1}, {"interface.bilinear"}),
+    (INTRINSIC, {"interface.penalty": "elastic"}, {"interface.penalty"}),
+    (SPALL, {"interface.onset": 0.2}, {"interface.onset"}),
+    (SPALL, {"interface.faces": 1}, {"interface.faces"}),
+    (SPALL, {"interface.weibull.seed": 1}, {"interface.weibull.seed"}),
+    (SPALL, {"boundary.0.displacement": 1}, {"boundary.0"}),
+    (SPALL, {"interface.sets": [{"strength": 1}]}, {"interface.sets.0"}),
+], ids=str)
+def test_mistakes_are_found(path, changes, places):
+    assert wrong(changed(path, changes)) == places
+
+
+@pytest.mark.parametrize("path, changes", [
+    (SPALL, {"mesh": {"file": "bar.h5"}, "boundary.0.set": "top"}),
+    (SPALL, {"initial.velocity.x": "sin(x)", "initial.velocity.y": 3}),
+    (SPALL, {"output.interval": 7, "output.fields": [], "output.times": [1e-8]}),
+    (SPALL, {"interface.activation": "conserving", "interface.onset": 0.2}),
+    (SPALL, {"interface.form": "continuous", "interface.faces": "abs(z) < 1e-6"}),
+    (SPALL, {"interface.law": "rate", "interface.rate.speed": 5}),
+    (SPALL, {"interface.weibull": {"modulus": 10, "area": 1e-9, "keep": "opening"}}),
+    (SPALL, {"interface.sets": [{"between": ["a", "b"], "where": "z"}, {"where": 1}]}),
+    (SPALL, {"materials": [{"name": "s", "set": "a", "model": "j2", "young": 1, "poisson": 0, "density": 1, "yield_stress": 1}]}),
+])
+def test_what_the_program_takes_is_valid(path, changes):
+    assert wrong(changed(path, changes)) == set()
