@@ -125,3 +125,9 @@ def test_each_example_has_a_readme_that_the_gallery_names():
         text, files = (folder / "README.md").read_text(), [path.name for path in folder.iterdir() if path.suffix != ".h5"]
         unshown = [name for name in files if name.endswith(".png") and f"]({name})" not in text]
         assert unshown == [] and any(name in text for name in files if name.endswith((".yaml", ".geo"))), folder
+
+
+def test_front_page_is_short_and_of_this_version():
+    text = (ROOT / "README.md").read_text()
+    assert len(text.splitlines()) <= 150
+    assert re.search(r"version = \{(.*)\}", text)[1] == re.search(r"version: '(.*?)'", (ROOT / "meson.build").read_text())[1]

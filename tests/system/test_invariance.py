@@ -57,7 +57,7 @@ def test_rotation_leaves_the_body_at_rest(run, figure):
            bound=rounding(5e-17, 2.5e-8), why=ROUNDING)
 
 
-@pytest.mark.skipif(SINGLE, reason="displacements as large as the body leave strains of 1e-5 in floats: README")
+@pytest.mark.skipif(SINGLE, reason="displacements as large as the body leave strains of 1e-5 in floats: perf/README.md")
 def test_rounding_alone_does_not_stop_a_run(run):
     assert run(CASES / "rotation.yaml").summary["status"] == "completed"
 

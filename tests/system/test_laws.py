@@ -49,7 +49,7 @@ PULLED = {"mesh.cells": [2, 2, 6], "mesh.size": [0.2e-3, 0.2e-3, 0.6e-3], "mesh.
           "boundary": [{"set": "z+", "component": "z", "velocity": 2}, {"set": "z-", "component": "z", "velocity": -2}]}
 
 
-# Where DG points switch the ledger of the default activation has the error that the README tells of.
+# Where DG points switch the ledger of the default activation has the error that kernels/cohesive/README.md tells of.
 LEDGERS = {"linear": 0.03, "rate": 0.027, "fatigue": 0.03, "free": 0.03,
            "exponential": 3.5e-4, "bilinear": 6e-4, "tvergaard": 5e-4,
            "polynomial": 1.6e-4, "needleman": 2.5e-4, "xu-needleman": 2e-4,
