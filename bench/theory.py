@@ -1,11 +1,13 @@
 """What theory says of a run, from the values of its case: closed forms that studies and pictures hold results against.
 Each raises launch.BadInput for a case that it does not describe."""
 
+import contextlib
 import itertools
 import math
 
 import numpy as np
 import rhegma
+from drawing import with_unit
 from launch import BadInput
 
 
@@ -30,6 +32,7 @@ class Spall:
     planes: plane waves in uniaxial strain, until the bar breaks in the middle as they meet."""
 
     NAME = "1-D theory of the spall test"
+    AXIS = 2
 
     def __init__(self, case, box=None):
         """`box` where the mesh is not the built-in one."""
@@ -72,14 +75,6 @@ class Spall:
             raise BadInput(f"{cls.NAME} is for faces of one strength")
         return tuple(number_of(interface.get(key, math.inf), cls.NAME) for key in ("strength", "energy"))
 
-    @classmethod
-    def of(cls, case):
-        """None where the case is no such test."""
-        try:
-            return cls(case)
-        except BadInput:
-            return None
-
     def meeting(self):
         """When the waves meet in the middle."""
         return self.length / (2 * self.speed)
@@ -106,6 +101,11 @@ class Spall:
             arrival += 2 * (to_other if there else to_end)
             size *= reflection if there else 1.0
 
+    def heading(self):
+        ends = sorted({f"{stress / 1e6:.4g}" for stress in (self.high, self.low)})
+        return (f"1-D theory: c$_d$ = {self.speed:.0f} m/s, incident {' and '.join(ends)} MPa, "
+                f"meeting at {with_unit(self.meeting(), 's')}" + (", where the bar breaks" if self.breaks else ""))
+
     def stress(self, z, t):
         """Stress along the bar at z at ascending times."""
         above, below = self.top - z, z - self.bottom
@@ -123,6 +123,15 @@ class Spall:
             (self.meeting(), "waves meet"),
             (self.meeting() + to_middle / self.speed, second),
         ]
+
+
+def of(case):
+    """A closed form of the normal stress along an axis of the case: its AXIS and heading, `stress` and `events` by the place
+    along it. None where none is known."""
+    for form in (Spall,):
+        with contextlib.suppress(BadInput):
+            return form(case)
+    return None
 
 
 def free_bar_half_period(case):

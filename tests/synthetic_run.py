@@ -22,7 +22,7 @@ boundary:
 output: {probes: [{name: p-1, at: [0, 0.5, 1]}], fields: [crack]}
 """
 SUMMARY = {"case": "spall", "elements": 12345, "steps": 678, "wall_s": 12.3, "first_fracture_time_s": 4.2e-3,
-           "broken_area_m2": 2.5, "dissipated_J": 7.5e-4, "energy_error_rel": 1.23e-3, "status": "completed", "fragments": 3}
+           "broken_area_m2": 2.5, "failed_area_m2": 1.5, "dissipated_J": 7.5e-4, "energy_error_rel": 1.23e-3, "status": "completed", "fragments": 3}
 
 
 def write_table(path, columns):

@@ -404,17 +404,17 @@ NO_SPALL = [
 def test_cases_that_are_no_spall_test(sections, complaint):
     case = spall_case(**sections)
     if complaint is None:
-        assert theory.Spall.of(case) is not None
+        assert theory.of(case) is not None
         return
     with pytest.raises(rhegma.BadInput, match=complaint):
         theory.Spall(case)
-    assert theory.Spall.of(case) is None
+    assert theory.of(case) is None
 
 
 def test_displacements_of_nothing_hold_the_sides():
     held = [{"set": m["set"], "component": m["component"], "displacement": 0} if m["set"][0] != "z" else m
             for m in pulled(-7, 7)]
-    assert theory.Spall.of(spall_case(boundary=[*held, {"set": "z+", "component": "x", "velocity": 0}])) is not None
+    assert theory.of(spall_case(boundary=[*held, {"set": "z+", "component": "x", "velocity": 0}])) is not None
 
 
 # ---- theory.py: bars that ring, rows of springs, fragments ----

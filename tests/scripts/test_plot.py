@@ -16,6 +16,7 @@ rhegma, plt = plot.rhegma, plot.plt
 CASE = rhegma.parse_yaml(synthetic.SPALL)
 PROBES = [("p-1", [0.0, 0.5, 1.0]), ("low", [0.0, 0.0, -2.0])]
 TIME = np.linspace(0, 8.8e-3, 45)  # a step before 7/c = 5.5 ms, the last event of the probe p-1, and beyond
+VIEW = plot.View("stress", "zz", 2)
 HISTORY = synthetic.structured({"time": TIME, "p-1_szz": 30e6 * np.sin(900 * TIME), "low_szz": -55e6 * np.sin(700 * TIME) ** 2,
                                 "p-1_sxx": 0 * TIME, "low_sxx": 0 * TIME})
 
@@ -31,7 +32,7 @@ def close_figures():
 
 @pytest.fixture(scope="module")
 def history():
-    return plot.plot_history(HISTORY, CASE, PROBES, synthetic.SUMMARY)
+    return plot.plot_history(HISTORY, CASE, PROBES, VIEW, synthetic.SUMMARY)
 
 
 def test_history_draws_the_stress_of_each_probe(history):
@@ -47,7 +48,7 @@ def test_history_draws_the_stress_of_each_probe(history):
 
 
 def test_history_draws_theory(history):
-    theory = plot.Spall(CASE)
+    theory = plot.theory.Spall(CASE)
     for axes, (_, at) in zip(history.axes, PROBES):
         time, stress = line(axes, "1-D theory")
         assert time[0] == 0 and time[-1] == pytest.approx(8.8) and len(time) > 1000
@@ -58,7 +59,7 @@ def test_history_marks_events_and_fracture(history):
     speed = np.sqrt(1.6e6)
     for axes, z in zip(history.axes, (1.0, 2.0)):
         expected = [(1e3 * (4 - z) / speed, "wave arrives"), (1e3 * 4 / speed, "waves meet"),
-                    (1e3 * (4 + z) / speed, "unloading arrives" if plot.Spall(CASE).breaks else "second wave arrives")]
+                    (1e3 * (4 + z) / speed, "unloading arrives" if plot.theory.Spall(CASE).breaks else "second wave arrives")]
         words = [(text.xy[0], text.get_text()) for text in axes.texts]
         assert words == [(pytest.approx(time), f"{name}\n{time:.4f}") for time, name in expected]
         assert all(text.xy[1] == 1 for text in axes.texts)  # at the top
@@ -72,18 +73,18 @@ def test_history_has_the_unit_of_the_largest_stress():
     for name in ("p-1", "low"):
         large = HISTORY.copy()
         large[f"{name}_szz"] *= 100
-        figure = plot.plot_history(large, CASE, PROBES, synthetic.SUMMARY)
+        figure = plot.plot_history(large, CASE, PROBES, VIEW, synthetic.SUMMARY)
         assert [axes.get_ylabel() for axes in figure.axes] == ["σ$_{zz}$ (GPa)"] * 2
 
 
 def test_history_leaves_out_events_after_the_end():
     early = HISTORY[TIME < 3.1e-3]
-    axes = plot.plot_history(early, CASE, PROBES[:1], synthetic.SUMMARY).axes[0]
+    axes = plot.plot_history(early, CASE, PROBES[:1], VIEW, synthetic.SUMMARY).axes[0]
     assert [text.get_text().split("\n")[0] for text in axes.texts] == ["wave arrives"]
 
 
 def test_history_says_what_it_is(history):
-    bar = plot.Spall(CASE)
+    bar = plot.theory.Spall(CASE)
     assert texts(history)[0] == (f"spall: stress at the probes\n1-D theory: c$_d$ = {bar.speed:.0f} m/s, incident "
                                  f"{bar.high / 1e6:.4g} MPa, meeting at {4e3 / bar.speed:.4g} ms, where the bar breaks")
     assert sorted(legend(history.axes[0])) == ["1-D theory", "computed", "first fracture"]
@@ -111,7 +112,7 @@ def test_history_can_be_read(history):
 def test_history_of_uneven_pulls_names_both():
     boundary = [{**motion, "velocity": {"z+": 7, "z-": -3.5}.get(motion["set"], 0)} for motion in CASE["boundary"]]
     case = {**CASE, "boundary": boundary, "interface": {"strength": 1e9, "energy": 1}}
-    heading = texts(plot.plot_history(HISTORY, case, PROBES, synthetic.SUMMARY))[0]
+    heading = texts(plot.plot_history(HISTORY, case, PROBES, VIEW, synthetic.SUMMARY))[0]
     impedance = 3000 * np.sqrt(1.6e6) / 1e6
     assert f"incident {3.5 * impedance:.4g} and {7 * impedance:.4g} MPa, meeting at" in heading and "breaks" not in heading
 
@@ -119,14 +120,14 @@ def test_history_of_uneven_pulls_names_both():
 @pytest.mark.parametrize("sections", [{"boundary": []}, {"materials": [{**CASE["material"], "name": "steel"}]}])
 def test_history_draws_no_theory_where_there_is_none(sections):
     """In particular of bars of two materials."""
-    figure = plot.plot_history(HISTORY, {**CASE, **sections}, PROBES, {**synthetic.SUMMARY, "first_fracture_time_s": None})
+    figure = plot.plot_history(HISTORY, {**CASE, **sections}, PROBES, VIEW, {**synthetic.SUMMARY, "first_fracture_time_s": None})
     assert texts(figure)[0] == "spall: stress at the probes"
     assert [labels(axes) for axes in figure.axes] == [["computed"], ["computed"]]
     assert not any(axes.texts for axes in figure.axes)
 
 
 def test_history_of_the_first_moment_alone():
-    axes = plot.plot_history(HISTORY[:1], CASE, PROBES[:1], synthetic.SUMMARY).axes[0]
+    axes = plot.plot_history(HISTORY[:1], CASE, PROBES[:1], VIEW, synthetic.SUMMARY).axes[0]
     assert line(axes, "computed")[0] == [0] and axes.get_xlim()[0] == 0 < axes.get_xlim()[1]
 
 
@@ -177,7 +178,7 @@ def test_times_have_their_unit(end, unit, factor):
     history["time"] *= end / history["time"][-1]
     lower = plot.plot_energy(table, synthetic.SUMMARY).axes[1]
     assert lower.get_xlabel() == f"time ({unit})" and lower.get_xlim() == pytest.approx((end * factor / 4, end * factor))
-    axes = plot.plot_history(history, CASE, PROBES[:1], synthetic.SUMMARY).axes[0]
+    axes = plot.plot_history(history, CASE, PROBES[:1], VIEW, synthetic.SUMMARY).axes[0]
     assert axes.get_xlabel() == f"time ({unit})" and axes.get_xlim() == pytest.approx((0, end * factor))
     fragments = synthetic.structured({"time": [end / 2, end], "id": [0, 0], "mass": [1.0, 1]})
     assert plot.plot_fragments(fragments, synthetic.SUMMARY).axes[0].get_xlabel() == f"time ({unit})"
@@ -205,21 +206,27 @@ def test_energy_has_the_unit_of_the_largest(name):
 
 
 def test_fragments():
-    table = synthetic.structured({"time": [0.0, 0, 2e-3, 2e-3, 2e-3, 5e-3, 5e-3, 5e-3], "id": [0, 1, 0, 1, 2, 0, 1, 2],
-                                  "mass": [5.0, 5.0, 2, 3, 5, 6, 1, 3]})
+    table = synthetic.structured({"time": [0.0, 0, 2e-3, 2e-3, 2e-3, *[5e-3] * 5], "id": [0, 1, 0, 1, 2, *range(5)],
+                                  "mass": [5.0, 5.0, 2, 3, 5, 5, 1, 2, 0.5, 1.5]})
     figure = plot.plot_fragments(table, synthetic.SUMMARY)
     left, right = figure.axes
     (counts,), (heavier,) = left.get_lines(), right.get_lines()
-    assert counts.get_xydata().tolist() == [[0, 2], [2, 3], [5, 3]] and counts.get_drawstyle() == "steps-post"
+    assert counts.get_xydata().tolist() == [[0, 2], [2, 3], [5, 5]] and counts.get_drawstyle() == "steps-post"
     assert (left.get_xlabel(), left.get_ylabel(), left.get_ylim()[0]) == ("time (ms)", "fragments", 0)
-    assert heavier.get_xydata() == pytest.approx(np.array([[0.1, 3], [0.3, 2], [0.6, 1]]))
+    assert heavier.get_xydata() == pytest.approx(np.array([[0.05, 5], [0.1, 4], [0.15, 3], [0.2, 2], [0.5, 1]]))
     assert heavier.get_drawstyle() == "steps-pre"
     assert (right.get_xscale(), right.get_yscale(), left.get_xscale(), left.get_yscale()) == ("log", "log", "linear", "linear")
     assert (right.get_xlabel(), right.get_ylabel()) == ("mass m / mass of the body", "fragments of mass m or more")
-    assert texts(figure)[0] == "spall: 3 fragments at 5 ms, the heaviest 60 % of the body"
+    assert texts(figure)[0] == "spall: 5 fragments at 5 ms, the heaviest 50 % of the body"
     assert figure.get_size_inches() == pytest.approx((10, 4.2))
     assert_readable(figure)
     assert_panels_apart(figure)
+
+
+def test_few_fragments_have_no_distribution():
+    table = synthetic.structured({"time": [2e-3] * 5 + [5e-3] * 4, "id": [*range(5), *range(4)], "mass": np.ones(9)})
+    (axes,) = plot.plot_fragments(table, synthetic.SUMMARY).axes
+    assert axes.get_lines()[0].get_ydata().tolist() == [5, 4]
 
 
 # ---- crack.png ----
@@ -227,12 +234,12 @@ def test_fragments():
 BOX = np.array([[-1.0, -1.5, -4.0], [1.0, 1.5, 4.0]])  # 2 x 3 x 8 m
 ACROSS = np.array([[[-1, -1.5, 0.1], [1, -1.5, 0.1], [1, 1.5, 0.1]], [[-1, -1.5, 0.1], [1, 1.5, 0.1], [-1, 1.5, 0.1]],
                    [[0, 0, 0.4], [0, 1, 0.4], [0, 0, 1.0]]])  # the section, and a triangle of 0.3 m2 along the bar
-DAMAGE = np.array([0.2, 0.9, 1.0])
+DAMAGE = np.array([0.2, 0.9, 1 - 1e-15])  # the mean of points that all are 1
 
 
 @pytest.fixture(scope="module")
 def broken():
-    return plot.plot_crack(BOX, 4.4e-3, ACROSS, DAMAGE, synthetic.SUMMARY)
+    return plot.plot_crack(BOX, 4.4e-3, ACROSS, DAMAGE, 2, synthetic.SUMMARY)
 
 
 def collections(axes, kind):
@@ -277,7 +284,7 @@ def test_close_up_keeps_to_the_body_and_to_where_it_helps(low, high, expected):
 
 def test_bar_without_close_up_has_a_wide_profile():
     scattered = np.concatenate([ACROSS, ACROSS + [0, 0, -3.5]])
-    figure = plot.plot_crack(BOX, 4.4e-3, scattered, np.ones(6), synthetic.SUMMARY)
+    figure = plot.plot_crack(BOX, 4.4e-3, scattered, np.ones(6), 2, synthetic.SUMMARY)
     whole, colours, profile = figure.axes
     assert profile.get_position().width > 0.85 and sum(profile.get_position().intervalx) == pytest.approx(1, abs=0.05)
     assert_panels_apart_but_views(figure)
@@ -313,6 +320,8 @@ def test_crack_has_its_parts_in_their_places(broken):
 
 def test_crack_can_be_read(broken):
     assert_readable(broken)
+    caption, colours = broken.texts[1].get_window_extent(), broken.axes[2].get_tightbbox()
+    assert caption.x1 + 5 < colours.x0
     assert_panels_apart_but_views(broken)
     assert broken.get_size_inches() == pytest.approx((11, 6.8))
 
@@ -396,7 +405,7 @@ def test_front_edges_lie_on_the_crack_and_hidden_ones_behind(broken):
 
 def test_sides_are_named_with_their_lengths():
     box = BOX + [[10, 20, 30]]  # whose middle is no zero
-    whole = plot.plot_crack(box, 4.4e-3, ACROSS + [10, 20, 30], DAMAGE, synthetic.SUMMARY).axes[0]
+    whole = plot.plot_crack(box, 4.4e-3, ACROSS + [10, 20, 30], DAMAGE, 2, synthetic.SUMMARY).axes[0]
     assert [text.get_text() for text in whole.texts] == ["z  8 m", "x  2 m", "y  3 m"]
     z, x, y = (np.array(text._position3d if hasattr(text, "_position3d") else (*text.get_position(), text._z))
                for text in whole.texts)
@@ -409,62 +418,63 @@ def test_sides_are_named_with_their_lengths():
 def test_profile_of_the_broken_area(broken):
     """Areas: twice 3 m2 at z = 0.1, 0.3 m2 around the height 0.6."""
     profile = broken.axes[-1]
-    bars = {round(patch.get_x() + patch.get_width() / 2, 6): patch.get_height() for patch in profile.patches}
-    assert len(bars) == 61 and sum(bars.values()) == pytest.approx(6.3)
+    failed, breaking = ({round(patch.get_x() + patch.get_width() / 2, 6): patch.get_height() for patch in profile.patches
+                         if to_rgba(colour) == patch.get_facecolor()} for colour in (plot.RED, plot.YELLOW))
+    bars = {z: failed[z] + breaking[z] for z in failed}
+    assert len(bars) == 61 and sum(failed.values()) == pytest.approx(0.3) and sum(bars.values()) == pytest.approx(6.3)
     width = 8 / 61
     filled = {z: area for z, area in bars.items() if area > 0}
-    assert list(filled.values()) == pytest.approx([6, 0.3])
+    assert list(filled.values()) == pytest.approx([6, 0.3]) and legend(profile) == [
+        "failed", "breaking", "cross-section of the outline"]
     assert all(abs(z - at) <= width / 2 for z, at in zip(filled, (0.1, 0.6)))
     assert min(abs(z) for z in bars) < 1e-6  # a bar has the mid-plane in its middle
     assert (profile.get_xlabel(), profile.get_ylabel()) == ("z (m)", "broken area (m²)")
     assert profile.get_xlim() == pytest.approx((-4, 4))
     (section,) = profile.get_lines()
     assert section.get_ydata() == [6, 6] and profile.get_ylim() == pytest.approx((0, 1.2 * 6))
-    (words,) = profile.texts
-    assert words.get_text() == "cross-section" and words.xy == (-4, 6)
 
 
 def test_profile_takes_what_lies_beyond_the_mesh_and_hides_a_section_far_away():
     figure, axes = plt.subplots()
     small = np.array([[[0, 0, -9], [1, 0, -9], [0, 2, -9]]], float)  # 1 m2, moved below the box
-    plot.draw_profile(axes, BOX, small, "m")
-    assert axes.patches[0].get_height() == pytest.approx(1) and not axes.texts and not axes.get_lines()
+    plot.draw_profile(axes, BOX, small, np.ones(1), 2, "m")
+    assert axes.patches[0].get_height() == pytest.approx(1) and not axes.get_lines() and legend(axes) == ["failed", "breaking"]
     figure, axes = plt.subplots()
-    plot.draw_profile(axes, BOX, np.concatenate([small, small / 1.4]), "m")  # 1.51 m2, a bit more than a quarter of 6
-    assert len(axes.texts) == 1 and axes.get_ylim()[1] == pytest.approx(7.2)
+    plot.draw_profile(axes, BOX, np.concatenate([small, small / 1.4]), np.ones(2), 2, "m")  # 1.51 m2, a bit more than a quarter of 6
+    assert len(axes.get_lines()) == 1 and axes.get_ylim()[1] == pytest.approx(7.2)
     figure, axes = plt.subplots()
-    plot.draw_profile(axes, BOX, np.concatenate([small] * 9), "m")
+    plot.draw_profile(axes, BOX, np.concatenate([small] * 9), np.ones(9), 2, "m")
     assert axes.get_ylim()[1] == pytest.approx(1.2 * 9)
 
 
 def test_crack_says_what_it_is(broken):
     assert texts(broken)[:2] == ["spall: fracture surface",
-                                 "t = 4.4 ms   ·   first fracture 4.2 ms   ·   broken area 2.5 m²   ·   "
-                                 "dissipated 0.75 mJ   ·   12,345 elements"]
+                                 "t = 4.4 ms  ·  first fracture 4.2 ms  ·  failed 1.5 m²  ·  broken 2.5 m²  ·  "
+                                 "dissipated 0.75 mJ  ·  12,345 elements"]
     title_, caption = broken.texts[:2]
     assert (title_.get_fontsize(), caption.get_fontsize()) == (14, 10) and title_.get_position()[1] > caption.get_position()[1]
     colours = broken.axes[2]
-    assert colours.get_xlabel() == "damage" and colours.get_xticks().tolist() == [0, 0.5, 1]
+    assert colours.get_xlabel() == "damage (1: failed)" and colours.get_xticks().tolist() == [0, 0.5, 1]
     assert colours.get_xlim() == (0, 1) and not colours.spines["outline"].get_visible()
 
 
 def test_crack_has_the_unit_of_the_body():
-    figure = plot.plot_crack(1e-3 * BOX, 4.4e-7, 1e-3 * ACROSS, DAMAGE, {**synthetic.SUMMARY, "first_fracture_time_s": None,
-                                                                         "broken_area_m2": 2.5e-6, "dissipated_J": 0.0})
+    figure = plot.plot_crack(1e-3 * BOX, 4.4e-7, 1e-3 * ACROSS, DAMAGE, 2, {**synthetic.SUMMARY, "first_fracture_time_s": None,
+                                                                         "broken_area_m2": 2.5e-6, "failed_area_m2": 1.5e-6, "dissipated_J": 0.0})
     assert figure.axes[-1].get_xlabel() == "z (mm)" and figure.axes[-1].get_lines()[0].get_ydata() == pytest.approx([6, 6])
     assert [text.get_text() for text in figure.axes[0].texts] == ["z  8 mm", "x  2 mm", "y  3 mm"]
-    assert texts(figure)[1] == "t = 0.44 µs   ·   broken area 2.5 mm²   ·   dissipated 0 J   ·   12,345 elements"
+    assert texts(figure)[1] == "t = 0.44 µs  ·  failed 1.5 mm²  ·  broken 2.5 mm²  ·  dissipated 0 J  ·  12,345 elements"
     assert np.array(segments(collections(figure.axes[0], Poly3DCollection)[1])) == pytest.approx(ACROSS[:, :, [2, 0, 1]])
 
 
 def test_body_far_from_the_origin_lies_as_any_other():
     far = BOX + [[0, 500, 0]]
-    whole = plot.plot_crack(far, 4.4e-7, ACROSS + [0, 500, 0], DAMAGE, synthetic.SUMMARY).axes[0]
+    whole = plot.plot_crack(far, 4.4e-7, ACROSS + [0, 500, 0], DAMAGE, 2, synthetic.SUMMARY).axes[0]
     assert (whole.get_xlim(), whole.get_zlim()) == ((-4, 4), (498.5, 501.5))
 
 
 def test_intact_body_has_its_unit():
-    (axes,) = plot.plot_crack(1e-3 * BOX, 4.4e-7, np.zeros((0, 3, 3)), None, synthetic.SUMMARY).axes
+    (axes,) = plot.plot_crack(1e-3 * BOX, 4.4e-7, np.zeros((0, 3, 3)), None, 2, synthetic.SUMMARY).axes
     assert [text.get_text() for text in axes.texts] == ["z  8 mm", "x  2 mm", "y  3 mm"]
     assert axes.get_xlim() == pytest.approx((-4, 4))
 
@@ -477,8 +487,8 @@ def test_triangle_without_area_has_a_colour():
 @pytest.mark.parametrize("triangles, message",
                          [(np.zeros((0, 3, 3)), "Nothing broke."), (None, "The run did not write its crack surface.")])
 def test_body_that_did_not_break(triangles, message):
-    figure = plot.plot_crack(BOX, 4.4e-3, triangles, None, synthetic.SUMMARY)
-    assert texts(figure)[:3] == ["spall: fracture surface", "t = 4.4 ms   ·   12,345 elements", message]
+    figure = plot.plot_crack(BOX, 4.4e-3, triangles, None, 2, synthetic.SUMMARY)
+    assert texts(figure)[:3] == ["spall: fracture surface", "t = 4.4 ms  ·  12,345 elements", message]
     (axes,) = figure.axes
     assert figure.texts[2].get_ha() == "center" and figure.texts[2].get_position() == (0.5, 0.08)
     assert figure.get_size_inches() == pytest.approx((11, 4.6))
@@ -501,11 +511,11 @@ def crack_fields(points=True):
     return synthetic.box_points(*BOX), cells, [{"time": 1e-3}, {"time": 4.4e-3, **(crack if points else {})}]
 
 
-def drawn(monkeypatch, run, out):
+def drawn(monkeypatch, run, out, **options):
     """The pictures that plot() saves, by name."""
     figures = {}
     monkeypatch.setitem(plot.__dict__, "save", lambda figure, path: figures.update({path.relative_to(out).name: figure}))
-    plot.plot(run, out)
+    plot.plot(run, out, **options)
     return figures
 
 
@@ -520,7 +530,7 @@ def test_plot_reads_a_run(tmp_path, monkeypatch, capsys):
     assert line(figures["history.png"].axes[0], "computed")[1] == pytest.approx(1e-6 * HISTORY["p-1_szz"])
     assert line(figures["energy.png"].axes[0], "bulk")[1] == pytest.approx(1e3 * ENERGY["bulk"])
     assert "2 fragments" in texts(figures["fragments.png"])[0]
-    assert texts(figures["crack.png"])[1].startswith("t = 4.4 ms   ·   first")
+    assert texts(figures["crack.png"])[1].startswith("t = 4.4 ms  ·  first")
     assert np.array(segments(collections(figures["crack.png"].axes[0],
                                          Poly3DCollection)[1])) == pytest.approx(ACROSS[:, :, [2, 0, 1]])
     assert capsys.readouterr().err == ""
@@ -559,7 +569,7 @@ def test_plot_wants_the_whole_ledger(tmp_path, left_out):
                                              (synthetic.SPALL.replace("probes", "samples"), "output.probes"),
     (synthetic.SPALL.replace("name: p-1", "name: p-2"), "history.csv: no column 'p-2_szz'")])
 def test_plot_names_what_is_wrong(tmp_path, case, complaint):
-    run = synthetic.write_run(tmp_path / "run", case=case, history=STRESS)
+    run = synthetic.write_run(tmp_path / "run", case=case, history=STRESS, fields=crack_fields())
     with pytest.raises(rhegma.BadInput, match=complaint):
         plot.plot(run, tmp_path)
 
@@ -572,12 +582,69 @@ def test_plot_of_nothing(tmp_path, monkeypatch):
 
 def test_plot_writes_beside_the_run_or_elsewhere(tmp_path, monkeypatch):
     seen = []
-    monkeypatch.setitem(plot.__dict__, "plot", lambda run, out: seen.append((run, out)))
+    monkeypatch.setitem(plot.__dict__, "plot", lambda run, out, **options: seen.append((run, out, options)))
     monkeypatch.setattr("sys.argv", ["plot", str(tmp_path)])
     plot.main()
-    monkeypatch.setattr("sys.argv", ["plot", str(tmp_path), "--out", str(tmp_path / "a")])
+    monkeypatch.setattr("sys.argv", ["plot", str(tmp_path), "--out", str(tmp_path / "a"), "--field", "velocity", "--component",
+                                     "x", "--axis", "y", "--time", "1e-6"])
     plot.main()
-    assert seen == [(tmp_path, tmp_path), (tmp_path, tmp_path / "a")]
+    assert seen == [(tmp_path, tmp_path, dict.fromkeys(("field", "component", "axis", "time"))),
+                    (tmp_path, tmp_path / "a", {"field": "velocity", "component": "x", "axis": "y", "time": 1e-6})]
+
+
+# ---- what is drawn ----
+
+
+@pytest.mark.parametrize("sections, axis", [
+    ({"boundary": [{"component": "x", "velocity": 0}, {"component": "y", "velocity": "t"}], "initial": {"velocity": {"z": 1}}}, 1),
+    ({"boundary": [{"component": "x", "velocity": 0.0}], "bodies": [{"velocity": {"x": 0, "y": 0, "z": "-300"}}],
+      "initial": {"velocity": {"x": 1}}}, 2),
+    ({"boundary": [{"component": "x", "displacement": "0*t"}]}, 0),
+    ({"bodies": [{"velocity": {"x": 3}}, {"velocity": {"y": 1}}, {"velocity": {"x": 0, "y": 2}}]}, 1),
+    ({"bodies": [{"shape": "plane"}], "initial": {"velocity": {"x": "-x", "y": "y"}}}, 0),  # x is the longer of them
+    ({"initial": {"displacement": {"y": 1e-3}}}, 1), ({"initial": {"velocity": {"z": 0}}}, 0), ({}, 0)])
+def test_axis_is_that_along_which_the_case_pulls(sections, axis):
+    assert plot.pulled_axis(sections, np.array([3, 1, 2])) == axis
+
+
+def test_view_follows_case_and_options():
+    case, size = {"boundary": [{"component": "y", "velocity": 1}]}, np.array([3, 1, 2])
+    assert plot.view_of(case, size) == plot.View("stress", "yy", 1)
+    assert plot.view_of(case, size, axis="z", time=1e-6) == plot.View("stress", "zz", 2, 1e-6)
+    assert plot.view_of(case, size, field="velocity") == plot.View("velocity", "y", 1)
+    assert plot.view_of(case, size, field="displacement", component="x") == plot.View("displacement", "x", 1)
+    assert plot.view_of(case, size, component="xy") == plot.View("stress", "xy", 1)
+    with pytest.raises(rhegma.BadInput, match="--component zz: velocity has x, y, z"):
+        plot.view_of(case, size, field="velocity", component="zz")
+
+
+@pytest.mark.parametrize("view, column, label, factor", [(plot.View("velocity", "x", 0), "p-1_vx", "v$_{x}$ (m/s)", 1),
+                                                         (plot.View("displacement", "y", 1), "p-1_uy", "u$_{y}$ (µm)", 1e6),
+                                                         (plot.View("stress", "xy", 0), "p-1_sxy", "σ$_{xy}$ (MPa)", 1e-6)])
+def test_history_of_other_fields(view, column, label, factor):
+    value = np.linspace(0, 5, len(TIME)) / factor
+    table = synthetic.structured({"time": TIME, column: value, "p-1_szz": 0 * TIME})
+    figure = plot.plot_history(table, CASE, PROBES[:1], view, synthetic.SUMMARY)
+    assert line(figure.axes[0], "computed")[1] == pytest.approx(value * factor) and figure.axes[0].get_ylabel() == label
+    assert texts(figure)[0] == f"spall: {view.field} at the probes" and "1-D theory" not in labels(figure.axes[0])
+
+
+def test_profile_is_along_any_axis():
+    figure, axes = plt.subplots()
+    plot.draw_profile(axes, BOX, ACROSS + [0.5, 0, 0], np.ones(3), 0, "mm")
+    assert axes.get_xlim() == pytest.approx((-1, 1)) and axes.get_xlabel() == "x (mm)"
+    filled = {patch.get_x() + patch.get_width() / 2: patch.get_height() for patch in axes.patches if patch.get_height() > 0}
+    assert sorted(filled.values()) == pytest.approx([0.3, 3, 3]) and all(
+        abs(x - at) <= 1 / 61 for x, at in zip(sorted(filled), (0.5 - 1 / 3, 0.5, 0.5 + 1 / 3)))
+    assert not axes.get_lines()  # 3 of a section of 24
+
+
+@pytest.mark.parametrize("time, words", [(None, "t = 4.4 ms"), (1e-3, "t = 1 ms"), (2.6e-3, "t = 1 ms"), (9, "t = 4.4 ms")])
+def test_fracture_surface_of_the_nearest_output(tmp_path, monkeypatch, time, words):
+    points, cells, frames = crack_fields()
+    frames[0].update({name: frames[1][name] for name in frames[1] if name != "time"})
+    run = synthetic.write_run(tmp_path / "run", history=STRESS, fields=(points, cells, frames))
+    assert texts(drawn(monkeypatch, run, tmp_path, time=time)["crack.png"])[1].startswith(words + " ")
 
 
 def test_plot_of_a_real_run(run, monkeypatch):
