@@ -98,8 +98,8 @@ def test_files_and_identifiers_that_documents_name_exist(document, sources):
 
 
 def test_dead_files_and_identifiers_are_told(tmp_path):
-    (tmp_path / "t.md").write_text("`src/run.c` `src/gone.c` `gone.h` `solver/step.c` `step.c` `rg_solver` `rg_gone(x)` `rg_NAME_x`\n"
-                                   "```\n`src/no.c`\n```\n")
+    text = "`src/run.c` `src/gone.c` `gone.h` `solver/step.c` `step.c` `rg_solver` `rg_gone(x)` `rg_NAME_x`\n```\n`src/no.c`\n```\n"
+    (tmp_path / "t.md").write_text(text)
     assert dead_paths(tmp_path / "t.md") == ["src/gone.c", "gone.h"]
     assert dead_names(tmp_path / "t.md", "rg_solver rg_gone_too") == ["rg_gone"]
 
@@ -131,3 +131,25 @@ def test_front_page_is_short_and_of_this_version():
     text = (ROOT / "README.md").read_text()
     assert len(text.splitlines()) <= 150
     assert re.search(r"version = \{(.*)\}", text)[1] == re.search(r"version: '(.*?)'", (ROOT / "meson.build").read_text())[1]
+
+
+def ragged_rows(document):
+    """Rows of tables that have other cells than the first: a | that is not meant to part them."""
+    found, cells = [], None
+    for line in document.read_text().splitlines():
+        count = line.replace("\\|", "").count("|") if line.startswith("|") else None
+        if count is not None and cells is not None and count != cells:
+            found.append(line)
+        cells = count if cells is None or count is None else cells
+    return found
+
+
+@pytest.mark.parametrize("document", DOCUMENTS, ids=str)
+def test_rows_of_tables_have_as_many_cells(document):
+    assert ragged_rows(ROOT / document) == []
+
+
+def test_ragged_rows_are_told(tmp_path):
+    text = "| a | b |\n| --- | --- |\n| 1 | 2 |\n| $`|x|`$ | 2 |\n| `a\\|b` | 2 |\n\n| a |\n| --- |\n| 1 |\n"
+    (tmp_path / "t.md").write_text(text)
+    assert ragged_rows(tmp_path / "t.md") == ["| $`|x|`$ | 2 |"]
