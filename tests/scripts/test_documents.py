@@ -1,11 +1,13 @@
 """Documents: each row of a table that a command prints stands there as printed; links, files and identifiers exist."""
 
+import os
 import re
 import subprocess
 import sys
 
 import pytest
-from conftest import PROGRAM, ROOT, SINGLE
+import yaml
+from conftest import ENVIRONMENT, PROGRAM, ROOT, SINGLE
 
 RECORDS = ROOT / "perf/results"
 PRINTED = {
@@ -98,7 +100,7 @@ def test_files_and_identifiers_that_documents_name_exist(document, sources):
 
 
 def test_dead_files_and_identifiers_are_told(tmp_path):
-    text = "`src/run.c` `src/gone.c` `gone.h` `solver/step.c` `step.c` `rg_solver` `rg_gone(x)` `rg_NAME_x`\n```\n`src/no.c`\n```\n"
+    text = "`src/run.c` `src/gone.c` `gone.h` `solver/step.c` `step.c` `rg_solver` `rg_gone(x)` `rg_NAME_x`\n```\n`src/no.c`\n```"
     (tmp_path / "t.md").write_text(text)
     assert dead_paths(tmp_path / "t.md") == ["src/gone.c", "gone.h"]
     assert dead_names(tmp_path / "t.md", "rg_solver rg_gone_too") == ["rg_gone"]
@@ -153,3 +155,28 @@ def test_ragged_rows_are_told(tmp_path):
     text = "| a | b |\n| --- | --- |\n| 1 | 2 |\n| $`|x|`$ | 2 |\n| `a\\|b` | 2 |\n\n| a |\n| --- |\n| 1 |\n"
     (tmp_path / "t.md").write_text(text)
     assert ragged_rows(tmp_path / "t.md") == ["| $`|x|`$ | 2 |"]
+
+
+def blocks(document, language):
+    return re.findall(rf"^```{language}\n(.*?)^```", (ROOT / document).read_text(), re.M | re.S)
+
+
+def parts_of_cases():
+    """Blocks of YAML in documents: a whole case, or some keys of one."""
+    return [(str(document), text) for document in DOCUMENTS for text in blocks(document, "yaml")]
+
+
+@pytest.mark.skipif(SINGLE, reason="some materials need double precision")
+@pytest.mark.parametrize("document, text", parts_of_cases(), ids=lambda value: value if value.endswith(".md") else "")
+def test_cases_in_documents_are_accepted(document, text, tmp_path):
+    """The front page's as it is; keys of others in that, on a box around the origin."""
+    case = yaml.safe_load(blocks("README.md", "yaml")[0])
+    if document != "README.md":
+        case["mesh"]["origin"] = [-0.2e-3, -0.2e-3, -2e-3]
+        case |= yaml.safe_load(text)
+    case["materials"] = [{key: value for key, value in entry.items() if key != "set"} | {"where": entry.get("where", "x > 0")}
+                         for entry in case.get("materials", [])]  # there is no mesh file
+    (tmp_path / "case.yaml").write_text(yaml.safe_dump(case))
+    command, environment = [PROGRAM, "check", tmp_path / "case.yaml"], ENVIRONMENT | os.environ
+    said = subprocess.run(command, capture_output=True, text=True, env=environment)
+    assert said.returncode == 0, said.stderr
