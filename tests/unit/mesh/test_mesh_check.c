@@ -298,8 +298,9 @@ static void test_three_at_one_place(void **state) {
 /* ---- hanging nodes ---- */
 
 /* Two tetrahedra without a common vertex: the first has triangle (0, 0, 0), (4, 0, 0), (1, 2, 0), in the
- * order of its numbers or another, and the second one corner at p. */
-static rg_gid hangs_on(const double p[3], int order) {
+ * order of its numbers or another, and the second one corner at p; all of it moved by `away` along each axis.
+ */
+static rg_gid hangs_on_at(const double p[3], int order, double away) {
     static const double triangle[3][3] = {{0, 0, 0}, {4, 0, 0}, {1, 2, 0}};
     double x[8][3] = {{0}};
     rg_gid corner[8] = {0, 1, 2, 3, 4, 5, 6, 7}, neighbour[8];
@@ -312,6 +313,9 @@ static rg_gid hangs_on(const double p[3], int order) {
     for (int k = 5; k < 8; k++) {
         memcpy(x[k], (const double[]){p[0] + (k == 5), p[1] + 0.5 * (k == 6), -6 + (k == 7)}, sizeof x[k]);
     }
+    for (int k = 0; k < 24; k++) {
+        x[k / 3][k % 3] += away;
+    }
     rg_mesh m = {
         .vertices = 8, .elements = 2, .x = x[0], .corner = corner, .neighbour = neighbour, .face = face};
     rg_mesh_connect(&m);
@@ -322,6 +326,14 @@ static rg_gid hangs_on(const double p[3], int order) {
         assert_true(v == 4 || of[v] < 0);
     }
     rg_free(of);
+    return found;
+}
+
+/* The same wherever the mesh lies. */
+static rg_gid hangs_on(const double p[3], int order) {
+    rg_gid found = hangs_on_at(p, order, 0);
+    assert_int_equal(hangs_on_at(p, order, -64), found);
+    assert_int_equal(hangs_on_at(p, order, 64), found);
     return found;
 }
 

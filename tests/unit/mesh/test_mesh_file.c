@@ -173,6 +173,22 @@ static void test_partition(void **state) {
     rg_mesh_file_close(f);
 }
 
+/* Numbers are kept in 32 bits where all of them fit, else in 64. */
+static void test_large_numbers(void **state) {
+    (void)state;
+    static const rg_gid number[] = {INT32_MAX, INT32_MAX + (rg_gid)1, INT32_MIN, INT32_MIN - (rg_gid)1};
+    for (size_t k = 0; k < sizeof number / sizeof *number; k++) {
+        rg_mesh *m = make();
+        m->original[17] = number[k];
+        rg_mesh_file_write(damaged, m, 0, NULL);
+        rg_mesh *n = rg_mesh_file_read(damaged);
+        assert_true(n->original[17] == number[k] && equal(m, n));
+        rg_mesh_free(n);
+        rg_mesh_free(m);
+    }
+    unlink(damaged);
+}
+
 static void test_same_mesh_same_file(void **state) {
     char *bytes[2];
     long size[2];
@@ -427,7 +443,8 @@ int main(void) {
         cmocka_unit_test(test_graph),           cmocka_unit_test(test_partition),
         cmocka_unit_test(test_truncated),       cmocka_unit_test(test_flipped),
         cmocka_unit_test(test_damage_is_named), cmocka_unit_test(test_same_mesh_same_file),
-        cmocka_unit_test(test_unsound),         cmocka_unit_test(test_parts),
+        cmocka_unit_test(test_large_numbers),   cmocka_unit_test(test_unsound),
+        cmocka_unit_test(test_parts),
     };
     return cmocka_run_group_tests(tests, write_file, remove_file);
 }

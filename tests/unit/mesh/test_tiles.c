@@ -11,6 +11,7 @@
 #include <string.h>
 
 #include <cmocka.h>
+#include <metis.h>
 
 #include "base/error.h"
 #include "base/mem.h"
@@ -337,12 +338,54 @@ static void test_weights(void **state) {
     rg_mesh_free(regular);
 }
 
+/* ---- METIS refuses ---- */
+
+static int refusal = METIS_OK; /* what METIS returns in place of a partition */
+
+#define REFUSES(method)                                                                                      \
+    int __real_##method(idx_t *, idx_t *, idx_t *, idx_t *, idx_t *, idx_t *, idx_t *, idx_t *, real_t *,    \
+                        real_t *, idx_t *, idx_t *, idx_t *);                                                \
+    int __wrap_##method(idx_t *, idx_t *, idx_t *, idx_t *, idx_t *, idx_t *, idx_t *, idx_t *, real_t *,    \
+                        real_t *, idx_t *, idx_t *, idx_t *);                                                \
+    int __wrap_##method(idx_t *n, idx_t *c, idx_t *start, idx_t *edge, idx_t *weight, idx_t *size,           \
+                        idx_t *faces, idx_t *parts, real_t *share, real_t *excess, idx_t *options,           \
+                        idx_t *cut, idx_t *part) {                                                           \
+        return refusal != METIS_OK ? refusal                                                                 \
+                                   : __real_##method(n, c, start, edge, weight, size, faces, parts, share,   \
+                                                     excess, options, cut, part);                            \
+    }
+REFUSES(METIS_PartGraphKway)
+REFUSES(METIS_PartGraphRecursive)
+
+static rg_tile_graph *refused; /* made by the parent: a child has none of its threads */
+
+static void partition_refused(void) {
+    int32_t part[MOST];
+    rg_tile_graph_partition(refused, 3, part);
+}
+
+static void test_refusal(void **state) {
+    (void)state;
+    const char *words = "rhegma: METIS could not partition 12 tiles for 3 ranks: ";
+    char said[200];
+    rg_mesh *m = make();
+    refused = rg_tile_graph_make(m, 30);
+    for (int k = 0; k < 2; k++) {
+        refusal = k == 0 ? METIS_ERROR_MEMORY : METIS_ERROR;
+        snprintf(said, sizeof said, "%s%s\n", words, k == 0 ? "out of memory" : "internal error");
+        expect_said(partition_refused, RG_FAILURE, said);
+    }
+    refusal = METIS_OK;
+    rg_tile_graph_free(refused);
+    rg_mesh_free(m);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_graph),        cmocka_unit_test(test_quality),
         cmocka_unit_test(test_partition),    cmocka_unit_test(test_too_many_parts),
         cmocka_unit_test(test_distribution), cmocka_unit_test(test_most_elements_of_a_rank),
-        cmocka_unit_test(test_weights),
+        cmocka_unit_test(test_weights),      cmocka_unit_test(test_refusal),
     };
     return cmocka_run_group_tests_name("tiles", tests, NULL, NULL);
 }

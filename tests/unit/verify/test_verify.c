@@ -274,6 +274,13 @@ static void test_table(void) {
 
 /* A state as it begins. */
 #define AT_ONCE "time.end=1e-30", "boundary=[]"
+#define MOVING_CORNER(along, x, y, z)                                                                        \
+    {                                                                                                        \
+        "rotation, moving at " x ", " y ", " z, rg_verify_rotation,                                          \
+            {AT_ONCE, "initial.velocity={" along ": '" x " && " y " && " z " ? 5 : 0'}"}, "fh", {            \
+            5 / BAR_SPEED                                                                                    \
+        }                                                                                                    \
+    }
 
 #define MOVED     (1e-5 / 1.7e-3)        /* by 1e-5 times the size, over the largest displacement */
 #define AXIAL     (0.79 / (1.21 * 0.58)) /* (lambda + 2 mu)/E */
@@ -341,6 +348,14 @@ static const struct {
      {AT_ONCE, "initial.velocity={z: 5}"},
      "fh",
      {5 / BAR_SPEED}},
+    MOVING_CORNER("x", "x < 1e-5", "y < 1e-5", "z < 1e-5"),
+    MOVING_CORNER("y", "x > 99e-5", "y < 1e-5", "z < 1e-5"),
+    MOVING_CORNER("z", "x < 1e-5", "y > 99e-5", "z < 1e-5"),
+    MOVING_CORNER("x", "x > 99e-5", "y > 99e-5", "z < 1e-5"),
+    MOVING_CORNER("y", "x < 1e-5", "y < 1e-5", "z > 99e-5"),
+    MOVING_CORNER("z", "x > 99e-5", "y < 1e-5", "z > 99e-5"),
+    MOVING_CORNER("x", "x < 1e-5", "y > 99e-5", "z > 99e-5"),
+    MOVING_CORNER("y", "x > 99e-5", "y > 99e-5", "z > 99e-5"),
     {"rotation, stretched",
      rg_verify_rotation,
      {AT_ONCE, "initial.displacement.x=-1.001*y - x"},
