@@ -22,15 +22,16 @@ static void assert_near(double found, double expected) {
 /* Bulk modulus E/(3 (1 - 2 nu)), shear modulus E/(2 (1 + nu)); K = lambda + 2/3 mu. */
 static void test_elastic(void **state) {
     (void)state;
-    static const rg_material_model models[] = {RG_MATERIAL_NEO_HOOKEAN, RG_MATERIAL_LINEAR_ELASTIC,
-                                               RG_MATERIAL_ST_VENANT_KIRCHHOFF, RG_MATERIAL_J2};
-    for (int k = 0; k < 4; k++) {
-        rg_material_input in = {.model = models[k], .young = 210e9, .poisson = 0.3, .density = 7800};
+    for (rg_material_model model = 0; model < RG_MATERIAL_MODELS; model++) {
+        if ((rg_material_inside(model) & RG_TAKES_YOUNG) == 0) {
+            continue;
+        }
+        rg_material_input in = {.model = model, .young = 210e9, .poisson = 0.3, .density = 7800};
         for (int p = 0; p < RG_PARAMETERS; p++) {
             in.parameter[p] = 1e6 * (p + 2);
         }
         rg_material m = rg_material_make(&in);
-        assert_true(m.model == models[k] && m.density == 7800);
+        assert_true(m.model == model && m.density == 7800);
         assert_near(m.mu, 210e9 / 2.6);
         assert_near(m.lambda + 2 * m.mu / 3, 210e9 / 1.2);
         assert_near(rg_material_dilatational(&m), sqrt((210e9 / 1.2 + 4 * 210e9 / 2.6 / 3) / 7800));

@@ -330,6 +330,16 @@ static void allocate(input *in) {
     in->cracked = input_alloc(INPUT_EBLOCKS);
 }
 
+/* A solid's own parameters, of which none is 0: stresses as fractions of the shear modulus. */
+static void set_parameters(rg_material *m) {
+#define UNIT(NAME, key, unit, ...) unit,
+    static const char *const units[RG_PARAMETERS] = {RG_MATERIAL_PARAMETERS(UNIT)};
+    for (int k = 0; k < RG_PARAMETERS; k++) {
+        bool stress = units[k] != NULL && strcmp(units[k], "Pa") == 0;
+        m->of.parameter[k] = (0.2 + 0.05 * k) * (stress ? m->mu : 1);
+    }
+}
+
 input *input_make(input_kind kind, rg_cohesive law, uint64_t seed, uint64_t order) {
     const double young = 260e9, nu = 0.21;
     size_t number[VERTICES];
@@ -339,6 +349,7 @@ input *input_make(input_kind kind, rg_cohesive law, uint64_t seed, uint64_t orde
     in->law = law;
     in->material = (rg_material){
         .lambda = young * nu / ((1 + nu) * (1 - 2 * nu)), .mu = young / (2 + 2 * nu), .density = 3690};
+    set_parameters(&in->material);
     allocate(in);
     shuffle(in->element, INPUT_ESLOTS, order ? rg_hash(order, 1) : 0);
     shuffle(in->slot, INPUT_ISLOTS, order ? rg_hash(order, 2) : 0);
