@@ -1,5 +1,4 @@
 /* Every mistake in a case file is named with its place. */
-#include "case/tree.h"
 #include "support/case_input.h"
 
 #define CELLS    "allowed: [x, y, z], each integer >= 1 and <= 100000\n"
@@ -83,6 +82,9 @@ static const mistake mistakes[] = {
     {"output:\n", "output:\n  interval: 1.5\n", ":18:13: output.interval: 1.5: out of range; " INTERVAL},
     {"output:\n", "output:\n  interval: often\n", ":18:13: output.interval: often: not a number; " INTERVAL},
     /* words */
+    {"neo-hookean", "neohookean",
+     ":5:10: material.model: neohookean: not one of the allowed words; allowed: {models}; did you mean "
+     "'neo-hookean'?\n"},
     {"linear", "lnear",
      ":10:8: interface.law: lnear: not one of the allowed words; allowed: "
 #define RG_LAW(NAME, name, word, ...) word ", "
@@ -324,19 +326,6 @@ static void test_mistakes(void **state) {
     expect_mistakes(mistakes, sizeof mistakes / sizeof *mistakes);
 }
 
-/* All models of the registry are offered, the nearest one by name. */
-static void test_model_word(void **state) {
-    (void)state;
-    char expected[512] = ":5:10: material.model: neohookean: not one of the allowed words; allowed: ";
-    for (int m = 0; m < RG_MATERIAL_MODELS; m++) {
-        rg_text_add(expected, sizeof expected, "%s%s", m > 0 ? ", " : "",
-                    rg_material_word((rg_material_model)m));
-    }
-    rg_text_add(expected, sizeof expected, "; did you mean 'neo-hookean'?\n");
-    write_changed("neo-hookean", "neohookean");
-    expect_messages(0, NULL, expected);
-}
-
 /* An embedded NUL must not hide what follows it. */
 static void test_nul_byte(void **state) {
     (void)state;
@@ -425,7 +414,7 @@ static void test_ceramic(void **state) {
         ":19:20: material.transition_rate: 0: out of range; allowed: number > 0 (1/s)\n"
         ":20:18: material.rate_exponent: 0.5: out of range; allowed: number >= 1\n"
         ":21:3: material.young: 260e9: not used, because material.model is deshpande-evans; it "
-        "belongs to neo-hookean, linear-elastic, st-venant-kirchhoff, j2\n");
+        "belongs to {elastic}\n");
     write_changed(elastic, ceramic);
     static const char *const many[] = {"material.flaw_density=1e15"};
     expect_messages(
@@ -507,16 +496,12 @@ static void test_unreadable(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_mistakes),
-        cmocka_unit_test(test_model_word),
-        cmocka_unit_test(test_nul_byte),
-        cmocka_unit_test(test_deep_nesting),
-        cmocka_unit_test(test_override_mistakes),
+        cmocka_unit_test(test_mistakes),     cmocka_unit_test(test_nul_byte),
+        cmocka_unit_test(test_deep_nesting), cmocka_unit_test(test_override_mistakes),
 #ifndef RG_SINGLE
         cmocka_unit_test(test_metal),
 #endif
-        cmocka_unit_test(test_ceramic),
-        cmocka_unit_test(test_all_at_once),
+        cmocka_unit_test(test_ceramic),      cmocka_unit_test(test_all_at_once),
         cmocka_unit_test(test_unreadable),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);

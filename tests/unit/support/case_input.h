@@ -17,6 +17,7 @@
 #include "base/mem.h"
 #include "case/case.h"
 #include "case/read.h"
+#include "case/tree.h"
 
 /* The smallest case; the tests of mistakes change one place of it and know its lines and columns. */
 static const char base[] = "mesh:\n"
@@ -91,15 +92,36 @@ static inline rg_case *read_good(const char *file, int overrides, const char *co
     return c;
 }
 
-/* Expects exactly `lines`, in each of which a leading ':' stands for the file's path and ':'. */
+/* Puts the names of the registry's materials with all bits of `inside` in place of `mark`. */
+static inline void name_models(char *text, size_t size, const char *mark, unsigned inside) {
+    char *found = strstr(text, mark);
+    while (found != NULL) {
+        char rest[8192];
+        const char *join = "";
+        snprintf(rest, sizeof rest, "%s", found + strlen(mark));
+        *found = '\0';
+        for (rg_material_model m = 0; m < RG_MATERIAL_MODELS; m++) {
+            if ((rg_material_inside(m) & inside) == inside) {
+                rg_text_add(text, size, "%s%s", join, rg_material_word(m));
+                join = ", ";
+            }
+        }
+        rg_text_add(text, size, "%s", rest);
+        found = strstr(text, mark);
+    }
+}
+
+/* Expects exactly `lines`, in each of which a leading ':' stands for the file's path and ':', {models} for
+ * all models of materials, and {elastic} for those that take Young's modulus. */
 static inline void expect_messages(int overrides, const char *const override[], const char *lines) {
     char expected[8192] = "", *messages = NULL;
     for (const char *line = lines; *line != '\0';) {
         int length = (int)(strchr(line, '\n') - line) + 1;
-        size_t used = strlen(expected);
-        snprintf(expected + used, sizeof expected - used, "%s%.*s", *line == ':' ? path : "", length, line);
+        rg_text_add(expected, sizeof expected, "%s%.*s", *line == ':' ? path : "", length, line);
         line += length;
     }
+    name_models(expected, sizeof expected, "{models}", 0);
+    name_models(expected, sizeof expected, "{elastic}", RG_TAKES_YOUNG);
     size_t before = rg_alloc_total();
     rg_case *c = read_case(path, overrides, override, &messages);
     assert_string_equal(messages, expected);
