@@ -8,57 +8,26 @@
 #include "partition/material.h"
 #include "partition/mesh_case.h"
 #include "partition/patch.h"
+#include "solver/fields.h"
 #include "solver/law.h"
 #include "solver/strength.h"
 #include "solver/tile.h"
 
-static void allocate_fields(rg_solver *s) {
-    const rg_domain *d = s->domain;
-    size_t blocks = d->blocks, rows = d->own_rows + d->shared;
-    s->u = RG_NEW(rg_real, blocks * RG_NODE_BLOCK);
-    s->velocity = RG_NEW(rg_real, blocks * RG_NODE_BLOCK);
-    s->step_velocity = RG_NEW(rg_real, blocks * RG_NODE_BLOCK);
-    s->acceleration = s->assembly != NULL ? RG_NEW(rg_real, blocks * RG_NODE_BLOCK) : NULL;
-    s->stiffening = RG_NEW(rg_real, blocks * RG_LANES);
-    s->tile_stiffening = RG_NEW(rg_real, d->tiles);
-    s->tile_opening_rate = rg_law_steps(&s->law) > 0 ? RG_NEW(double, d->tiles) : NULL;
-    s->crack_stride = rg_crack_stride(&s->law);
-    s->crack = rg_alloc_sparse(d->iblocks * s->crack_stride, sizeof *s->crack);
-    s->history = s->history_stride > 0 ? RG_NEW(rg_real, blocks * s->history_stride) : NULL;
-    bool viscous = s->input->viscosity.linear > 0 || s->input->viscosity.quadratic > 0;
-    s->heat = viscous ? RG_NEW(double, blocks *RG_LANES) : NULL;
-    s->cracked = RG_NEW(uint8_t, blocks);
-    s->broken = RG_NEW(uint8_t, d->iblocks * RG_LANES);
-    s->unlinked = RG_NEW(uint8_t, d->iblocks * RG_LANES);
-    s->active = RG_NEW(uint8_t, d->iblocks);
+/* What the sweeps need beside the fields. */
+static void allocate_rows(rg_solver *s) {
+    size_t rows = s->domain->own_rows + s->domain->shared;
     s->rows[0] = RG_NEW(rg_real, rows * RG_TRACE_ROW);
     s->rows[1] = RG_NEW(rg_real, rows * RG_TRACE_ROW);
     s->tractions = RG_NEW(rg_real, rows * RG_TILE_FACE_ROW);
-    s->watched = RG_NEW(uint8_t, d->tiles);
     s->work = RG_NEW(rg_workspace, (size_t)s->threads);
 }
 
 static void place_tile(rg_solver *s, const rg_tile *t) {
-    const size_t nodal = sizeof(rg_real[RG_NODE_BLOCK]), trace = sizeof(rg_real[RG_TRACE_ROW]);
-    const size_t end = t->row + rg_tile_face_blocks(t) * RG_LANES;
-    const struct {
-        void *array;              /* NULL: there is no such */
-        size_t bytes, begin, end; /* of an item; the tile's items */
-    } part[] = {
-        {s->u, nodal, t->begin, t->end},
-        {s->velocity, nodal, t->begin, t->end},
-        {s->acceleration, nodal, t->begin, t->end},
-        {s->heat, sizeof(double[RG_LANES]), t->begin, t->end},
-        {s->history, s->history_stride * sizeof *s->history, t->begin, t->end},
-        {s->tractions, sizeof(rg_real[RG_TILE_FACE_ROW]), t->row, end},
-        {s->rows[0], trace, t->row, end},
-        {s->rows[1], trace, t->row, end},
-    };
-    for (size_t i = 0; i < sizeof part / sizeof *part; i++) {
-        if (part[i].array != NULL) {
-            memset((char *)part[i].array + part[i].begin * part[i].bytes, 0,
-                   (part[i].end - part[i].begin) * part[i].bytes);
-        }
+    size_t rows = rg_tile_face_blocks(t) * RG_LANES;
+    rg_fields_touch(s, t);
+    memset(s->tractions + t->row * RG_TILE_FACE_ROW, 0, rows * sizeof(rg_real[RG_TILE_FACE_ROW]));
+    for (int k = 0; k < 2; k++) {
+        memset(s->rows[k] + t->row * RG_TRACE_ROW, 0, rows * sizeof(rg_real[RG_TRACE_ROW]));
     }
 }
 
@@ -126,7 +95,9 @@ rg_solver *rg_solver_make_from_part(const rg_case *input, rg_part *part, MPI_Com
     build_domain(s, &m);
     s->constraints = rg_constraints_make(input, s->domain, s->part, s->material, s->assembly);
     s->bodies = rg_bodies_make(input, s->domain, s->part, s->material, s->threads, comm);
-    allocate_fields(s);
+    s->crack_stride = rg_crack_stride(&s->law);
+    rg_fields_allocate(s);
+    allocate_rows(s);
     place_fields(s);
     rg_law_start(s);
     if (part->original == NULL) { /* a patch has no need of them */
@@ -157,13 +128,10 @@ void rg_solver_free(rg_solver *s) {
     for (int t = 0; t < s->threads; t++) {
         rg_workspace_free(&s->work[t]);
     }
-    void *blocks[] = {
-        s->u,         s->velocity, s->step_velocity, s->crack,   s->stiffening, s->tile_stiffening,
-        s->cracked,   s->broken,   s->unlinked,      s->active,  s->rows[0],    s->rows[1],
-        s->tractions, s->watched,  s->work,          s->history, s->heat,       s->acceleration};
+    rg_fields_free(s);
+    void *blocks[] = {s->rows[0], s->rows[1], s->tractions, s->work};
     rg_free(s->material);
     rg_free(s->scale);
-    rg_free(s->tile_opening_rate);
     rg_free(s->tile_seconds);
     rg_constraints_free(s->constraints);
     rg_bodies_free(s->bodies);

@@ -21,6 +21,7 @@
 #include "kernels.h"
 #include "solver/body.h"
 #include "solver/constraint.h"
+#include "solver/field_list.h"
 #include "solver/phases.h"
 
 /* What one thread needs to work on a tile. */
@@ -46,24 +47,19 @@ struct rg_solver {
     rg_conforming_faces *conforming_faces; /* of form continuous; NULL in others */
     rg_assembly *assembly;                 /* likewise */
 
-    rg_real *u, *velocity, *step_velocity; /* layout.h; velocity is that of the half step, step_velocity that
-                                              at the time of u, where it was asked for */
-    rg_real *acceleration; /* of each element for itself, then of the nodes; only with an assembly */
-    rg_real *crack;        /* state of all broken points, and the memory of their law: layout.h */
-    size_t crack_stride;   /* values of a block of interfaces */
-    rg_real *history;      /* layout.h: of the materials; NULL where none has any */
-    size_t history_stride; /* values of a block: as many as the longest history needs */
-    double *heat;          /* [blocks][lane]: dissipated by bulk viscosity (J); NULL where there is none */
-    rg_real *stiffening;   /* [blocks][lane] */
-    rg_real *tile_stiffening;
+#define MEMBER(member, type, per, values, there, saved) RG_TYPE_OF_##type *member;
+    struct {
+        RG_FIELDS(MEMBER)
+    };
+#undef MEMBER
+    size_t crack_stride,
+        history_stride;         /* values of a block of crack and history: as many as the longest needs */
     double *tile_seconds;       /* [tiles]: that the sweeps took (solver/balance.h); NULL: nobody asks */
-    double *tile_opening_rate;  /* solver/step_limiter.h; NULL: the law asks for no steps */
     double opening_rate;        /* largest on all ranks (1/s) */
     double stiffening_anywhere; /* largest on all ranks; infinite if not finite */
     int stop_request; /* largest of all ranks (base/interrupt.h) when the forces were last computed */
     double here[2], anywhere[2]; /* both on their way */
     MPI_Request stiffening_request;
-    uint8_t *cracked, *broken, *unlinked, *active;
     rg_real *rows[2], *tractions; /* trace rows, of the current state and of the next; traction rows */
     int current;                  /* which of `rows` */
     rg_halo *halo_u[2], *halo_t;
@@ -72,7 +68,6 @@ struct rg_solver {
     rg_bodies *bodies;
     rg_watcher *watch;
     void *watch_context;
-    uint8_t *watched; /* [tiles] */
 
     int materials;
     rg_material *material; /* [materials] */

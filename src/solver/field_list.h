@@ -1,0 +1,46 @@
+/* The fields of a solver: to add one, add a line here. From it follow the member of rg_solver, its memory,
+ * who touches it first, its place in a checkpoint and its end (solver/fields.c).
+ *
+ * X(member, type, per, values, there, saved)
+ *   type    REAL (of the precision of this build), DOUBLE or BYTE
+ *   per     ELEMENT, FACE    [block][values][lane], in the layout of kernels/layout.h
+ *           SPARSE_FACE      the same, of memory that is taken as it is written: for what few faces have
+ *           BLOCK, FACE_BLOCK, TILE   [values]
+ *   values, there   of the solver `s`, when its domain and law are known; not there: NULL
+ *   saved   name of its dataset in a checkpoint; NULL: it follows from the others (rg_solver_resume). FACE:
+ * kept for interfaces with a broken point alone */
+#ifndef RG_FIELD_LIST_H
+#define RG_FIELD_LIST_H
+
+#define RG_FIELDS(X)                                                                                         \
+    /* m; m/s at the half step; m/s at the time of u, where it was asked for */                              \
+    X(u, REAL, ELEMENT, 3 * RG_NODES, true, "displacement")                                                  \
+    X(velocity, REAL, ELEMENT, 3 * RG_NODES, true, "velocity")                                               \
+    X(step_velocity, REAL, ELEMENT, 3 * RG_NODES, true, NULL)                                                \
+    /* of each element for itself, then of the nodes (m/s^2) */                                              \
+    X(acceleration, REAL, ELEMENT, 3 * RG_NODES, s->assembly != NULL, NULL)                                  \
+    /* points that are broken, and that have left the lift, as bits */                                       \
+    X(broken, BYTE, FACE, 1, true, "broken")                                                                 \
+    X(unlinked, BYTE, FACE, 1, true, "unlinked")                                                             \
+    /* state of all broken points, and the memory of their law */                                            \
+    X(crack, REAL, SPARSE_FACE, s->crack_stride / RG_LANES, true, "crack")                                   \
+    /* of the materials */                                                                                   \
+    X(history, REAL, ELEMENT, s->history_stride / RG_LANES, s->history_stride > 0, "history")                \
+    /* dissipated by bulk viscosity (J) */                                                                   \
+    X(heat, DOUBLE, ELEMENT, 1, is_viscous(s->input), "heat")                                                \
+    /* tangent over the undeformed one, at most (1): of elements, of tiles */                                \
+    X(stiffening, REAL, ELEMENT, 1, true, NULL)                                                              \
+    X(tile_stiffening, REAL, TILE, 1, true, NULL)                                                            \
+    /* largest of a tile's points (1/s), where the law asks for steps (solver/step_limiter.h) */             \
+    X(tile_opening_rate, DOUBLE, TILE, 1, rg_law_steps(&s->law) > 0, NULL)                                   \
+    /* element blocks beside a broken point; interface blocks with one */                                    \
+    X(cracked, BYTE, BLOCK, 1, true, NULL)                                                                   \
+    X(active, BYTE, FACE_BLOCK, 1, true, NULL)                                                               \
+    /* tiles that a watcher looks at */                                                                      \
+    X(watched, BYTE, TILE, 1, true, NULL)
+
+#define RG_TYPE_OF_REAL   rg_real
+#define RG_TYPE_OF_DOUBLE double
+#define RG_TYPE_OF_BYTE   uint8_t
+
+#endif
