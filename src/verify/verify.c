@@ -10,24 +10,24 @@
 
 enum { MOST_RANKS = 32 }; /* a rank needs a tile, and the smallest mesh has 48 */
 
-/* Prints the rows of a check and counts the failed ones. Ranks other than 0 have the same rows and are
- * silent. */
-static int run(rg_verify_check *check, MPI_Comm comm, int rank, FILE *out) {
+/* Prints the rows of a check; whether all hold. Ranks other than 0 have the same rows and are silent. */
+static bool run(rg_verify_check *check, MPI_Comm comm, int rank, FILE *out) {
     static const rg_verify_change none = {0, NULL};
     rg_verify_rows rows = {0};
-    int failed = 0;
+    bool good = true;
     check(comm, &none, &rows);
     for (int k = 0; k < rows.rows; k++) {
-        failed += !rg_verify_holds(&rows.row[k]);
+        good = rg_verify_holds(&rows.row[k]) && good;
         if (rank == 0) {
             rg_verify_print(&rows.row[k], out);
         }
     }
-    return failed;
+    return good;
 }
 
-static int run_all(rg_verify_check *const *check, size_t checks, MPI_Comm comm, int rank, FILE *out) {
-    int ranks, failed = 0;
+static bool run_all(rg_verify_check *const *check, size_t checks, MPI_Comm comm, int rank, FILE *out) {
+    int ranks;
+    bool good = true;
     MPI_Comm_size(comm, &ranks);
     const rg_kernels *kernels = rg_kernels_select();
     if (rank == 0) {
@@ -37,25 +37,25 @@ static int run_all(rg_verify_check *const *check, size_t checks, MPI_Comm comm, 
     }
     double begin = MPI_Wtime();
     for (size_t i = 0; i < checks; i++) {
-        failed += run(check[i], comm, rank, out);
+        good = run(check[i], comm, rank, out) && good;
     }
     if (rank == 0) {
-        fprintf(out, "%s, in %.0f s\n", failed == 0 ? "all checks hold" : "FAILED", MPI_Wtime() - begin);
+        fprintf(out, "%s, in %.0f s\n", good ? "all checks hold" : "FAILED", MPI_Wtime() - begin);
     }
-    return failed;
+    return good;
 }
 
 int rg_verify_run(rg_verify_check *const *check, size_t checks, int most_ranks, MPI_Comm comm, FILE *out) {
-    int rank, failed = 0;
+    int rank, good = 1;
     MPI_Comm some;
     MPI_Comm_rank(comm, &rank);
     MPI_Comm_split(comm, rank < most_ranks ? 0 : MPI_UNDEFINED, rank, &some);
     if (some != MPI_COMM_NULL) {
-        failed = run_all(check, checks, some, rank, out);
+        good = run_all(check, checks, some, rank, out);
         MPI_Comm_free(&some);
     }
-    MPI_Bcast(&failed, 1, MPI_INT, 0, comm);
-    return failed == 0 ? RG_OK : RG_FAILURE;
+    MPI_Bcast(&good, 1, MPI_INT, 0, comm);
+    return good ? RG_OK : RG_FAILURE;
 }
 
 int rg_verify(MPI_Comm comm) {

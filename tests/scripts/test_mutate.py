@@ -38,6 +38,11 @@ def test_kinds(kind, line, expected):
     assert changed(kind, line, before="{") == expected
 
 
+def test_bounds_of_orders_change_nothing():
+    for line in ("    return p->flags < q->flags ? -1 : 1;", "    return (p->row > q->row) - (p->row < q->row);"):
+        assert changed("relaxed bound", line, before="int flags, row;") == []
+
+
 def test_bounds_are_relaxed_between_whole_numbers_alone():
     assert changed("relaxed bound", "    a = i < n;", before="int i, n; double x;") == ["    a = i <= n;"]
     assert changed("relaxed bound", "    a = x < n;", before="int i, n; double x;") == []
