@@ -172,11 +172,27 @@ static void test_headings(void **state) {
     free(text);
 }
 
+/* Nothing is left of what it took. */
+static void test_schema(void **state) {
+    (void)state;
+    static const char begins[] =
+        "{\n  \"$schema\": \"http://json-schema.org/draft-07/schema#\",\n  \"title\": ";
+    char *text = NULL;
+    size_t size = 0, before = rg_alloc_total();
+    FILE *out = open_memstream(&text, &size);
+    assert_non_null(out);
+    rg_schema_write(out);
+    assert_int_equal(fclose(out), 0);
+    assert_int_equal(rg_alloc_total(), before);
+    assert_true(strncmp(text, begins, strlen(begins)) == 0 && strcmp(text + size - 3, "\n}\n") == 0);
+    free(text);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_meanings), cmocka_unit_test(test_every_key_has_a_row),
         cmocka_unit_test(test_rows),     cmocka_unit_test(test_markdown),
-        cmocka_unit_test(test_headings),
+        cmocka_unit_test(test_headings), cmocka_unit_test(test_schema),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

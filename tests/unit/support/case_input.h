@@ -18,6 +18,7 @@
 #include "case/case.h"
 #include "case/read.h"
 #include "case/tree.h"
+#include "cohesive/facts.h"
 
 /* The smallest case; the tests of mistakes change one place of it and know its lines and columns. */
 static const char base[] = "mesh:\n"
@@ -92,27 +93,55 @@ static inline rg_case *read_good(const char *file, int overrides, const char *co
     return c;
 }
 
-/* Puts the names of the registry's materials with all bits of `inside` in place of `mark`. */
-static inline void name_models(char *text, size_t size, const char *mark, unsigned inside) {
-    char *found = strstr(text, mark);
-    while (found != NULL) {
-        char rest[8192];
-        const char *join = "";
-        snprintf(rest, sizeof rest, "%s", found + strlen(mark));
-        *found = '\0';
-        for (rg_material_model m = 0; m < RG_MATERIAL_MODELS; m++) {
-            if ((rg_material_inside(m) & inside) == inside) {
-                rg_text_add(text, size, "%s%s", join, rg_material_word(m));
-                join = ", ";
-            }
+/* "linear, free": the laws with all these bits of their forms. */
+static inline void name_laws(char *text, size_t size, int forms) {
+    const char *join = "";
+    for (int law = 0; law < (int)RG_LAWS; law++) {
+        rg_law_facts facts = rg_law_facts_of((rg_law)law, (double[RG_LAW_SHAPE]){0}, 1);
+        if ((facts.forms & forms) == forms) {
+            rg_text_add(text, size, "%s%s", join, facts.word);
+            join = ", ";
         }
-        rg_text_add(text, size, "%s", rest);
-        found = strstr(text, mark);
     }
 }
 
-/* Expects exactly `lines`, in each of which a leading ':' stands for the file's path and ':', {models} for
- * all models of materials, and {elastic} for those that take Young's modulus. */
+/* The models of materials with all these bits of what is inside. */
+static inline void name_models(char *text, size_t size, int inside) {
+    const char *join = "";
+    for (rg_material_model m = 0; m < RG_MATERIAL_MODELS; m++) {
+        if (((int)rg_material_inside(m) & inside) == inside) {
+            rg_text_add(text, size, "%s%s", join, rg_material_word(m));
+            join = ", ";
+        }
+    }
+}
+
+/* What stands for names of the registries in the messages below. */
+static const struct {
+    const char *mark;
+    void (*name)(char *text, size_t size, int bits);
+    int bits;
+} named[] = {{"$MODELS", name_models, 0},
+             {"$ELASTIC_MODELS", name_models, RG_TAKES_YOUNG},
+             {"$LAWS", name_laws, 0},
+             {"$RIGID_LAWS", name_laws, RG_FORMS_DG},
+             {"$SLOPED_LAWS", name_laws, RG_FORMS_INTRINSIC},
+             {"$FALLING_LAWS", name_laws, RG_ENVELOPE}};
+
+static inline void fill_names(char *text, size_t size) {
+    for (size_t k = 0; k < sizeof named / sizeof *named; k++) {
+        for (char *found = strstr(text, named[k].mark); found != NULL; found = strstr(text, named[k].mark)) {
+            char *rest = rg_text_format("%s", found + strlen(named[k].mark));
+            *found = '\0';
+            named[k].name(text, size, named[k].bits);
+            rg_text_add(text, size, "%s", rest);
+            rg_free(rest);
+        }
+    }
+}
+
+/* Expects exactly `lines`, in each of which a leading ':' stands for the file's path and ':', and $MODELS and
+ * so on for names. */
 static inline void expect_messages(int overrides, const char *const override[], const char *lines) {
     char expected[8192] = "", *messages = NULL;
     for (const char *line = lines; *line != '\0';) {
@@ -120,8 +149,7 @@ static inline void expect_messages(int overrides, const char *const override[], 
         rg_text_add(expected, sizeof expected, "%s%.*s", *line == ':' ? path : "", length, line);
         line += length;
     }
-    name_models(expected, sizeof expected, "{models}", 0);
-    name_models(expected, sizeof expected, "{elastic}", RG_TAKES_YOUNG);
+    fill_names(expected, sizeof expected);
     size_t before = rg_alloc_total();
     rg_case *c = read_case(path, overrides, override, &messages);
     assert_string_equal(messages, expected);
