@@ -37,9 +37,10 @@ def wrong(case):
 
 
 def test_the_document_is_what_the_program_prints():
-    """Else: build/rhegma keys --markdown, below the preface of src/case/README.md."""
-    document = (ROOT / "src/case/README.md").read_text()
-    assert document.startswith("# Case files\n") and document.endswith("\n\n" + said("--markdown"))
+    """Else renew it as it says itself."""
+    preface, *printed = (ROOT / "src/case/README.md").read_text().partition("\n## `mesh`\n")
+    assert preface.startswith("# Case files\n")
+    assert "".join(printed)[1:].splitlines() == said("--markdown").splitlines()
 
 
 def test_part_of_it():
@@ -61,6 +62,49 @@ def test_wrong_arguments(arguments, complaint):
 
 
 # ---- the schema ----
+
+
+def values(*names):
+    """What the schema says of a key: by its names on the way down, lists by []."""
+    node = validator().schema
+    for name in names:
+        node = node["items"] if name == "[]" else node["properties"][name]
+    return node
+
+
+def test_values_as_an_editor_sees_them():
+    assert values("mesh", "cells") == {
+        "description": "cubes of the box along x, y, z, each cut into 6 tetrahedra; required",
+        "type": "array", "minItems": 3, "maxItems": 3, "items": {"type": "integer", "minimum": 1, "maximum": 100000}}
+    assert values("material", "poisson") == {
+        "description": "Poisson's ratio; required", "type": "number", "minimum": 0, "exclusiveMaximum": 0.5}
+    assert values("time", "safety") == {
+        "description": "time step as a fraction of the critical one; default: 0.5", "type": "number", "exclusiveMinimum": 0,
+        "maximum": 1}
+    assert values("material", "density")["description"] == "reference density (kg/m3); required"
+    assert values("initial", "velocity", "z") == {"description": "along z (m/s); default: 0", "type": ["number", "string"]}
+    assert values("boundary", "[]", "velocity")["description"] == "prescribed velocity (m/s); this or displacement"
+    assert values("boundary", "[]", "set")["anyOf"] == [{"enum": ["x-", "x+", "y-", "y+", "z-", "z+"]}, {"type": "string"}]
+    assert values("bodies", "[]", "faces")["minItems"] == 1 and values("bodies", "[]", "faces")["type"] == "array"
+    assert values("output", "times")["minItems"] == 1 and values("output", "fields")["uniqueItems"] is True
+    assert values("output", "interval")["anyOf"] == [
+        {"type": "integer", "minimum": 1}, {"type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": 1}]
+    assert values("interface", "weibull", "keep") == {
+        "description": "what stays that of `energy` on each face; default: energy", "enum": ["energy", "opening"],
+        "enumDescriptions": ["the fracture energy: weak faces open further", "the critical opening: weak faces take less energy"]}
+    assert values()["required"] == ["mesh", "material", "interface", "time"]
+    assert values("interface")["required"] == ["law"] and values("bodies", "[]")["required"] == ["name", "shape", "motion", "at"]
+
+
+def sections(node):
+    yield node
+    for inner in [*node.get("properties", {}).values(), *([node["items"]] if "items" in node else [])]:
+        yield from sections(inner)
+
+
+def test_no_section_takes_what_is_unknown():
+    objects = [node for node in sections(validator().schema) if node.get("type") == "object"]
+    assert len(objects) > 15 and all(node["additionalProperties"] is False for node in objects)
 
 
 @pytest.mark.parametrize("path", CASES, ids=lambda path: path.stem)
