@@ -49,8 +49,9 @@ ROOMS = {
              """numbers exchange files interrupt run h5_parallel rebalance slab checksum writer fragment verify checkpoint_file fragment_table
              fragment_twin ledger probe summary test_output.py test_mesh_faults.py test_faults.py test_cli.py
              test_fragments.py test_meshes.py test_partition.py test_restart.py"""),
-    "plot": (["bench/plot", "bench/drawing.py", "bench/theory.py", "bench/rhegma.py"],
-             "test_plot.py test_bench_modules.py test_plot_impact.py test_studies.py test_scripts.py"),
+    "plot": (["bench/plot", "bench/drawing.py", "bench/theory.py", "bench/rhegma.py",
+              "bench/page.py"],
+             "test_plot.py test_page.py test_bench_modules.py test_plot_impact.py test_studies.py test_scripts.py"),
 }
 ELSEWHERE = ("test_count.py", "test_documents.py", "test_mutate.py", "test_perf.py", "test_scaling.py")  # tests of no room here
 LEAST = 8  # faults of a room in a campaign

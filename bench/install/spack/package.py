@@ -26,6 +26,7 @@ class Rhegma(MesonPackage):
     depends_on("py-numpy", type="run")
     depends_on("py-matplotlib", type="run")
     depends_on("py-h5py", type="run")
+    depends_on("py-plotly", type="run")
     depends_on("py-pyyaml", type="run")
 
     def meson_args(self):
