@@ -279,10 +279,9 @@ def page(run, view, parts):
         parts_of_page.append(section("Fragments", '<div id="fragments"></div>'))
     text = (run.dir / "case.yaml").read_text()
     parts_of_page.append(section("Case", f"<details><summary>all values used</summary><pre>{html.escape(text)}</pre></details>"))
-    embedded = json.dumps(data).replace("</", "<\\/")
     return (f'<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8"><title>{name}</title>\n<style>{STYLE}</style>\n'
             f"<script>{javascript()}</script></head>\n<body>\n<h1>{name}</h1>\n{told}{''.join(parts_of_page)}"
-            f'<script type="application/json" id="data">{embedded}</script>\n<script>{SCRIPT}</script>\n</body></html>\n')
+            f'<script type="application/json" id="data">{json.dumps(data)}</script>\n<script>{SCRIPT}</script>\n</body></html>\n')
 
 
 def write(path, run, view, parts):

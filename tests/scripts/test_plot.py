@@ -602,9 +602,16 @@ def test_plot_writes_beside_the_run_or_elsewhere(tmp_path, monkeypatch):
     ({"boundary": [{"component": "x", "displacement": "0*t"}]}, 0),
     ({"bodies": [{"velocity": {"x": 3}}, {"velocity": {"y": 1}}, {"velocity": {"x": 0, "y": 2}}]}, 1),
     ({"bodies": [{"shape": "plane"}], "initial": {"velocity": {"x": "-x", "y": "y"}}}, 0),  # x is the longer of them
-    ({"initial": {"displacement": {"y": 1e-3}}}, 1), ({"initial": {"velocity": {"z": 0}}}, 0), ({}, 0)])
+    ({"initial": {"velocity": {"y": 1, "z": "1"}}}, 2), ({"initial": {"displacement": {"y": 1e-3}}}, 1), ({"initial": {"velocity": {"z": 0}}}, 0), ({}, 0)])
 def test_axis_is_that_along_which_the_case_pulls(sections, axis):
     assert plot.pulled_axis(sections, np.array([3, 1, 2])) == axis
+
+
+@pytest.mark.parametrize("mesh, component", [("{size: [2, 3, 8]}", "zz"), ("{file: a.h5}", "xx")])
+def test_longest_axis_of_a_run_without_fields(tmp_path, monkeypatch, mesh, component):
+    text = f"mesh: {mesh}\noutput: {{probes: [{{name: p-1, at: [0, 0.5, 1]}}], fields: []}}"
+    run = synthetic.write_run(tmp_path / "run", case=text, history={"time": TIME, **{f"p-1_s{c}": TIME for c in ("xx", "yy", "zz")}})
+    assert drawn(monkeypatch, run, tmp_path)["history.png"].axes[0].get_ylabel().startswith(f"σ$_{{{component}}}$")
 
 
 def test_view_follows_case_and_options():
