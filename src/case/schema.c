@@ -13,21 +13,12 @@ typedef struct {
     bool first; /* nothing stands yet in the object or list that is open */
 } writer;
 
-static void write_string(FILE *out, const char *text) {
-    fputc('"', out);
-    for (; *text != '\0'; text++) {
-        fprintf(out, "%s%c", *text == '"' || *text == '\\' ? "\\" : "", *text);
-    }
-    fputc('"', out);
-}
-
 /* Begins a member of an object, or an item of a list (`name` NULL). */
 static void begin(writer *w, const char *name) {
     fprintf(w->out, "%s%s%*s", w->first ? "" : ",", w->depth > 0 ? "\n" : "", 2 * w->depth, "");
     w->first = false;
     if (name != NULL) {
-        write_string(w->out, name);
-        fputs(": ", w->out);
+        fprintf(w->out, "\"%s\": ", name);
     }
 }
 
@@ -47,9 +38,10 @@ static void close_group(writer *w, char bracket) {
     w->first = false;
 }
 
+/* No text of the registry has a character that would have to be escaped (a test holds that). */
 static void put_text(writer *w, const char *name, const char *text) {
     begin(w, name);
-    write_string(w->out, text);
+    fprintf(w->out, "\"%s\"", text);
 }
 
 static void put_number(writer *w, const char *name, double value) {
@@ -216,9 +208,8 @@ static void put_consequence(writer *w, const char *name, const rg_key_table *tab
     for (int i = 0; i < table->keys; i++) {
         const rg_key *key = &table->key[i];
         const char *part = rg_key_part(key, section, &size);
-        if (part != NULL && part[size] == '\0' && key->need == RG_NEED_REQUIRED &&
-            of(condition, key) == IS_USED) {
-            put_text(w, NULL, part);
+        if (part != NULL && key->need == RG_NEED_REQUIRED && of(condition, key) == IS_USED) {
+            put_text(w, NULL, part); /* of no section inside: their keys have defaults */
         }
     }
     close_group(w, ']');

@@ -43,11 +43,12 @@ ROOMS = {
                 test_cli.py test_restart.py test_partition.py"""),
     "verify": (["src/verify/*"], "verify test_verify.py"),
     "case": (["src/case/*"],
-             """case case_text case_echo case_ranges case_rules case_values case_mistakes numbers strength fuzz-case test_output.py test_laws.py test_bodies.py test_cli.py
+             """case case_text case_echo case_ranges case_rules case_values case_mistakes keys expressions numbers strength fuzz-case
+             test_keys.py test_output.py test_laws.py test_bodies.py test_cli.py
              test_bimaterials.py test_continuous.py test_restart.py"""),
     "base": (["src/*"],
              """numbers exchange files interrupt run h5_parallel rebalance slab checksum writer fragment verify checkpoint_file fragment_table
-             fragment_twin ledger probe summary test_output.py test_mesh_faults.py test_faults.py test_cli.py
+             fragment_twin ledger probe summary test_keys.py test_output.py test_mesh_faults.py test_faults.py test_cli.py
              test_fragments.py test_meshes.py test_partition.py test_restart.py"""),
     "plot": (["bench/plot", "bench/drawing.py", "bench/theory.py", "bench/rhegma.py",
               "bench/page.py"],
@@ -55,7 +56,7 @@ ROOMS = {
 }
 ELSEWHERE = ("test_count.py", "test_documents.py", "test_mutate.py", "test_perf.py", "test_scaling.py")  # tests of no room here
 LEAST = 8  # faults of a room in a campaign
-PASSED_BY = ("src/main.c", "src/gmsh_main.c")  # the words of the command line, and nothing else
+PASSED_BY = ("src/main.c", "src/gmsh_main.c", "src/usage.c")  # the words of the command line, and nothing else
 
 
 def room_of(path):

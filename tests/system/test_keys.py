@@ -21,9 +21,15 @@ def said(*arguments):
     return process.stdout
 
 
+def unique(pairs):
+    """A JSON object, in which no name stands twice."""
+    assert len(dict(pairs)) == len(pairs), pairs
+    return dict(pairs)
+
+
 @functools.cache
 def validator():
-    schema = json.loads(said("--schema"))
+    schema = json.loads(said("--schema"), object_pairs_hook=unique)
     jsonschema.Draft7Validator.check_schema(schema)
     return jsonschema.Draft7Validator(schema)
 

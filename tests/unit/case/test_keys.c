@@ -20,10 +20,15 @@ static const rg_key_table *const tables[] = {&rg_case_table, &rg_material_table,
                                              &rg_body_table, &rg_probe_table,    &rg_face_set_table};
 enum { TABLES = sizeof tables / sizeof *tables };
 
+/* Without what Markdown's tables and JSON's texts would have to escape. */
+static bool is_plain(const char *text) {
+    return text == NULL || strpbrk(text, "\n\t|\"\\") == NULL;
+}
+
 static bool is_sentence(const char *text) {
     size_t length = text == NULL ? 0 : strlen(text);
     return length > 1 && !isspace((unsigned char)text[0]) && strchr(". ,;", text[length - 1]) == NULL &&
-           strpbrk(text, "\n|\"") == NULL; /* of Markdown's tables and JSON's texts */
+           is_plain(text);
 }
 
 /* Every key says what it means, each of its words too where one does, and what holds without it. */
@@ -36,6 +41,7 @@ static void test_meanings(void **state) {
             if (!is_sentence(key->meaning) || rg_key_default(key, text, sizeof text)[0] == '\0') {
                 fail_msg("%s: %s; %s", key->name, key->meaning, text);
             }
+            assert_true(is_plain(text) && is_plain(key->unit));
             for (int k = 0; key->choice_meaning != NULL && key->choice[k] != NULL; k++) {
                 assert_true(is_sentence(key->choice_meaning[k]));
             }
