@@ -45,7 +45,8 @@ DOCUMENTS = sorted(path.relative_to(ROOT) for path in ROOT.rglob("*.md")
 def dead_links(document):
     """Relative links and pictures of a document whose file or heading is not there."""
     found = []
-    for link in re.findall(r"\]\(([^)\s]+)\)", re.sub(r"```.*?```", "", document.read_text(), flags=re.S)):
+    text = re.sub(r"```.*?```", "", document.read_text(), flags=re.S)
+    for link in re.findall(r"\]\(([^)\s]+)\)", text) + re.findall(r'(?:src|href)="([^"]+)"', text):
         if re.match(r"\w+:", link):
             continue
         name, _, heading = link.partition("#")
@@ -112,9 +113,9 @@ def test_links_and_pictures_are_there(document):
 
 
 def test_dead_links_are_told(tmp_path):
-    text = "# A, b!\n[a](a.md) [b](https://b) ![c](c.png)\n[d](#a-b) [e](#e) [f](../{0}/t.md#a-b) [g](t.md#g)\n"
+    text = "# A, b!\n[a](a.md) [b](https://b) ![c](c.png)\n[d](#a-b) [e](#e) [f](../{0}/t.md#a-b) [g](t.md#g)\n" '<a href="h.md"><img src="t.md" width="2"></a>\n'
     (tmp_path / "t.md").write_text(text.format(tmp_path.name))
-    assert dead_links(tmp_path / "t.md") == ["a.md", "c.png", "#e", "t.md#g"]
+    assert dead_links(tmp_path / "t.md") == ["a.md", "c.png", "#e", "t.md#g", "h.md"]
 
 
 def test_each_example_has_a_readme_that_the_gallery_names():
