@@ -68,8 +68,8 @@ def warnings(run):
                      f"The energy error is {100 * error:.3g} % of the largest energy.")
     if "overlap_time_s" in summary:
         one, other = summary["overlap_fragments"]
-        found.append(f"Fragments {one} and {other} overlap at {with_unit(summary['overlap_time_s'], 's')}. Contact between separated "
-                     "fragments is not computed; what comes after is not to be trusted.")
+        found.append(f"Fragments {one} and {other} overlap at {with_unit(summary['overlap_time_s'], 's')}. Contact between "
+                     "separated fragments is not computed; what comes after is not to be trusted.")
     return found
 
 
@@ -209,7 +209,8 @@ function triangles(points) {  // nine numbers each
 function drawCrack() {
   const frame = data.cracks[by("frame").value], since = by("colour").value === "since";
   const last = data.cracks[data.cracks.length - 1].since;
-  const limits = since ? [last.reduce((a, b) => Math.min(a, b), Infinity), last.reduce((a, b) => Math.max(a, b), -Infinity)] : [0, 1];
+  const extreme = (choose, begin) => last.reduce((a, b) => choose(a, b), begin);
+  const limits = since ? [extreme(Math.min, Infinity), extreme(Math.max, -Infinity)] : [0, 1];
   by("when").textContent = seconds(frame.time) + ", " + frame.damage.length + " broken faces";
   const traces = [Object.assign(triangles(frame.points), {type: "mesh3d", intensity: since ? frame.since : frame.damage,
     intensitymode: "cell", cmin: limits[0], cmax: limits[1], colorscale: since ? "Viridis" : "YlOrRd", reversescale: !since,
@@ -224,10 +225,11 @@ function drawCrack() {
   traces.push(Object.assign(edges, {type: "scatter3d", mode: "lines", line: {color: "#57606a", width: 2}, hoverinfo: "skip",
     showlegend: false}));
   const axis = name => ({title: name + " (m)", exponentformat: "SI", showbackground: false});
-  const size = high.map((x, k) => x - low[k]), most = Math.max(...size);
+  const size = high.map((x, k) => x - low[k]), most = Math.max(...size), far = Math.hypot(...size) / most;
   Plotly.react("crack", traces, {margin: {l: 0, r: 0, t: 0, b: 0}, uirevision: "kept",
     scene: {aspectmode: "manual", uirevision: "kept",
-      aspectratio: {x: size[0] / most, y: size[1] / most, z: size[2] / most}, camera: {eye: {x: 1.15, y: 0.55, z: 0.7}}, xaxis: axis("x"), yaxis: axis("y"), zaxis: axis("z")}}, config);
+      aspectratio: {x: size[0] / most, y: size[1] / most, z: size[2] / most},
+      camera: {eye: {x: 1.15 * far, y: 0.55 * far, z: 0.7 * far}}, xaxis: axis("x"), yaxis: axis("y"), zaxis: axis("z")}}, config);
 }
 
 drawEnergy();
@@ -255,7 +257,8 @@ def crack_section(data):
             f'<option value="since">time at which it broke</option></select></label>'
             f'<input id="frame" type="range" min="0" max="{last}" value="{last}" aria-label="output moment">'
             f'<span id="when"></span></div>\n<div id="crack"></div>' +
-            (f"<p>One of {data['every']} output moments is shown: all would make the page too large.</p>" if data["every"] > 1 else ""))
+            (f"<p>One of {data['every']} output moments is shown: all would make the page too large.</p>"
+             if data["every"] > 1 else ""))
 
 
 def history_section(data):

@@ -420,6 +420,8 @@ def test_meshing_twice_gives_the_same_file(thesis, tmp_path):
 @needs_gmsh
 def test_part_with_holes(tmp_path):
     file, _ = convert(example("part.geo"), tmp_path / "part.h5", "--scale", "1e-3")
+    checked = launch("check", example("part.yaml"), *overrides({"mesh.file": str(tmp_path / "part.h5")}))
+    assert checked.returncode == 0 and "0.06 x 0.06 x 0.03 m" in checked.stdout, checked.stderr
     c = corners(file)
     areas = face_areas(c)
     area = {name: areas[file["set"][:] == i].sum() for i, name in enumerate(names(file, "surface"))}
