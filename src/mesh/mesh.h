@@ -3,6 +3,7 @@
 #define RG_MESH_H
 
 #include <mpi.h>
+#include <stddef.h>
 #include <stdint.h>
 
 typedef int64_t rg_gid; /* global element or vertex number */
