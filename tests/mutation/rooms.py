@@ -60,7 +60,7 @@ PASSED_BY = ("src/main.c", "src/gmsh_main.c", "src/usage.c")  # the words of the
 
 
 def room_of(path):
-    if path in PASSED_BY:
+    if path in PASSED_BY or path.startswith(("src/", "kernels/")) and not path.endswith((".c", ".h")):
         return None
     return next((room for room, (patterns, _) in ROOMS.items() if any(fnmatch.fnmatch(path, p) for p in patterns)), None)
 

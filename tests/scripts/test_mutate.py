@@ -81,6 +81,7 @@ def test_a_fault_is_found_again_in_a_file_that_has_moved():
 def test_every_room_has_files_and_tests():
     assert room_of("kernels/vec.h") == room_of("kernels/cohesive/linear.h") == "kernels" and room_of("src/mesh/import/inp_read.c") == "mesh/import"
     assert room_of("bench/plot") == "plot" and room_of("README.md") is None
+    assert room_of("src/README.md") is room_of("kernels/cohesive/curves.png") is room_of("src/meson.build") is None
     for room, (_, tests) in ROOMS.items():
         for test in tests.split():
             file = test if test.endswith(".py") else f"test_{test}.c"
