@@ -196,7 +196,7 @@ static int execute(int argc, char **argv, int rank) {
         has_said_all();
     } else {
         rg_interrupt_deafen();
-        status = rg_check(c, MPI_COMM_WORLD);
+        status = rg_run_check(c, MPI_COMM_WORLD);
     }
     rg_case_free(c);
     return status;

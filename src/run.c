@@ -494,7 +494,7 @@ int rg_run(const rg_case *c, MPI_Comm comm, const rg_run_options *options) {
     return status;
 }
 
-int rg_check(const rg_case *c, MPI_Comm comm) {
+int rg_run_check(const rg_case *c, MPI_Comm comm) {
     rg_solver *s = rg_solver_make(c, comm);
     rg_probes_close(rg_probes_find(s));
     rg_spectrum(s);

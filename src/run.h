@@ -22,6 +22,6 @@ typedef struct {
 int rg_run(const rg_case *c, MPI_Comm comm, const rg_run_options *options);
 
 /* Prints what rg_run would do, without running. Collective. */
-int rg_check(const rg_case *c, MPI_Comm comm);
+int rg_run_check(const rg_case *c, MPI_Comm comm);
 
 #endif

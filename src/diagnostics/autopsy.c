@@ -50,7 +50,7 @@ static void gradients(const rg_solver *s, size_t slot, double grad[4][3]) {
 }
 
 static double length(const double a[3]) {
-    return sqrt(rg_dot(a, a));
+    return sqrt(rg_vector_dot(a, a));
 }
 
 /* 3 inradius / circumradius: heights are 1/|grad l_k|, 1/r is the sum of theirs; the centre of the sphere

@@ -127,11 +127,12 @@ static bool touches(const struct triangle *t, const double p[3]) {
         int j = (i + 1) % 3, k = (i + 2) % 3;
         n[i] = u[j] * v[k] - u[k] * v[j];
     }
-    double uu = rg_dot(u, u), uv = rg_dot(u, v), vv = rg_dot(v, v), wu = rg_dot(w, u), wv = rg_dot(w, v),
-           nn = rg_dot(n, n);
+    double uu = rg_vector_dot(u, u), uv = rg_vector_dot(u, v), vv = rg_vector_dot(v, v),
+           wu = rg_vector_dot(w, u), wv = rg_vector_dot(w, v), nn = rg_vector_dot(n, n);
     double b = (vv * wu - uv * wv) / nn, c = (uu * wv - uv * wu) / nn; /* barycentric coordinates */
     double slack = t->reach * sqrt(fmax(uu, vv) / nn);                 /* the reach over the least height */
-    return fabs(rg_dot(w, n)) <= t->reach * sqrt(nn) && b >= -slack && c >= -slack && b + c <= 1 + slack;
+    return fabs(rg_vector_dot(w, n)) <= t->reach * sqrt(nn) && b >= -slack && c >= -slack &&
+           b + c <= 1 + slack;
 }
 
 static bool is_corner(const struct triangle *t, rg_gid vertex) {

@@ -43,8 +43,8 @@ static void face_vector(const rg_mesh *mesh, rg_gid e, int f, double out[3]) {
     edge(mesh, e, rg_face_node[f][0], rg_face_node[f][1], u);
     edge(mesh, e, rg_face_node[f][0], rg_face_node[f][2], v);
     edge(mesh, e, rg_face_node[f][0], f, inward);
-    rg_cross(u, v, out);
-    double sign = rg_dot(out, inward) > 0 ? -1 : 1;
+    rg_vector_cross(u, v, out);
+    double sign = rg_vector_dot(out, inward) > 0 ? -1 : 1;
     for (int i = 0; i < 3; i++) {
         out[i] *= sign;
     }
@@ -59,12 +59,12 @@ static double circumradius(const rg_mesh *mesh, rg_gid e, double volume) {
     }
     for (int k = 0; k < 3; k++) {
         double n[3];
-        rg_cross(a[(k + 1) % 3], a[(k + 2) % 3], n);
+        rg_vector_cross(a[(k + 1) % 3], a[(k + 2) % 3], n);
         for (int i = 0; i < 3; i++) {
-            sum[i] += rg_dot(a[k], a[k]) * n[i];
+            sum[i] += rg_vector_dot(a[k], a[k]) * n[i];
         }
     }
-    return sqrt(rg_dot(sum, sum)) / (12 * volume);
+    return sqrt(rg_vector_dot(sum, sum)) / (12 * volume);
 }
 
 static double longest_edge(const rg_mesh *mesh, rg_gid e) {
@@ -83,7 +83,7 @@ static struct shape measure(const rg_mesh *mesh, rg_gid e) {
         fabs(rg_tet_volume(mesh->x + 3 * c[0], mesh->x + 3 * c[1], mesh->x + 3 * c[2], mesh->x + 3 * c[3]));
     for (int f = 0; f < 4; f++) {
         face_vector(mesh, e, f, n[f]);
-        double here = 0.5 * sqrt(rg_dot(n[f], n[f]));
+        double here = 0.5 * sqrt(rg_vector_dot(n[f], n[f]));
         area += here;
         largest = fmax(largest, here);
     }
@@ -92,7 +92,8 @@ static struct shape measure(const rg_mesh *mesh, rg_gid e) {
     s.quality = 3 * (3 * s.volume / area) / circumradius(mesh, e, s.volume);
     for (int f = 1, k = 0; f < 4; f++) {
         for (int g = 0; g < f; g++, k++) {
-            double cosine = -rg_dot(n[f], n[g]) / sqrt(rg_dot(n[f], n[f]) * rg_dot(n[g], n[g]));
+            double cosine =
+                -rg_vector_dot(n[f], n[g]) / sqrt(rg_vector_dot(n[f], n[f]) * rg_vector_dot(n[g], n[g]));
             s.angle[k] = acos(fmax(-1, fmin(1, cosine))) * 180 / PI;
         }
     }

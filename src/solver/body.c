@@ -20,7 +20,7 @@ enum { POWER_ITERATIONS = 200 };
 /* ---- The bodies ---- */
 
 static void unit(const double v[3], double out[3]) {
-    double norm = sqrt(rg_dot(v, v));
+    double norm = sqrt(rg_vector_dot(v, v));
     for (int c = 0; c < 3 && norm > 0; c++) {
         out[c] = v[c] / norm;
     }

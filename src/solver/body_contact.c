@@ -8,7 +8,7 @@
 
 double rg_body_depth(const rg_body *b, const double x[3], double normal[3]) {
     double r[3] = {x[0] - b->x[0], x[1] - b->x[1], x[2] - b->x[2]};
-    double along = b->input->shape == RG_SHAPE_SPHERE ? 0 : rg_dot(r, b->direction);
+    double along = b->input->shape == RG_SHAPE_SPHERE ? 0 : rg_vector_dot(r, b->direction);
     if (b->input->shape == RG_SHAPE_PLANE) {
         for (int c = 0; c < 3; c++) {
             normal[c] = b->direction[c];
@@ -18,7 +18,7 @@ double rg_body_depth(const rg_body *b, const double x[3], double normal[3]) {
     for (int c = 0; c < 3; c++) {
         r[c] -= along * b->direction[c];
     }
-    double distance = sqrt(rg_dot(r, r));
+    double distance = sqrt(rg_vector_dot(r, r));
     for (int c = 0; c < 3; c++) {
         normal[c] = distance > 0 ? r[c] / distance : 0;
     }

@@ -67,8 +67,8 @@ static outcome fly_alone(MPI_Comm comm, const rg_verify_change *change) {
 
 double rg_verify_change_of(const double from[3], const double to[3]) {
     double change[3];
-    rg_subtract(to, from, change);
-    return sqrt(rg_dot(change, change) / rg_dot(from, from));
+    rg_vector_subtract(to, from, change);
+    return sqrt(rg_vector_dot(change, change) / rg_vector_dot(from, from));
 }
 
 void rg_verify_identity(MPI_Comm comm, const rg_verify_change *change, rg_verify_rows *rows) {

@@ -70,11 +70,11 @@ static void affine_stress(const rg_case *c, double stress[6]) {
             F[i][k] = gradient[i][k] + (i == k);
         }
     }
-    rg_cross(F[1], F[2], cofactor);
-    double J = rg_dot(F[0], cofactor);
+    rg_vector_cross(F[1], F[2], cofactor);
+    double J = rg_vector_dot(F[0], cofactor);
     for (int m = 0; m < 6; m++) {
         int i = row[m], j = column[m];
-        double b = rg_dot(F[i], F[j]);
+        double b = rg_vector_dot(F[i], F[j]);
         stress[m] = (mu * (b - (i == j)) + (i == j ? lambda * log(J) : 0)) / J;
     }
 }
@@ -84,7 +84,7 @@ static void see_displacement(void *context, const rg_solver *s, size_t slot, int
     double x[3];
     rg_node_position(s->domain->corner + 12 * slot, node, x);
     for (int i = 0; i < 3; i++) {
-        double exact = rg_dot(gradient[i], x);
+        double exact = rg_vector_dot(gradient[i], x);
         w->nodal = larger(w->nodal, fabs(s->u[rg_node_index(slot, node, i)] - exact));
     }
 }

@@ -87,7 +87,7 @@ static struct {
     const char *set[16];
     rg_run_options options;
     int signal_to_send; /* before it begins; 0: none */
-    bool check;         /* rg_check in place of rg_run */
+    bool check;         /* rg_run_check in place of rg_run */
 } job;
 
 static void go(void) {
@@ -103,7 +103,7 @@ static void go(void) {
         raise(job.signal_to_send);
     }
     int status = c == NULL   ? 99
-                 : job.check ? rg_check(c, MPI_COMM_WORLD)
+                 : job.check ? rg_run_check(c, MPI_COMM_WORLD)
                              : rg_run(c, MPI_COMM_WORLD, &job.options);
     fflush(stdout);
     fflush(stderr);
@@ -557,7 +557,7 @@ static void test_restart_with_another_interval(void **state) {
 
 /* ---- words ---- */
 
-/* What is said before, by rg_check as by a run that is not quiet; with a warning on standard error. */
+/* What is said before, by rg_run_check as by a run that is not quiet; with a warning on standard error. */
 static void test_words(void **state) {
     (void)state;
     for (int check = 0; check < 2; check++) {

@@ -23,7 +23,7 @@ typedef struct {
 static void project(const freedom *f, const double a[3], double out[3]) {
     double result[3];
     for (int i = 0; i < 3; i++) {
-        result[i] = rg_dot(f->p[i], a);
+        result[i] = rg_vector_dot(f->p[i], a);
     }
     memcpy(out, result, sizeof result);
 }
@@ -32,7 +32,7 @@ static void project(const freedom *f, const double a[3], double out[3]) {
 static void forbid(freedom *f, const double n[3]) {
     double m[3];
     project(f, n, m);
-    double square = rg_dot(m, m);
+    double square = rg_vector_dot(m, m);
     if (square < in_plane * in_plane) {
         return;
     }
@@ -52,7 +52,7 @@ static void confine(freedom *f, const double e[3]) {
     double m[3];
     project(f, e, m);
     memset(f, 0, sizeof *f);
-    if (rg_dot(m, m) > 1 - in_plane * in_plane) {
+    if (rg_vector_dot(m, m) > 1 - in_plane * in_plane) {
         for (int i = 0; i < 3; i++) {
             for (int j = 0; j < 3; j++) {
                 f->p[i][j] = e[i] * e[j];
@@ -91,8 +91,8 @@ static bool note_edge(face_edges *list, rg_gid end, int8_t label) {
 }
 
 static void unit(const double a[3], const double b[3], double out[3]) {
-    rg_subtract(b, a, out);
-    double length = sqrt(rg_dot(out, out));
+    rg_vector_subtract(b, a, out);
+    double length = sqrt(rg_vector_dot(out, out));
     for (int i = 0; i < 3; i++) {
         out[i] /= length;
     }
@@ -101,9 +101,9 @@ static void unit(const double a[3], const double b[3], double out[3]) {
 static void face_normal(const rg_tets *t, const rg_gid v[3], double n[3]) {
     static const double origin[3] = {0, 0, 0};
     double u[3], w[3], both[3];
-    rg_subtract(rg_tets_at(t, v[1]), rg_tets_at(t, v[0]), u);
-    rg_subtract(rg_tets_at(t, v[2]), rg_tets_at(t, v[0]), w);
-    rg_cross(u, w, both);
+    rg_vector_subtract(rg_tets_at(t, v[1]), rg_tets_at(t, v[0]), u);
+    rg_vector_subtract(rg_tets_at(t, v[2]), rg_tets_at(t, v[0]), w);
+    rg_vector_cross(u, w, both);
     unit(origin, both, n);
 }
 
@@ -154,10 +154,10 @@ static double face_of(const rg_tets *t, const rg_tet *tet, int f, const double *
     for (int i = 0; i < 3; i++) {
         p[i] = rg_tets_at(t, tet->corner[rg_face_node[f][i]]);
     }
-    rg_subtract(p[1], p[0], u);
-    rg_subtract(p[2], p[0], w);
-    rg_cross(u, w, n);
-    return sqrt(rg_dot(n, n));
+    rg_vector_subtract(p[1], p[0], u);
+    rg_vector_subtract(p[2], p[0], w);
+    rg_vector_cross(u, w, n);
+    return sqrt(rg_vector_dot(n, n));
 }
 
 /* Heights of a tetrahedron whose corner `at` moves: 3 V over the areas. The gradient of 6 V is the vector of
@@ -165,8 +165,8 @@ static double face_of(const rg_tets *t, const rg_tet *tet, int f, const double *
 static void take_heights(const rg_tets *t, const rg_tet *tet, int at, heights *h) {
     const double *x = rg_tets_at(t, tet->corner[at]), *p[3];
     double slope[3], away[3], area = face_of(t, tet, at, p, slope);
-    rg_subtract(x, p[0], away);
-    double volume = rg_dot(away, slope), sign = volume < 0 ? -1 : 1;
+    rg_vector_subtract(x, p[0], away);
+    double volume = rg_vector_dot(away, slope), sign = volume < 0 ? -1 : 1;
     for (int i = 0; i < 3; i++) {
         slope[i] *= sign;
         h->gradient[h->count][i] = slope[i] / area;
@@ -179,8 +179,8 @@ static void take_heights(const rg_tets *t, const rg_tet *tet, int at, heights *h
         while (p[mine] != x) {
             mine++;
         }
-        rg_subtract(p[(mine + 1) % 3], p[(mine + 2) % 3], side);
-        rg_cross(side, n, turn);
+        rg_vector_subtract(p[(mine + 1) % 3], p[(mine + 2) % 3], side);
+        rg_vector_cross(side, n, turn);
         for (int i = 0; i < 3; i++) {
             h->gradient[h->count][i] = (slope[i] - fabs(volume) / area * turn[i] / area) / area;
         }
@@ -216,12 +216,12 @@ static void shortest(int count, double (*const g)[3], double d[3]) {
     for (int step = 0; step < HULL_STEPS; step++) {
         int back = 0;
         for (int i = 1; i < count; i++) {
-            back = rg_dot(g[i], d) < rg_dot(g[back], d) ? i : back;
+            back = rg_vector_dot(g[i], d) < rg_vector_dot(g[back], d) ? i : back;
         }
         double way[3];
-        rg_subtract(g[back], d, way);
-        double square = rg_dot(way, way), along = -rg_dot(way, d);
-        if (!(along > 1e-6 * rg_dot(d, d)) || !(square > 0)) {
+        rg_vector_subtract(g[back], d, way);
+        double square = rg_vector_dot(way, way), along = -rg_vector_dot(way, d);
+        if (!(along > 1e-6 * rg_vector_dot(d, d)) || !(square > 0)) {
             return;
         }
         double part = fmin(1, along / square);
@@ -241,14 +241,14 @@ static bool ascent(heights *h, const freedom *f, double least, double near, doub
         }
     }
     shortest(active, h->gradient, direction);
-    return rg_dot(direction, direction) > 1e-4;
+    return rg_vector_dot(direction, direction) > 1e-4;
 }
 
 /* Goes along the direction as far as it pays, from half the smallest height on. Returns the height reached.
  */
 static double search(rg_tets *t, rg_gid vertex, const double direction[3], double least) {
     double *x = t->mesh->x + 3 * vertex, from[3];
-    double length = sqrt(rg_dot(direction, direction)), step = 0.5 * least / length;
+    double length = sqrt(rg_vector_dot(direction, direction)), step = 0.5 * least / length;
     memcpy(from, x, sizeof from);
     for (int i = 0; i < HALVINGS; i++, step *= 0.5) {
         for (int k = 0; k < 3; k++) {

@@ -160,9 +160,9 @@ static void test_vectors(void **state) {
     (void)state;
     const double a[3] = {2, 3, 5}, b[3] = {7, -11, 13}, c[3] = {-17, 19, 23};
     double cross[3], difference[3];
-    rg_cross(a, b, cross);
-    rg_subtract(a, b, difference);
-    assert_true(rg_dot(a, b) == 14 - 33 + 65);
+    rg_vector_cross(a, b, cross);
+    rg_vector_subtract(a, b, difference);
+    assert_true(rg_vector_dot(a, b) == 14 - 33 + 65);
     assert_true(cross[0] == 39 + 55 && cross[1] == 35 - 26 && cross[2] == -22 - 21);
     assert_true(difference[0] == -5 && difference[1] == 14 && difference[2] == -8);
     const double o[3] = {1, -2, 0.5};
@@ -349,9 +349,9 @@ static void test_principal_axes(void **state) {
             assert_true(fabs(high[2 - k] / scale - sorted[k]) < 3e-8);
             double largest = 0;
             for (int i = 0; i < 3; i++) {
-                double off = rg_dot(full[i], axis[k]) - value[k] * axis[k][i];
+                double off = rg_vector_dot(full[i], axis[k]) - value[k] * axis[k][i];
                 assert_true(fabs(off) < 2.5e-15 * scale);
-                assert_true(fabs(rg_dot(axis[k], axis[i]) - (i == k)) < 3e-15);
+                assert_true(fabs(rg_vector_dot(axis[k], axis[i]) - (i == k)) < 3e-15);
                 largest = fabs(axis[k][i]) > fabs(largest) ? axis[k][i] : largest;
             }
             assert_true(largest > 0);
