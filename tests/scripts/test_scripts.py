@@ -46,7 +46,8 @@ def test_demo(tmp_path):
     out = tmp_path / "results/spall"
     lines = [text.strip() for text in told.splitlines()]
     assert lines[-1] == f"ParaView: {out}/fields.xdmf" and (out / "fields.xdmf").exists()
-    pictures = lines[lines.index("pictures:") + 1:-1]
+    assert lines[-2] == f"page to turn the crack with the mouse: {out}/run.html" and "Plotly" in (out / "run.html").read_text()
+    pictures = lines[lines.index("pictures:") + 1:-2]
     assert [str(out / name) for name in ("history.png", "energy.png")] == pictures[:2] and str(out / "crack.png") in pictures
     assert all(open(path, "rb").read(6) == PNG for path in pictures)
 
