@@ -142,9 +142,9 @@ static void add_traction(const element *el, int g, double p[3][3],
 
 enum { MOST_HISTORY = 16 }; /* values per point */
 
-static rg_reference_law *law_of(const rg_material *m) {
+static rg_reference_point_law *law_of(const rg_material *m) {
 #define LAW(name, NAME, word, meaning, history, inside) [RG_MATERIAL_##NAME] = rg_reference_point_##name,
-    static rg_reference_law *const laws[] = {RG_MATERIALS(LAW)};
+    static rg_reference_point_law *const laws[] = {RG_MATERIALS(LAW)};
     return laws[m->model];
 }
 

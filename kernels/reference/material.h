@@ -9,11 +9,11 @@ typedef struct {
 } rg_reference_point;
 
 /* P (Pa) and `out` at F. If `advance`, history goes on by the step for which `m` was prepared. */
-typedef void rg_reference_law(const rg_material *m, bool advance, double F[3][3], double history[],
+typedef void rg_reference_point_law(const rg_material *m, bool advance, double F[3][3], double history[],
                               double P[3][3], rg_reference_point *out);
 
 #define RG_REFERENCE_POINT(name, NAME, word, meaning, history, inside)                                       \
-    rg_reference_law rg_reference_point_##name;
+    rg_reference_point_law rg_reference_point_##name;
 RG_MATERIALS(RG_REFERENCE_POINT)
 
 /* Inverse of a 3x3 matrix; returns the determinant. */

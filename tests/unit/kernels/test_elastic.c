@@ -16,7 +16,7 @@
 #define LARGE  (LAMBDA + 2 * MU)
 
 typedef struct {
-    rg_reference_law *law;
+    rg_reference_point_law *law;
     const char *name;
 } solid;
 
