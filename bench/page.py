@@ -107,7 +107,7 @@ def cracks(run):
 
 
 def contents(run, view, parts):
-    """All that the page draws, as JSON. `view`: field and component shown first; `parts`: {column of energy.csv: colour}."""
+    """All that the page draws, as JSON. `view`: field, component and moment shown first; `parts`: {column of energy.csv: colour}."""
     case, summary, energy = run.case, run.summary, run.energy
     shown = [name for name in parts if energy[name].any()]
     data = {"parts": {name: parts[name] for name in shown}, "colours": {"computed": BLUE, "fracture": RED},
@@ -247,15 +247,16 @@ def section(title, inside):
     return f"<h2>{title}</h2>\n{inside}\n"
 
 
-def crack_section(data):
+def crack_section(data, time):
     if "cracks" not in data:
         return "<p>The case asks for no fields.</p>"
     if not data["cracks"]:
         return "<p>The run did not write its crack surface.</p>"
-    last = len(data["cracks"]) - 1
+    last, times = len(data["cracks"]) - 1, np.array([crack["time"] for crack in data["cracks"]])
+    first = last if time is None else int(np.argmin(np.abs(times - time)))
     return (f'<div class="controls"><label>colour <select id="colour"><option value="damage">damage</option>'
             f'<option value="since">time at which it broke</option></select></label>'
-            f'<input id="frame" type="range" min="0" max="{last}" value="{last}" aria-label="output moment">'
+            f'<input id="frame" type="range" min="0" max="{last}" value="{first}" aria-label="output moment">'
             f'<span id="when"></span></div>\n<div id="crack"></div>' +
             (f"<p>One of {data['every']} output moments is shown: all would make the page too large.</p>"
              if data["every"] > 1 else ""))
@@ -274,7 +275,7 @@ def page(run, view, parts):
     name = html.escape(str(summary["case"]))
     told = "".join(f'<p class="warning">{html.escape(text)}</p>\n' for text in warnings(run))
     rows = "".join(f"<tr><td>{html.escape(words)}</td><td>{html.escape(text)}</td></tr>\n" for words, text in facts(summary))
-    parts_of_page = [section("Summary", f'<table id="summary">{rows}</table>'), section("Crack surface", crack_section(data)),
+    parts_of_page = [section("Summary", f'<table id="summary">{rows}</table>'), section("Crack surface", crack_section(data, view.time)),
                      section("Energy", '<div id="energy"></div>')]
     if "history" in data:
         parts_of_page.append(section("Probes", history_section(data)))

@@ -122,6 +122,12 @@ def test_page_of_a_run_without_cracks(made, fields, words):
     assert words in text and 'id="crack"' not in text
 
 
+@pytest.mark.parametrize("time, value", [(None, 1), (2.4e-3, 0), (2.6e-3, 1)])
+def test_slider_begins_at_the_moment_asked_for(made, time, value):
+    text = page.page(made(), plot.View("stress", "zz", 2, time), plot.PARTS)
+    assert f'type="range" min="0" max="1" value="{value}"' in text
+
+
 def test_plot_writes_the_page(made, tmp_path, monkeypatch, capsys):
     run = made()
     monkeypatch.setattr("sys.argv", ["plot", str(run.dir), "--html", str(tmp_path / "new/a.html"), "--component", "xx"])
