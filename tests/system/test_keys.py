@@ -178,11 +178,12 @@ def changed(path, changes):
     (SPALL, {"interface.bilinear.ascent": 0.1}, {"interface.bilinear"}),
     (INTRINSIC, {"interface.penalty": "elastic"}, {"interface.penalty"}),
     (SPALL, {"interface.onset": 0.2}, {"interface.onset"}),
+    (INTRINSIC, {"interface.activation": "conserving", "interface.onset": 0.2}, {"interface.activation", "interface.onset"}),
     (SPALL, {"interface.faces": 1}, {"interface.faces"}),
     (SPALL, {"interface.weibull.seed": 1}, {"interface.weibull.seed"}),
     (SPALL, {"boundary.0.displacement": 1}, {"boundary.0"}),
     (SPALL, {"interface.sets": [{"strength": 1}]}, {"interface.sets.0"}),
-], ids=str)
+], ids=lambda value: getattr(value, "stem", str(value)))
 def test_mistakes_are_found(path, changes, places):
     assert wrong(changed(path, changes)) == places
 
