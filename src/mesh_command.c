@@ -154,14 +154,30 @@ static void tell(const rg_mesh *mesh, const char *output) {
            high[1] - low[1], high[2] - low[2], mesh->elements, mesh->vertices);
 }
 
+static double longest_edge(const rg_mesh *mesh) {
+    double most = 0;
+    for (rg_gid e = 0; e < mesh->elements; e++) {
+        double x[12];
+        for (int k = 0; k < 4; k++) {
+            memcpy(x + 3 * k, mesh->x + 3 * mesh->corner[4 * e + k], sizeof(double[3]));
+        }
+        most = fmax(most, rg_tet_longest_edge(x));
+    }
+    return most;
+}
+
+/* The gain, and what it costs. */
 static void improve(rg_mesh *mesh) {
     rg_gid before = mesh->elements;
+    double edge = longest_edge(mesh);
     rg_improvement done = rg_mesh_improve(mesh);
     rg_mesh_sort(mesh);
     rg_mesh_connect(mesh);
-    printf("improved: smallest height from %.4g to %.4g m; vertices moved %" PRId64 " times, %" PRId64
-           " edges and %" PRId64 " faces replaced, from %" PRId64 " to %" PRId64 " elements\n",
-           done.before, done.after, done.moves, done.edges, done.faces, before, mesh->elements);
+    printf("improved: smallest height from %.4g to %.4g m, longest edge from %.4g to %.4g m; vertices moved "
+           "%" PRId64 " times, %" PRId64 " edges and %" PRId64 " faces replaced, from %" PRId64 " to %" PRId64
+           " elements\n",
+           done.before, done.after, edge, longest_edge(mesh), done.moves, done.edges, done.faces, before,
+           mesh->elements);
 }
 
 void rg_mesh_finish(rg_mesh *mesh, const rg_mesh_arguments *a) {
