@@ -97,6 +97,19 @@ static void count_materials(const rg_solver *s, int64_t of[RG_MAX_MATERIALS]) {
     MPI_Allreduce(MPI_IN_PLACE, of, RG_MAX_MATERIALS, MPI_INT64_T, MPI_SUM, s->comm);
 }
 
+/* Of field output, in so many steps. */
+static double frames(const rg_case *c, double steps, double dt) {
+    if (c->output.fields == 0) {
+        return 0;
+    }
+    if (c->output.times > 0) {
+        return c->output.times;
+    }
+    double intervals = c->output.interval_steps > 0 ? steps / (double)c->output.interval_steps
+                                                    : fmin(c->time.end, steps * dt) / c->output.interval_time;
+    return ceil(intervals * (1 - 1e-9)); /* none at the start */
+}
+
 rg_estimate rg_estimate_run(const rg_solver *s) {
     const rg_case *c = s->input;
     double xi = s->damping * c->viscosity.linear; /* of the stiffest mode, by bulk viscosity */
@@ -120,6 +133,8 @@ rg_estimate rg_estimate_run(const rg_solver *s) {
     e.steps = (int64_t)steps;
     e.bytes_per_element = bytes_per_element(s, false);
     e.peak_bytes_per_element = bytes_per_element(s, true);
+    e.frames = frames(c, steps, e.dt);
+    e.frame_bytes = rg_snapshots_frame_bytes(c) * (double)e.elements;
     e.seconds = 1.3 * s->pass_seconds * (double)e.steps; /* a step is a pass, the update and some output */
     e.cohesive_zone = cohesive_zone(c, s);
     e.largest_edge = largest_edge(s);
@@ -187,6 +202,11 @@ void rg_estimate_print(const rg_solver *s, const rg_estimate *e, FILE *out) {
         "memory         %.0f bytes per element, at most %.0f (output, cracks everywhere); %.3g GB in all\n",
         e->bytes_per_element, e->peak_bytes_per_element,
         e->peak_bytes_per_element * (double)e->elements * 1e-9);
+    if (e->frames > 0) {
+        fprintf(out,
+                "disk           %.3g GB: %.0f frames of %.3g GB, and what cracks take; less by compression\n",
+                e->frames * e->frame_bytes * 1e-9, e->frames, e->frame_bytes * 1e-9);
+    }
     fprintf(out, "time loop      about ");
     print_seconds(e->seconds, out);
     fprintf(out, " on %d ranks x %d threads (%s, %s precision)\n", s->ranks, s->threads, s->kernels->name,

@@ -13,9 +13,10 @@ typedef struct {
     double dt_critical, dt;                /* 2/omega, and times safety (s) */
     int64_t steps;
     double bytes_per_element, peak_bytes_per_element; /* fields; and with output and cracks everywhere */
-    double seconds;       /* estimate for the time loop on these ranks and threads */
-    double cohesive_zone; /* length (m); infinite where nothing breaks */
-    double largest_edge;  /* of the faces between elements (m) */
+    double frames, frame_bytes; /* of field output; on disk, without compression and cracks */
+    double seconds;             /* estimate for the time loop on these ranks and threads */
+    double cohesive_zone;       /* length (m); infinite where nothing breaks */
+    double largest_edge;        /* of the faces between elements (m) */
 } rg_estimate;
 
 /* Collective; needs rg_spectrum to have run. */

@@ -443,6 +443,21 @@ void rg_snapshots_write(rg_snapshots *w, rg_solver *s, const rg_fragment_parts *
     rg_writer_frame_end(w->writer);
 }
 
+double rg_snapshots_frame_bytes(const rg_case *c) {
+    const unsigned nodal = RG_FIELD_DISPLACEMENT | RG_FIELD_VELOCITY,
+                   whole = RG_FIELD_RANK | RG_FIELD_FRAGMENT | RG_FIELD_MATERIAL; /* numbers, in doubles */
+    double values = 0, numbers = 0;
+    for (unsigned bit = 1; bit <= c->output.fields; bit *= 2) {
+        values += (bit & c->output.fields & nodal) != 0 ? NODAL : 0;
+        numbers += (bit & c->output.fields & whole) != 0;
+    }
+    for (int k = 0; k < STATE_FIELDS; k++) {
+        values += (c->output.fields & state_field[k].bit) != 0 ? state_field[k].field.components : 0;
+    }
+    size_t size = c->output.precision == RG_OUTPUT_SINGLE ? sizeof(float) : sizeof(double);
+    return values * (double)size + numbers * sizeof(double);
+}
+
 size_t rg_snapshots_bytes(const rg_case *c, size_t elements) {
     size_t slab = sizeof(rg_lid) + 2 * sizeof(size_t), record = NODAL * sizeof(double); /* of an element */
     size_t window = c->output.compression > 0 ? elements * record : WINDOW_BYTES;

@@ -26,6 +26,9 @@ rg_snapshots *rg_snapshots_reopen(const rg_solver *s, rg_slab **slab, const rg_w
 /* Brings what was written to the disk; where the files stand now. Collective. */
 rg_writer_mark rg_snapshots_settle(rg_snapshots *w);
 
+/* Bytes of a frame on disk for each element, as they are without compression and without cracks. */
+double rg_snapshots_frame_bytes(const rg_case *c);
+
 /* Whether the fragments are one of the fields. */
 bool rg_snapshots_show_fragments(const rg_snapshots *w);
 

@@ -1,10 +1,12 @@
 """The field output of a finished run: fields.xdmf describes what fields.h5 holds, and ParaView can draw it."""
 
+import re
 import xml.etree.ElementTree as ET
 
 import h5py
 import numpy as np
 import pytest
+from conftest import example, launch
 
 COMPONENTS = {"Scalar": 1, "Vector": 3, "Tensor6": 6}
 EDGES = [(0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3)]  # of a VTK_QUADRATIC_TETRA, nodes 4 to 9
@@ -105,3 +107,12 @@ def test_fields_are_finite_and_say_their_unit(h5):
 
     for frame in h5["frames"].values():
         frame.visititems(check)
+
+
+def test_check_says_how_much_disk_the_fields_take(tmp_path):
+    words = [example("spall.yaml"), "-o", tmp_path / "out", "--set", "time.end=2.4e-8"]
+    size, frames, frame = map(float, re.search(r"^disk +(\S+) GB: (\d+) frames of (\S+) GB", launch("check", *words).stdout, re.M).groups())
+    assert launch("run", *words, "-q").returncode == 0
+    files = sorted((tmp_path / "out/fields").glob("0*.h5"))
+    assert frames == len(files) == 3 and size == pytest.approx(3 * frame, rel=5e-3)
+    assert sum(path.stat().st_size for path in files) == pytest.approx(size * 1e9, rel=0.01)

@@ -119,6 +119,28 @@ static void check_counts(void) {
     report(near(e.bytes_per_element, (all[0] - all[1]) / 144) &&
                near(e.peak_bytes_per_element, (all[0] + all[2]) / 144),
            "estimate", "memory");
+    /* stress, mean and principal stress, displacement and velocity in floats; fragment, material, rank in
+     * doubles */
+    r.input->output.fields = RG_FIELD_STRESS | RG_FIELD_MEAN | RG_FIELD_PRINCIPAL | RG_FIELD_DISPLACEMENT |
+                             RG_FIELD_VELOCITY | RG_FIELD_FRAGMENT | RG_FIELD_MATERIAL | RG_FIELD_RANK |
+                             RG_FIELD_CRACK;
+    r.input->output.precision = RG_OUTPUT_SINGLE;
+    r.input->output.interval_steps = 0;
+    r.input->output.interval_time = 3e-7;
+    e = rg_estimate_run(s);
+    report(near(e.frame_bytes, 144 * (70 * 4 + 3 * 8)) && near(e.frames, 4), "estimate", "frames at times");
+    r.input->output.fields = RG_FIELD_DISPLACEMENT | RG_FIELD_PLASTIC | RG_FIELD_TRIAXIALITY;
+    r.input->output.precision = RG_OUTPUT_DOUBLE;
+    r.input->output.interval_steps = 100;
+    e = rg_estimate_run(s);
+    report(near(e.frame_bytes, 144 * 32 * 8) && near(e.frames, ceil((double)e.steps / 100)), "estimate",
+           "frames at steps");
+    r.input->output.times = 3;
+    report(near(rg_estimate_run(s).frames, 3), "estimate", "frames at given times");
+    r.input->output.times = 0;
+    r.input->output.fields = 0;
+    e = rg_estimate_run(s);
+    report(e.frames == 0 && e.frame_bytes == 0, "estimate", "no frames");
     double xi = 0.7 * 0.06, critical = 4e-9 * (sqrt(1 + xi * xi) - xi);
     report(near(e.dt_critical, critical) && near(e.dt, 0.5 * critical), "estimate", "time step");
     report(e.steps == (int64_t)ceil(1e-6 / e.dt) && near(e.seconds, 1.3 * 0.02 * (double)e.steps), "estimate",
@@ -301,6 +323,16 @@ static bool check_words(void) {
            good;
     e.largest_edge = 0;
     good = words_are(s, &e, BODY BOTH STEP STEPS LAST, "") && good;
+    e.frames = 51;
+    e.frame_bytes = 2.5e6;
+    good = words_are(
+               s, &e,
+               BODY BOTH STEP STEPS MEMORY
+               "disk           0.128 GB: 51 frames of 0.0025 GB, and what cracks take; less by compression\n"
+               "time loop      about 12.3 s" LOOP,
+               "") &&
+           good;
+    e.frames = 0;
     static const struct {
         double seconds;
         const char *words;
