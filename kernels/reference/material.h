@@ -10,7 +10,7 @@ typedef struct {
 
 /* P (Pa) and `out` at F. If `advance`, history goes on by the step for which `m` was prepared. */
 typedef void rg_reference_point_law(const rg_material *m, bool advance, double F[3][3], double history[],
-                              double P[3][3], rg_reference_point *out);
+                                    double P[3][3], rg_reference_point *out);
 
 #define RG_REFERENCE_POINT(name, NAME, word, meaning, history, inside)                                       \
     rg_reference_point_law rg_reference_point_##name;
