@@ -10,6 +10,7 @@
 #include "base/mem.h"
 #include "diagnostics/state_hash.h"
 #include "revision.h"
+#include "solver/step.h"
 
 static void write_bodies(FILE *f, const rg_bodies *b) {
     if (b->count == 0) {
@@ -92,9 +93,8 @@ void rg_summary_write(rg_summary *m, rg_solver *s, const rg_ledger *l, const rg_
     const rg_estimate *e = &m->estimate;
     uint64_t hash = rg_state_hash(s);
     m->first_fracture = rg_first_fracture(s);
-    rg_halo *nodes = s->assembly == NULL ? NULL : rg_assembly_halo(s->assembly);
-    rg_halo *halo[] = {s->halo_u[0], s->halo_t, nodes}; /* of a step */
-    int halos = nodes == NULL ? 2 : 3;
+    rg_halo *halo[3];
+    int halos = rg_solver_halos(s, halo);
     double work = (double)e->elements * (double)(s->step - m->first_step);
     m->us_per_tet_step = work > 0 ? 1e6 * m->loop_seconds * s->ranks * s->threads / work : 0;
     rg_phases_report phases = rg_phases_gather(&s->phases, s->domain, halo, halos, s->comm);

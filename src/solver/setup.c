@@ -10,24 +10,26 @@
 #include "partition/patch.h"
 #include "solver/fields.h"
 #include "solver/law.h"
+#include "solver/stepper.h"
 #include "solver/strength.h"
 #include "solver/tile.h"
 
 /* What the sweeps need beside the fields. */
 static void allocate_rows(rg_solver *s) {
     size_t rows = s->domain->own_rows + s->domain->shared;
-    s->rows[0] = RG_NEW(rg_real, rows * RG_TRACE_ROW);
-    s->rows[1] = RG_NEW(rg_real, rows * RG_TRACE_ROW);
-    s->tractions = RG_NEW(rg_real, rows * RG_TILE_FACE_ROW);
+    s->stepper = RG_NEW(rg_stepper, 1);
+    s->stepper->rows[0] = RG_NEW(rg_real, rows * RG_TRACE_ROW);
+    s->stepper->rows[1] = RG_NEW(rg_real, rows * RG_TRACE_ROW);
+    s->stepper->tractions = RG_NEW(rg_real, rows * RG_TILE_FACE_ROW);
     s->work = RG_NEW(rg_workspace, (size_t)s->threads);
 }
 
 static void place_tile(rg_solver *s, const rg_tile *t) {
     size_t rows = rg_tile_face_blocks(t) * RG_LANES;
     rg_fields_touch(s, t);
-    memset(s->tractions + t->row * RG_TILE_FACE_ROW, 0, rows * sizeof(rg_real[RG_TILE_FACE_ROW]));
+    memset(s->stepper->tractions + t->row * RG_TILE_FACE_ROW, 0, rows * sizeof(rg_real[RG_TILE_FACE_ROW]));
     for (int k = 0; k < 2; k++) {
-        memset(s->rows[k] + t->row * RG_TRACE_ROW, 0, rows * sizeof(rg_real[RG_TRACE_ROW]));
+        memset(s->stepper->rows[k] + t->row * RG_TRACE_ROW, 0, rows * sizeof(rg_real[RG_TRACE_ROW]));
     }
 }
 
@@ -104,9 +106,9 @@ rg_solver *rg_solver_make_from_part(const rg_case *input, rg_part *part, MPI_Com
         rg_strength_make(s);
     }
     for (int k = 0; k < 2; k++) {
-        s->halo_u[k] = rg_halo_make(s->domain, RG_TRACE_ROW, s->rows[k], 1 + k, comm);
+        s->stepper->halo_u[k] = rg_halo_make(s->domain, RG_TRACE_ROW, s->stepper->rows[k], 1 + k, comm);
     }
-    s->halo_t = rg_halo_make(s->domain, RG_TILE_FACE_ROW, s->tractions, 3, comm);
+    s->stepper->halo_t = rg_halo_make(s->domain, RG_TILE_FACE_ROW, s->stepper->tractions, 3, comm);
     return s;
 }
 
@@ -129,15 +131,16 @@ void rg_solver_free(rg_solver *s) {
         rg_workspace_free(&s->work[t]);
     }
     rg_fields_free(s);
-    void *blocks[] = {s->rows[0], s->rows[1], s->tractions, s->work};
+    rg_stepper *m = s->stepper;
+    void *blocks[] = {m->rows[0], m->rows[1], m->tractions, m, s->work};
     rg_free(s->material);
     rg_free(s->scale);
     rg_free(s->tile_seconds);
     rg_constraints_free(s->constraints);
     rg_bodies_free(s->bodies);
-    rg_halo_free(s->halo_u[0]);
-    rg_halo_free(s->halo_u[1]);
-    rg_halo_free(s->halo_t);
+    rg_halo_free(m->halo_u[0]);
+    rg_halo_free(m->halo_u[1]);
+    rg_halo_free(m->halo_t);
     rg_assembly_free(s->assembly);
     rg_conforming_faces_free(s->conforming_faces);
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) {

@@ -30,12 +30,14 @@ typedef struct {
 } rg_workspace;
 
 typedef struct rg_solver rg_solver;
+typedef struct rg_stepper rg_stepper;
 
 /* Called for a tile between its kick and its drift, with `step_velocity` up to date there and the ghosts
  * received. */
 typedef void rg_watcher(void *context, rg_solver *s, size_t tile, const rg_workspace *work);
 
 struct rg_solver {
+    /* ---- the model: const once it is set up (solver/setup.c), but for what the spectrum finds ---- */
     const rg_case *input;
     MPI_Comm comm;
     int rank, ranks, threads;
@@ -46,46 +48,43 @@ struct rg_solver {
     rg_domain *domain;
     rg_conforming_faces *conforming_faces; /* of form continuous; NULL in others */
     rg_assembly *assembly;                 /* likewise */
-
-#define MEMBER(member, type, per, values, there, saved) RG_TYPE_OF_##type *member;
-    struct {
-        RG_FIELDS(MEMBER)
-    };
-#undef MEMBER
-    size_t crack_stride,
-        history_stride;         /* values of a block of crack and history: as many as the longest needs */
-    double *tile_seconds;       /* [tiles]: that the sweeps took (solver/balance.h); NULL: nobody asks */
-    double opening_rate;        /* largest on all ranks (1/s) */
-    double stiffening_anywhere; /* largest on all ranks; infinite if not finite */
-    int stop_request; /* largest of all ranks (base/interrupt.h) when the forces were last computed */
-    double here[2], anywhere[2]; /* both on their way */
-    MPI_Request stiffening_request;
-    rg_real *rows[2], *tractions; /* trace rows, of the current state and of the next; traction rows */
-    int current;                  /* which of `rows` */
-    rg_halo *halo_u[2], *halo_t;
-    rg_workspace *work; /* [threads] */
-    rg_constraints *constraints;
-    rg_bodies *bodies;
-    rg_watcher *watch;
-    void *watch_context;
-
     int materials;
     rg_material *material; /* [materials] */
     rg_cohesive law;
     rg_real *scale;  /* layout as in rg_interface_args; NULL: all faces alike */
     double stiffest; /* largest ratio of strength to critical opening, over that of the law; 1: all alike */
     bool lift, lumped;
-
-    double damping;  /* by viscosity.linear 1, of the stiffest mode */
-    double omega2;   /* largest squared frequency, faces intact or closed, bodies in contact (1/s^2) */
-    rg_gid limiting; /* element that sets it */
+    size_t crack_stride,
+        history_stride; /* values of a block of crack and history: as many as the longest needs */
+    double damping;     /* by viscosity.linear 1, of the stiffest mode */
+    double omega2;      /* largest squared frequency, faces intact or closed, bodies in contact (1/s^2) */
+    rg_gid limiting;    /* element that sets it */
     const char *limiting_state;
+
+    /* ---- the state: with the fields, what a checkpoint holds (solver/fields.c) ---- */
+#define MEMBER(member, type, per, values, there, saved) RG_TYPE_OF_##type *member;
+    struct {
+        RG_FIELDS(MEMBER)
+    };
+#undef MEMBER
+    rg_constraints *constraints;
+    rg_bodies *bodies;
+    double time, dt; /* of the current state (s); dt is the step that led to it */
+    double dt_next;  /* step that leads on, once kicked */
+    int64_t step;
+    double opening_rate;        /* largest on all ranks (1/s) */
+    double stiffening_anywhere; /* largest on all ranks; infinite if not finite */
+
+    /* ---- the stepper, and what it tells ---- */
+    rg_stepper *stepper; /* rows and messages: solver/stepper.h */
+    rg_workspace *work;  /* [threads] */
+    rg_watcher *watch;
+    void *watch_context;
+    int stop_request;        /* largest of all ranks (base/interrupt.h) when the forces were last computed */
+    double *tile_seconds;    /* [tiles]: that the sweeps took (solver/balance.h); NULL: nobody asks */
     double pass_seconds;     /* of one evaluation of all forces, as measured at set-up */
     double exchange_seconds; /* of a step's messages with nothing to hide them, as measured at set-up */
     rg_phases phases;        /* of all passes since it was cleared */
-    double time, dt;         /* of the current state (s); dt is the step that led to it */
-    double dt_next;          /* step that leads on, once kicked */
-    int64_t step;
 };
 
 #endif

@@ -5,12 +5,13 @@
 #include <string.h>
 
 #include "base/error.h"
-#include "base/interrupt.h"
 #include "base/first_bad.h"
+#include "base/interrupt.h"
 #include "domain/element.h"
 #include "partition/material.h"
 #include "solver/law.h"
 #include "solver/step_limiter.h"
+#include "solver/stepper.h"
 #include "solver/tile.h"
 
 /* ---- One tile ---- */
@@ -241,9 +242,10 @@ static void start_stiffening(rg_solver *s) {
 #pragma omp master
     {
         double here = largest(s->tile_stiffening, s->domain->tiles);
-        s->here[0] = isfinite(here) ? here : INFINITY;
-        s->here[1] = rg_interrupt_request();
-        MPI_Iallreduce(s->here, s->anywhere, 2, MPI_DOUBLE, MPI_MAX, s->comm, &s->stiffening_request);
+        s->stepper->here[0] = isfinite(here) ? here : INFINITY;
+        s->stepper->here[1] = rg_interrupt_request();
+        MPI_Iallreduce(s->stepper->here, s->stepper->anywhere, 2, MPI_DOUBLE, MPI_MAX, s->comm,
+                       &s->stepper->stiffening_request);
     }
     mark(s, RG_PHASE_REDUCE);
 }
@@ -281,7 +283,8 @@ static void evaluate(rg_solver *s, const impulse *whole) {
         p = &apart;
     }
     size_t outer = s->domain->boundary_tiles, all = s->domain->tiles;
-    rg_halo *traces = s->halo_u[s->current], *next = s->halo_u[1 - s->current];
+    rg_halo *traces = s->stepper->halo_u[s->stepper->current],
+            *next = s->stepper->halo_u[1 - s->stepper->current];
     rg_phases_begin(&s->phases);
 #pragma omp parallel
     {
@@ -290,12 +293,12 @@ static void evaluate(rg_solver *s, const impulse *whole) {
         finish(s, traces);
         sweep(s, inside, p, 0, outer, NULL);
         mark(s, RG_PHASE_COMPUTE);
-        start(s, s->halo_t);
+        start(s, s->stepper->halo_t);
         start_stiffening(s);
         start_bodies(s, p);
-        sweep(s, across, p, outer, all, s->halo_t);
+        sweep(s, across, p, outer, all, s->stepper->halo_t);
         mark(s, RG_PHASE_JUMP);
-        finish(s, s->halo_t);
+        finish(s, s->stepper->halo_t);
         sweep(s, across, p, 0, outer, NULL);
         mark(s, RG_PHASE_JUMP);
         if (s->assembly != NULL) {
@@ -305,9 +308,9 @@ static void evaluate(rg_solver *s, const impulse *whole) {
             start(s, next);
         }
     }
-    MPI_Wait(&s->stiffening_request, MPI_STATUS_IGNORE);
-    s->stiffening_anywhere = s->anywhere[0];
-    s->stop_request = (int)s->anywhere[1];
+    MPI_Wait(&s->stepper->stiffening_request, MPI_STATUS_IGNORE);
+    s->stiffening_anywhere = s->stepper->anywhere[0];
+    s->stop_request = (int)s->stepper->anywhere[1];
     if (s->tile_opening_rate != NULL && p->constrain) {
         rg_step_limiter_agree(s);
     }
@@ -320,7 +323,7 @@ static void evaluate(rg_solver *s, const impulse *whole) {
 /* Sends the traces of the current displacement, once those of the last drift have arrived. */
 static void publish(rg_solver *s) {
     const rg_domain *d = s->domain;
-    rg_halo_finish(s->halo_u[s->current]);
+    rg_halo_finish(s->stepper->halo_u[s->stepper->current]);
 #pragma omp parallel
     {
         const rg_workspace *w = &s->work[omp_get_thread_num()];
@@ -329,7 +332,7 @@ static void publish(rg_solver *s) {
             rg_trace_args traces = rg_tile_traces(s, &d->tile[t], w, false);
             s->kernels->send(&traces, 0, rg_tile_face_blocks(&d->tile[t]));
         }
-        start(s, s->halo_u[s->current]);
+        start(s, s->stepper->halo_u[s->stepper->current]);
     }
 }
 
@@ -434,7 +437,7 @@ static impulse prepare(rg_solver *s, double dt) {
 /* The displacement has moved. */
 static void advance(rg_solver *s) {
     rg_bodies_drift(s->bodies, s->dt_next);
-    s->current = 1 - s->current;
+    s->stepper->current = 1 - s->stepper->current;
     s->time += s->dt_next;
     s->dt = s->dt_next;
     s->step++;
@@ -457,7 +460,7 @@ void rg_solver_drift(rg_solver *s) {
             drift(s, t, w);
         }
         mark(s, RG_PHASE_JUMP);
-        start(s, s->halo_u[1 - s->current]);
+        start(s, s->stepper->halo_u[1 - s->stepper->current]);
     }
     advance(s);
 }
@@ -472,13 +475,23 @@ void rg_solver_step(rg_solver *s, double dt) {
 void rg_solver_exchange(rg_solver *s) {
 #pragma omp parallel
     {
-        start(s, s->halo_u[s->current]);
-        finish(s, s->halo_u[s->current]);
-        start(s, s->halo_t);
-        finish(s, s->halo_t);
+        start(s, s->stepper->halo_u[s->stepper->current]);
+        finish(s, s->stepper->halo_u[s->stepper->current]);
+        start(s, s->stepper->halo_t);
+        finish(s, s->stepper->halo_t);
         if (s->assembly != NULL) {
             start(s, rg_assembly_halo(s->assembly));
             finish(s, rg_assembly_halo(s->assembly));
         }
     }
+}
+
+int rg_solver_halos(const rg_solver *s, rg_halo *halo[3]) {
+    halo[0] = s->stepper->halo_u[0]; /* that of the next state sends as much */
+    halo[1] = s->stepper->halo_t;
+    if (s->assembly == NULL) {
+        return 2;
+    }
+    halo[2] = rg_assembly_halo(s->assembly);
+    return 3;
 }

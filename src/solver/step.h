@@ -27,6 +27,9 @@ void rg_solver_step(rg_solver *s, double dt);
  * the spectrum. Collective. */
 void rg_solver_impulse(rg_solver *s, rg_real *velocity, double dt);
 
+/* The messages of a step: traces, tractions and, where nodes are shared, their sums. How many kinds. */
+int rg_solver_halos(const rg_solver *s, rg_halo *halo[3]);
+
 /* Both exchanges of a step with nothing to hide them, as a measurement: the rows are not of one state.
  * Collective. */
 void rg_solver_exchange(rg_solver *s);

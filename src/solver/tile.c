@@ -3,17 +3,19 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "solver/stepper.h"
 
 rg_trace_args rg_tile_traces(const rg_solver *s, const rg_tile *t, const rg_workspace *w, bool next) {
     const rg_domain *d = s->domain;
-    rg_real *rows = s->rows[next ? 1 - s->current : s->current];
+    const rg_stepper *m = s->stepper;
+    rg_real *rows = m->rows[next ? 1 - m->current : m->current];
     return (rg_trace_args){.u = s->u + t->begin * RG_NODE_BLOCK,
                            .traction = w->traction,
                            .side = d->side[0] + t->sbegin * RG_LANES,
                            .other = d->side[1] + t->sbegin * RG_LANES,
                            .rows = rows,
                            .own_rows = rows + t->row * RG_TRACE_ROW,
-                           .own_tractions = s->tractions + t->row * RG_TILE_FACE_ROW,
+                           .own_tractions = m->tractions + t->row * RG_TILE_FACE_ROW,
                            .ghost = w->ghost};
 }
 
@@ -68,8 +70,8 @@ rg_interface_args rg_tile_interfaces(const rg_solver *s, const rg_tile *t, const
                                .traction = w->traction,
                                .first_tile_face = rg_tile_inner_blocks(t),
                                .ghost = w->ghost,
-                               .own_tractions = s->tractions + t->row * RG_TILE_FACE_ROW,
-                               .tractions = s->tractions,
+                               .own_tractions = s->stepper->tractions + t->row * RG_TILE_FACE_ROW,
+                               .tractions = s->stepper->tractions,
                                .side = {d->side[0] + first, d->side[1] + first},
                                .geom = d->igeom + t->ibegin * RG_IGEOM_BLOCK,
                                .scale = s->scale == NULL ? NULL : s->scale + t->ibegin * 2 * RG_LANES,
@@ -128,7 +130,8 @@ rg_real rg_tile_trace(const rg_solver *s, const rg_tile *t, size_t i, int k, int
     if (i >= t->sbegin * RG_LANES) {
         int32_t other = s->domain->side[1][i];
         if (k != other % 2) { /* not the own side */
-            return s->rows[s->current][(size_t)(other / 2) * RG_TRACE_ROW + (size_t)(3 * a + c)];
+            return s->stepper
+                ->rows[s->stepper->current][(size_t)(other / 2) * RG_TRACE_ROW + (size_t)(3 * a + c)];
         }
         link = s->domain->side[0][i];
     }

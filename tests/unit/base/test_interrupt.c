@@ -55,6 +55,7 @@ static void be_asked_for_a_checkpoint(void) {
 static int signal_to_send;
 
 static void be_signalled(void) {
+    signal(signal_to_send, SIG_DFL); /* nohup would have it ignored, which is respected */
     rg_interrupt_listen();
     raise(signal_to_send);
     fputs(stop_request(), stderr);

@@ -16,6 +16,7 @@
 #include "reference/reference.h"
 #include "solver/step.h"
 #include "solver/tile.h"
+#include "solver/stepper.h"
 #include "support/random_state.h"
 #include "support/tap.h"
 
@@ -517,7 +518,7 @@ static void check_rest(void) {
     const char *change[] = {"output.fields=[triaxiality, principal_stress]"};
     random_state r = random_state_make(1, change, MPI_COMM_WORLD);
     rg_solver_resume(r.solver);
-    rg_halo_finish(r.solver->halo_u[r.solver->current]);
+    rg_halo_finish(r.solver->stepper->halo_u[r.solver->stepper->current]);
     rg_slab *slab = NULL;
     rg_snapshots *w = rg_snapshots_open(r.solver, &slab);
     rg_snapshots_write(w, r.solver, NULL);

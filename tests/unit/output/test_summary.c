@@ -14,6 +14,7 @@
 
 #include "diagnostics/state_hash.h"
 #include "output/summary.h"
+#include "solver/stepper.h"
 #include "partition/material.h"
 
 /* ---- stand-ins: what is asked of the state ---- */
@@ -88,8 +89,11 @@ static int tear_down(void **state) {
     return rmdir(place);
 }
 
+static rg_stepper stepper;
+
 static int fresh(void **state) {
     (void)state;
+    stepper = (rg_stepper){.halo_u = {first_halo, NULL}, .halo_t = traction_halo};
     first_fracture = 1.5e-7;
     input = (rg_case){.name = name, .others = 1, .other = &other, .output = {.dir = place}};
     part = (rg_part){.quality = {1.25, 1.5, 70, 3, 2.5}};
@@ -101,8 +105,7 @@ static int fresh(void **state) {
                          .threads = 5,
                          .kernels = &kernels,
                          .part = &part,
-                         .halo_u = {first_halo, NULL},
-                         .halo_t = traction_halo,
+                         .stepper = &stepper,
                          .bodies = &bodies,
                          .materials = 2,
                          .limiting = 77,

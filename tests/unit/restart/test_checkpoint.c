@@ -22,6 +22,7 @@
 #include "solver/setup.h"
 #include "solver/step.h"
 #include "solver/spectrum.h"
+#include "solver/stepper.h"
 #include "support/step_cases.h"
 #include "support/tap.h"
 
@@ -123,8 +124,8 @@ static bool is_padding(const rg_solver *s, const char *at) {
 static bool may_differ(const rg_solver *s, const char *at, uint64_t word) {
     const char *begin[] = {(const char *)&s->phases, (const char *)&s->limiting_state};
     const size_t bytes[] = {sizeof s->phases, sizeof s->limiting_state};
-    const rg_halo *halo[] = {s->halo_u[0], s->halo_u[1], s->halo_t,
-                             s->assembly != NULL ? rg_assembly_halo(s->assembly) : s->halo_t};
+    const rg_halo *halo[] = {s->stepper->halo_u[0], s->stepper->halo_u[1], s->stepper->halo_t,
+                             s->assembly != NULL ? rg_assembly_halo(s->assembly) : s->stepper->halo_t};
     bool may = is_padding(s, at);
     for (int k = 0; k < 2; k++)
         may = may || (at >= begin[k] && at < begin[k] + bytes[k]);

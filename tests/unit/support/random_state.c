@@ -13,6 +13,7 @@
 #include "domain/element.h"
 #include "partition/material_map.h"
 #include "solver/tile.h"
+#include "solver/stepper.h"
 
 enum { TILE = 16 };
 
@@ -217,7 +218,7 @@ void random_state_draw(random_state *r, uint64_t seed) {
     }
     draw_registered(s, seed);
     rg_solver_resume(s);
-    rg_halo_finish(s->halo_u[s->current]);
+    rg_halo_finish(s->stepper->halo_u[s->stepper->current]);
 }
 
 /* ---- the whole mesh ---- */
