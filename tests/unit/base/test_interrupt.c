@@ -55,7 +55,6 @@ static void be_asked_for_a_checkpoint(void) {
 static int signal_to_send;
 
 static void be_signalled(void) {
-    signal(signal_to_send, SIG_DFL); /* nohup would have it ignored, which is respected */
     rg_interrupt_listen();
     raise(signal_to_send);
     fputs(stop_request(), stderr);
@@ -294,6 +293,7 @@ static void test_processors(void **state) {
 }
 
 int main(int argc, char **argv) {
+    signal(SIGHUP, SIG_DFL); /* whoever started the tests with nohup */
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_signals), cmocka_unit_test(test_clock), cmocka_unit_test(test_limits),
         cmocka_unit_test(test_times),   cmocka_unit_test(test_list),  cmocka_unit_test(test_processors),
