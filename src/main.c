@@ -100,6 +100,9 @@ static int parse(int argc, char **argv, int rank, arguments *a) {
     if (strcmp(a->command, "run") != 0 && strcmp(a->command, "check") != 0) {
         return complain(rank, NULL, "unknown command", a->command);
     }
+    if (strcmp(a->command, "check") == 0 && (a->run.restart || a->run.overwrite || a->run.walltime > 0)) {
+        return complain(rank, a->command, "--restart, --overwrite and --walltime are for run", "");
+    }
     if (a->run.restart && (a->has_directory || a->run.overwrite)) {
         return complain(rank, a->command,
                         "--restart goes on in its own directory: neither -o nor --overwrite", "");

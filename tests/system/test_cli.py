@@ -89,6 +89,13 @@ def test_version_is_that_of_the_summary(run):
     assert process.stdout == f"rhegma {version} ({summary['revision']}), {summary['precision']} precision\n"
 
 
+@pytest.mark.parametrize("words", [["--overwrite"], ["--restart", "out"], ["--walltime", "1:00:00"]])
+def test_check_takes_no_options_of_run(words):
+    process = launch("check", FRAGMENTS, *words)
+    assert process.returncode == 2 and process.stdout == ""
+    assert process.stderr.startswith("rhegma: --restart, --overwrite and --walltime are for run\nusage: rhegma check ")
+
+
 def test_a_finished_run_is_not_replaced_in_silence(tmp_path):
     words = ["run", FRAGMENTS, "-q", "-o", tmp_path / "out", "--set", "time.steps=2"]
     said = [launch(*words, *more) for more in ([], [], ["--overwrite"])]
