@@ -139,29 +139,17 @@ static void tell_parts(const rg_mesh *mesh, const char *input) {
 
 /* A unit forgotten shows in the size. */
 static void tell(const rg_mesh *mesh, const char *output) {
-    double low[3], high[3];
-    for (int i = 0; i < 3; i++) {
-        low[i] = INFINITY;
-        high[i] = -INFINITY;
-    }
-    for (size_t k = 0; k < 4 * (size_t)mesh->elements; k++) {
-        for (int i = 0; i < 3; i++) {
-            low[i] = fmin(low[i], mesh->x[3 * mesh->corner[k] + i]);
-            high[i] = fmax(high[i], mesh->x[3 * mesh->corner[k] + i]);
-        }
-    }
-    printf("%s: %.4g x %.4g x %.4g m, %" PRId64 " elements, %" PRId64 " vertices", output, high[0] - low[0],
-           high[1] - low[1], high[2] - low[2], mesh->elements, mesh->vertices);
+    double box[2][3];
+    rg_mesh_box_around(mesh, box);
+    printf("%s: %.4g x %.4g x %.4g m, %" PRId64 " elements, %" PRId64 " vertices", output,
+           box[1][0] - box[0][0], box[1][1] - box[0][1], box[1][2] - box[0][2], mesh->elements,
+           mesh->vertices);
 }
 
 static double longest_edge(const rg_mesh *mesh) {
     double most = 0;
     for (rg_gid e = 0; e < mesh->elements; e++) {
-        double x[12];
-        for (int k = 0; k < 4; k++) {
-            memcpy(x + 3 * k, mesh->x + 3 * mesh->corner[4 * e + k], sizeof(double[3]));
-        }
-        most = fmax(most, rg_tet_longest_edge(x));
+        most = fmax(most, rg_mesh_longest_edge(mesh, e));
     }
     return most;
 }

@@ -276,15 +276,22 @@ static void time_loop(run *r) {
 
 /* ---- outputs ---- */
 
-/* Results of two runs never mix; but those of days are not lost because of a word forgotten. */
+/* Results of two runs never mix; but those of days are not lost because of a word forgotten, and those of a
+ * run that had ended not in silence. */
 static void refuse_overwriting(const run *r) {
     const char *dir = r->input->output.dir;
-    if (r->solver->rank == 0 && !r->options->overwrite && rg_checkpoints_exist(dir) && !rg_completed(dir)) {
-        rg_fatal(
-            RG_USAGE,
-            "%s holds checkpoints of a run that did not end: --restart %s goes on from them, --overwrite "
-            "starts anew without them",
-            dir, dir);
+    if (r->solver->rank == 0 && !r->options->overwrite) {
+        if (rg_completed(dir)) {
+            rg_warn(
+                "%s: this run takes the place of one that had ended; pictures there are still of that one",
+                dir);
+        } else if (rg_checkpoints_exist(dir)) {
+            rg_fatal(
+                RG_USAGE,
+                "%s holds checkpoints of a run that did not end: --restart %s goes on from them, --overwrite "
+                "starts anew without them",
+                dir, dir);
+        }
     }
     MPI_Barrier(r->solver->comm);
 }
@@ -298,11 +305,6 @@ static void open_outputs(run *r) {
     refuse_overwriting(r);
     rg_make_directory(c->output.dir, r->solver->comm);
     if (r->solver->rank == 0) {
-        if (!r->options->overwrite && rg_completed(c->output.dir)) {
-            rg_warn(
-                "%s: this run takes the place of one that had ended; pictures there are still of that one",
-                c->output.dir);
-        }
         rg_checkpoints_remove(c->output.dir,
                               true); /* first: none may outlive the files that it goes on with */
     }

@@ -109,6 +109,10 @@ const char *rg_law_word(rg_law law) {
     return law == RG_LAW_NONE ? "none" : rg_law_facts_of(law, (double[RG_LAW_SHAPE]){0}, 1).word;
 }
 
+bool rg_key_has_default(const rg_key *key) {
+    return key->need != RG_NEED_REQUIRED && key->alternative == RG_NO_ALTERNATIVE;
+}
+
 const char *rg_key_default(const rg_key *key, char *text, size_t size) {
     const char *words = key->absent;
     text[0] = '\0';

@@ -110,6 +110,9 @@ const char *rg_law_word(rg_law law);
  * Returns `text`. */
 const char *rg_key_default(const rg_key *key, char *text, size_t size);
 
+/* Whether these words are a default. */
+bool rg_key_has_default(const rg_key *key);
+
 /* Whether the key is used in the filled structure `base`. */
 bool rg_key_used(const rg_key *key, const void *base);
 

@@ -85,9 +85,8 @@ static void text_row(void *to, const char *name, const rg_key *key) {
     if (!is_asked_for(p, name)) {
         return;
     }
-    bool plain = key->need != RG_NEED_REQUIRED && key->alternative == RG_NO_ALTERNATIVE;
     fprintf(p->out, "%s%s\n    %s; %s%s\n    %s%s\n", p->keys > 0 ? "\n" : "", name,
-            rg_key_allowed(key, allowed, sizeof allowed), plain ? "default: " : "",
+            rg_key_allowed(key, allowed, sizeof allowed), rg_key_has_default(key) ? "default: " : "",
             describe_default(key, absent, sizeof absent), key->meaning, change_words(key));
     for (int i = 0; i < choices(key); i++) {
         fprintf(p->out, "      %s: %s\n", key->choice[i], key->choice_meaning[i]);

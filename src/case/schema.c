@@ -166,11 +166,10 @@ static void put_length(writer *w, const rg_key *key) {
 
 static void describe(writer *w, const rg_key *key) {
     char absent[256], *text;
-    bool plain = key->need != RG_NEED_REQUIRED && key->alternative == RG_NO_ALTERNATIVE;
     rg_key_default(key, absent, sizeof absent);
     text = rg_text_format("%s%s%s%s; %s%s", key->meaning, key->unit != NULL ? " (" : "",
                           key->unit != NULL ? key->unit : "", key->unit != NULL ? ")" : "",
-                          plain ? "default: " : "", absent);
+                          rg_key_has_default(key) ? "default: " : "", absent);
     put_text(w, "description", text);
     rg_free(text);
 }

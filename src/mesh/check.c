@@ -34,6 +34,14 @@ double rg_tet_longest_edge(const double *x) {
     return edge;
 }
 
+double rg_mesh_longest_edge(const rg_mesh *mesh, rg_gid e) {
+    double x[12];
+    for (int i = 0; i < 4; i++) {
+        memcpy(x + 3 * i, corner(mesh, e, i), 3 * sizeof *x);
+    }
+    return rg_tet_longest_edge(x);
+}
+
 static bool has_volume(const double *x) {
     double edge = rg_tet_longest_edge(x);
     return fabs(rg_tet_volume(x, x + 3, x + 6, x + 9)) >

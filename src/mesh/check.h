@@ -33,6 +33,9 @@ bool rg_tet_sound(const double *x, const rg_gid corner[4], rg_gid name, char *wh
 /* The longest edge of the element with corners x[4][3] (m). */
 double rg_tet_longest_edge(const double *x);
 
+/* The same of element e of a mesh. */
+double rg_mesh_longest_edge(const rg_mesh *mesh, rg_gid e);
+
 /* Parts that share no face: part[elements] numbers them by their first element. Returns how many there are.
  */
 int32_t rg_mesh_parts(const rg_mesh *mesh, int32_t *part);

@@ -67,14 +67,6 @@ static double circumradius(const rg_mesh *mesh, rg_gid e, double volume) {
     return sqrt(rg_vector_dot(sum, sum)) / (12 * volume);
 }
 
-static double longest_edge(const rg_mesh *mesh, rg_gid e) {
-    double x[12];
-    for (int i = 0; i < 4; i++) {
-        memcpy(x + 3 * i, mesh->x + 3 * mesh->corner[4 * e + i], 3 * sizeof *x);
-    }
-    return rg_tet_longest_edge(x);
-}
-
 static struct shape measure(const rg_mesh *mesh, rg_gid e) {
     struct shape s;
     double n[4][3], area = 0, largest = 0;
@@ -88,7 +80,7 @@ static struct shape measure(const rg_mesh *mesh, rg_gid e) {
         largest = fmax(largest, here);
     }
     s.height = 3 * s.volume / largest;
-    s.aspect = longest_edge(mesh, e) / s.height * sqrt(2.0 / 3);
+    s.aspect = rg_mesh_longest_edge(mesh, e) / s.height * sqrt(2.0 / 3);
     s.quality = 3 * (3 * s.volume / area) / circumradius(mesh, e, s.volume);
     for (int f = 1, k = 0; f < 4; f++) {
         for (int g = 0; g < f; g++, k++) {
