@@ -3,7 +3,6 @@
 #include "base/h5_parallel.h"
 
 #include <errno.h>
-#include <setjmp.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,6 +12,8 @@
 
 #include "base/error.h"
 #include "base/mem.h"
+#define FATAL_ONLY RG_FAILURE
+#include "support/fatal.h"
 #include "support/tap.h"
 
 static int ranks;
@@ -27,22 +28,6 @@ static const char *in_dir(const char *name) {
 }
 
 /* ---- stand-ins: the end of a run, the disk, an MPI-IO that spoils a byte ---- */
-
-static jmp_buf escape;
-static bool expect_fatal;
-static char said[600];
-
-void rg_fatal(int status, const char *format, ...) {
-    va_list args;
-    va_start(args, format);
-    vsnprintf(said, sizeof said, format, args);
-    va_end(args);
-    if (!expect_fatal || status != RG_FAILURE) {
-        printf("Bail out! %s\n", said);
-        MPI_Abort(MPI_COMM_WORLD, 1);
-    }
-    longjmp(escape, 1);
-}
 
 static struct {
     int calls, error[4];    /* errors of the next calls */

@@ -3,7 +3,6 @@
 #include "diagnostics/probe.h"
 
 #include <math.h>
-#include <setjmp.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
@@ -16,30 +15,13 @@
 #include "quadrature.h"
 #include "reference/reference.h"
 #include "solver/tile.h"
+#include "support/fatal.h"
 #include "support/random_state.h"
 #include "support/tap.h"
 
 enum { SEED = 17, PROBES = 3, BODIES = 2, COLUMNS = 1 + 12 * PROBES + 9 * BODIES, SAMPLES = 259 };
 
 /* ---- the end of a run ---- */
-
-static jmp_buf escape;
-static bool expect_fatal;
-static int fatal_status;
-static char said[1000];
-
-void rg_fatal(int status, const char *format, ...) {
-    va_list args;
-    va_start(args, format);
-    vsnprintf(said, sizeof said, format, args);
-    va_end(args);
-    fatal_status = status;
-    if (!expect_fatal) {
-        printf("Bail out! %s\n", said);
-        MPI_Abort(MPI_COMM_WORLD, 1);
-    }
-    longjmp(escape, 1);
-}
 
 void rg_warn(const char *format, ...) {
     (void)format;

@@ -3,7 +3,6 @@
 #include "output/estimate.h"
 
 #include <math.h>
-#include <setjmp.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,6 +10,8 @@
 #include "base/error.h"
 #include "base/mem.h"
 #include "output/snapshot.h"
+#define FATAL_ONLY RG_USAGE
+#include "support/fatal.h"
 #include "support/random_state.h"
 #include "support/tap.h"
 
@@ -18,22 +19,8 @@ enum { SEED = 29 };
 
 /* ---- the end of a run, warnings ---- */
 
-static jmp_buf escape;
-static bool expect_fatal;
 static int warnings;
-static char said[400], warned[400];
-
-void rg_fatal(int status, const char *format, ...) {
-    va_list args;
-    va_start(args, format);
-    vsnprintf(said, sizeof said, format, args);
-    va_end(args);
-    if (!expect_fatal || status != RG_USAGE) {
-        printf("Bail out! %s\n", said);
-        MPI_Abort(MPI_COMM_WORLD, 1);
-    }
-    longjmp(escape, 1);
-}
+static char warned[400];
 
 void rg_warn(const char *format, ...) {
     va_list args;

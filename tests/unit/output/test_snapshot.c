@@ -3,7 +3,6 @@
 #include "output/snapshot.h"
 
 #include <math.h>
-#include <setjmp.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
@@ -17,28 +16,14 @@
 #include "solver/step.h"
 #include "solver/tile.h"
 #include "solver/stepper.h"
+#define FATAL_ONLY RG_USAGE
+#include "support/fatal.h"
 #include "support/random_state.h"
 #include "support/tap.h"
 
 enum { SEED = 23, ELEMENTS = 144, MOST_FIELDS = 20 };
 
 /* ---- the end of a run ---- */
-
-static jmp_buf escape;
-static bool expect_fatal;
-static char said[1000];
-
-void rg_fatal(int status, const char *format, ...) {
-    va_list args;
-    va_start(args, format);
-    vsnprintf(said, sizeof said, format, args);
-    va_end(args);
-    if (!expect_fatal || status != RG_USAGE) {
-        printf("Bail out! %s\n", said);
-        MPI_Abort(MPI_COMM_WORLD, 1);
-    }
-    longjmp(escape, 1);
-}
 
 void rg_warn(const char *format, ...) {
     (void)format;

@@ -5,7 +5,6 @@
 
 #include <errno.h>
 #include <hdf5.h>
-#include <setjmp.h>
 #include <signal.h>
 #include <stdarg.h>
 #include <stdbool.h>
@@ -19,6 +18,7 @@
 #include "base/error.h"
 #include "base/hash.h"
 #include "base/mem.h"
+#include "support/fatal.h"
 
 enum { PLANNED = 51, FRAMES = 4 };
 
@@ -37,23 +37,7 @@ static void ok(bool good, const char *name) {
 
 /* ---- stand-ins: the end of the run, and an MPI-IO that loses writes ---- */
 
-static jmp_buf escape;
-static bool expect_fatal, lose_writes;
-static int fatal_status;
-static char fatal_message[600];
-
-void rg_fatal(int status, const char *format, ...) {
-    va_list args;
-    va_start(args, format);
-    vsnprintf(fatal_message, sizeof fatal_message, format, args);
-    va_end(args);
-    if (!expect_fatal) {
-        printf("Bail out! %s\n", fatal_message);
-        MPI_Abort(MPI_COMM_WORLD, 1);
-    }
-    fatal_status = status;
-    longjmp(escape, 1);
-}
+static bool lose_writes;
 
 int MPI_File_write_at_all(MPI_File file, MPI_Offset offset, const void *data, int count, MPI_Datatype type,
                           MPI_Status *status) {
@@ -391,11 +375,11 @@ static void write_and_read(int64_t total, int idle, bool cut) {
 
 /* What goes wrong below must end the run with status RG_FAILURE and a message that has `words`. */
 static void failure_said(const char *name, const char *words) {
-    bool good = fatal_status == RG_FAILURE && strstr(fatal_message, words) != NULL;
+    bool good = fatal_status == RG_FAILURE && strstr(said, words) != NULL;
     ok(good, name);
-    printf("# %s\n", fatal_message);
+    printf("# %s\n", said);
     fatal_status = RG_OK;
-    fatal_message[0] = '\0';
+    said[0] = '\0';
 }
 
 static void limit_file_size(rlim_t bytes) {

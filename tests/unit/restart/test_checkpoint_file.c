@@ -5,7 +5,6 @@
 
 #include <errno.h>
 #include <hdf5.h>
-#include <setjmp.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
@@ -21,6 +20,7 @@
 #include "restart/checksum.h"
 #include "solver/tile.h"
 #include "support/checkpoint_tamper.h"
+#include "support/fatal.h"
 #include "support/random_state.h"
 #include "support/tap.h"
 
@@ -28,23 +28,8 @@ enum { STEEL_ROWS = RG_GAUSS * RG_J2_HISTORY + RG_RELEASED, WINDOW = 7 };
 
 /* ---- stand-ins: the end of the run, warnings, small windows, disks that fail ---- */
 
-static jmp_buf escape;
-static bool expect_fatal;
-static int fatal_status, warnings;
-static char said[1000], warned[1000];
-
-void rg_fatal(int status, const char *format, ...) {
-    va_list args;
-    va_start(args, format);
-    vsnprintf(said, sizeof said, format, args);
-    va_end(args);
-    if (!expect_fatal) {
-        printf("Bail out! %s\n", said);
-        MPI_Abort(MPI_COMM_WORLD, 1);
-    }
-    fatal_status = status;
-    longjmp(escape, 1);
-}
+static int warnings;
+static char warned[1000];
 
 void rg_warn(const char *format, ...) {
     va_list args;
