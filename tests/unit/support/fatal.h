@@ -28,6 +28,7 @@ void rg_fatal(int status, const char *format, ...) {
 #endif
     if (!may_be) {
         printf("Bail out! %s\n", said);
+        fflush(stdout);
         MPI_Abort(MPI_COMM_WORLD, 1);
     }
     fatal_status = status;
