@@ -161,6 +161,7 @@ typedef struct {
         int64_t compression;           /* of the fields on the disk; 0: none */
         rg_fragments_when fragments; /* output.fragments: rows for each output, for the last one, for none */
         double energy_limit;         /* the run stops when energy_error_rel passes this */
+        double dissipation_limit;    /* and when the error over what was dissipated does; 0: it does not */
     } output;
     struct { /* when to write checkpoints; 0: not for that reason */
         int64_t steps;

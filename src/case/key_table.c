@@ -229,7 +229,9 @@ static const rg_key case_keys[] = {
     {.name = "output.compression", INTEGER, FROM_TO(0, 9), DEFAULT(0), MAY_CHANGE, CASE(output.compression),
      MEANS("of the fields on the disk, by gzip; 0: none")},
     {.name = "output.energy_limit", REAL, ABOVE(0), DEFAULT(0.05), MAY_CHANGE, CASE(output.energy_limit),
-     MEANS("the run stops when its relative energy error passes this")},
+     MEANS("the run stops when its energy error, over the largest energy, passes this")},
+    {.name = "output.dissipation_limit", REAL, ABOVE(0), ELSE("no limit"), MAY_CHANGE, CASE(output.dissipation_limit),
+     MEANS("the run stops when its energy error passes this times what has been dissipated; judged once that is 1 % of the largest energy")},
 
     {.name = "checkpoint.steps", INTEGER, FROM(0), DEFAULT(0), MAY_CHANGE, CASE(checkpoint.steps),
      MEANS("a checkpoint every so many steps; 0: not for that reason")},

@@ -3,6 +3,8 @@
 #include <float.h>
 #include <math.h>
 #include <omp.h>
+#include <stdio.h>
+#include <stdlib.h>
 
 #include "base/mem.h"
 #include "domain/element.h"
@@ -23,8 +25,16 @@ enum {
     VOLUME,
     MOMENTUM,
     ANGULAR = MOMENTUM + 3,
-    SUMS = ANGULAR + 3
+    PARTS = ANGULAR + 3 /* those of material m: from PARTS + PART * m on */
 };
+
+enum { ROW = 24 }; /* values of a row, but for the parts of the materials */
+
+enum { PART_KINETIC, PART_BULK, PART_DISSIPATED, PART };
+
+static size_t sums(const rg_solver *s) {
+    return PARTS + (size_t)(PART * s->materials);
+}
 
 static void add_all(rg_exact_sum *sum, const double *x, size_t count) {
     for (size_t i = 0; i < count; i++) {
@@ -55,10 +65,17 @@ static void add_momentum(rg_exact_sum *sum, const rg_solver *s, size_t slot) {
     }
 }
 
+/* The sums of the material of a block. */
+static rg_exact_sum *parts_of(rg_exact_sum *sum, const rg_solver *s, size_t block) {
+    return &sum[PARTS + PART * s->domain->material[block]];
+}
+
 static void add_released(rg_exact_sum *sum, const rg_solver *s, size_t slot) {
     int history = rg_material_history(rg_material_of(s, slot)->model);
     for (size_t k = 0; history > 0 && k < RG_RELEASED; k++) {
-        rg_exact_add(&sum[RELEASED + k], rg_history_value(s, slot, (size_t)(RG_GAUSS * history) + k));
+        double released = rg_history_value(s, slot, (size_t)(RG_GAUSS * history) + k);
+        rg_exact_add(&sum[RELEASED + k], released);
+        rg_exact_add(&parts_of(sum, s, slot / RG_LANES)[PART_DISSIPATED], released);
     }
 }
 
@@ -74,18 +91,27 @@ static void kinetic_energies(const rg_solver *s, const rg_tile *t, double *energ
     }
 }
 
+/* Energies of the elements of a tile, to sum `all` and to that of their materials. */
+static void add_elements(rg_exact_sum *sum, const rg_solver *s, const rg_tile *t, const double *energy,
+                         int all, int part) {
+    add_all(&sum[all], energy, rg_tile_eblocks(t) * RG_LANES);
+    for (size_t b = 0; s->materials > 1 && b < rg_tile_eblocks(t); b++) {
+        add_all(&parts_of(sum, s, t->begin + b)[part], energy + b * RG_LANES, RG_LANES);
+    }
+}
+
 static void element_energies(rg_solver *s, const rg_tile *t, const rg_workspace *w, double *energy,
-                             rg_exact_sum sum[SUMS]) {
-    size_t blocks = rg_tile_eblocks(t);
+                             rg_exact_sum *sum) {
     rg_tile_state(s, t, w, energy, NULL, NULL);
-    add_all(&sum[BULK], energy, blocks * RG_LANES);
+    add_elements(sum, s, t, energy, BULK, PART_BULK);
     kinetic_energies(s, t, energy);
-    add_all(&sum[KINETIC], energy, blocks * RG_LANES);
+    add_elements(sum, s, t, energy, KINETIC, PART_KINETIC);
     for (size_t slot = t->begin * RG_LANES; slot < t->end * RG_LANES; slot++) {
         if (s->domain->id[slot] >= 0) {
             add_released(sum, s, slot);
             if (s->heat != NULL) {
                 rg_exact_add(&sum[VISCOUS], s->heat[slot]);
+                rg_exact_add(&parts_of(sum, s, slot / RG_LANES)[PART_DISSIPATED], s->heat[slot]);
             }
             rg_exact_add(&sum[VOLUME], s->domain->geom[rg_geom_index(slot, RG_GEOM_VOLUME)]);
             add_momentum(sum, s, slot);
@@ -93,7 +119,7 @@ static void element_energies(rg_solver *s, const rg_tile *t, const rg_workspace 
     }
 }
 
-static void add_areas(rg_exact_sum sum[SUMS], const rg_solver *s, size_t i) {
+static void add_areas(rg_exact_sum *sum, const rg_solver *s, size_t i) {
     static const double weight[2] = {RG_TRI_W0, RG_TRI_W1};
     double normal[3], area = rg_interface_area(s->domain, i, normal);
     for (int q = 0; q < RG_POINTS; q++) {
@@ -105,17 +131,27 @@ static void add_areas(rg_exact_sum sum[SUMS], const rg_solver *s, size_t i) {
     }
 }
 
-static void add_friction(rg_exact_sum sum[SUMS], const rg_solver *s, size_t i) {
+/* Half of what was dissipated at a face to the material of each side. */
+static void share_out(rg_exact_sum *sum, const rg_solver *s, size_t i, double dissipated) {
+    for (int k = 0; k < 2; k++) {
+        int m = s->domain->beside != NULL ? s->domain->beside[i][k] : 0;
+        rg_exact_add(&sum[PARTS + PART * m + PART_DISSIPATED], 0.5 * dissipated);
+    }
+}
+
+static void add_friction(rg_exact_sum *sum, const rg_solver *s, size_t i) {
     for (int q = 0; q < RG_POINTS && s->law.friction > 0; q++) {
         if (s->broken[i] >> q & 1) {
-            rg_exact_add(&sum[FRICTION], *rg_friction_value(s, i, q, RG_FRICTION_HEAT));
+            double heat = *rg_friction_value(s, i, q, RG_FRICTION_HEAT);
+            rg_exact_add(&sum[FRICTION], heat);
+            share_out(sum, s, i, heat);
         }
     }
 }
 
 /* Of the two copies of a tile-boundary face one is counted. */
 static void interface_energies(rg_solver *s, const rg_tile *t, const rg_workspace *w, double *energy,
-                               rg_exact_sum sum[SUMS]) {
+                               rg_exact_sum *sum) {
     rg_interface_args interface = rg_tile_interfaces(s, t, w);
     rg_interface_state_args args = {&interface, energy};
     s->kernels->interface_state(&args, 0, rg_tile_iblocks(t));
@@ -128,19 +164,21 @@ static void interface_energies(rg_solver *s, const rg_tile *t, const rg_workspac
             rg_exact_add(&sum[INTERFACE + k], energy[(row * RG_E_INTERFACE + k) * RG_LANES + i % RG_LANES]);
         }
         if (s->broken[i]) {
+            size_t row = (i / RG_LANES - t->ibegin) * RG_E_INTERFACE + RG_E_DISSIPATED;
+            share_out(sum, s, i, energy[row * RG_LANES + i % RG_LANES]);
             add_areas(sum, s, i);
             add_friction(sum, s, i);
         }
     }
 }
 
-static void sum_up(rg_solver *s, rg_exact_sum sum[SUMS]) {
+static void sum_up(rg_solver *s, rg_exact_sum *sum) {
     const rg_domain *d = s->domain;
     size_t most =
         d->tile_iblocks * RG_E_INTERFACE > d->tile_blocks ? d->tile_iblocks * RG_E_INTERFACE : d->tile_blocks;
 #pragma omp parallel
     {
-        rg_exact_sum mine[SUMS] = {0};
+        rg_exact_sum *mine = RG_NEW(rg_exact_sum, sums(s));
         rg_workspace *w = &s->work[omp_get_thread_num()];
         double *energy = RG_NEW(double, most *RG_LANES);
 #pragma omp for schedule(static) nowait
@@ -152,60 +190,110 @@ static void sum_up(rg_solver *s, rg_exact_sum sum[SUMS]) {
         }
         rg_free(energy);
 #pragma omp critical
-        for (int k = 0; k < SUMS; k++) {
+        for (size_t k = 0; k < sums(s); k++) {
             rg_exact_merge(&sum[k], &mine[k]);
         }
+        rg_free(mine);
     }
 }
 
-const rg_energy *rg_ledger_take(rg_ledger *l, rg_solver *s) {
-    rg_exact_sum sum[SUMS] = {0};
+/* All sums over the whole body: v[sums]. */
+static void values(rg_solver *s, double *v) {
+    rg_exact_sum *sum = RG_NEW(rg_exact_sum, sums(s));
     rg_constraints_work(s->constraints, &sum[EXTERNAL]);
     sum_up(s, sum);
-    rg_exact_allreduce(sum, SUMS, s->comm);
-    double v[SUMS];
-    for (int k = 0; k < SUMS; k++) {
+    rg_exact_allreduce(sum, (int)sums(s), s->comm);
+    for (size_t k = 0; k < sums(s); k++) {
         v[k] = rg_exact_value(&sum[k]);
     }
+    rg_free(sum);
+}
+
+static rg_energy energy_of(const rg_solver *s, const double *v) {
     const double *part = v + INTERFACE;
     rg_bodies_account bodies = rg_bodies_take(s->bodies);
-    rg_energy *e = &l->last;
-    *e = (rg_energy){.step = s->step,
-                     .time = s->time,
-                     .kinetic = v[KINETIC],
-                     .bodies = bodies.kinetic,
-                     .bulk = v[BULK],
-                     .penalty = part[RG_E_PENALTY],
-                     .cohesive = part[RG_E_COHESIVE],
-                     .contact = part[RG_E_CONTACT],
-                     .dissipated = part[RG_E_DISSIPATED],
-                     .plastic = v[RELEASED + RG_RELEASED_PLASTIC],
-                     .damage = v[RELEASED + RG_RELEASED_DAMAGE],
-                     .viscous = v[VISCOUS],
-                     .friction = v[FRICTION],
-                     .external = v[EXTERNAL] + bodies.work,
-                     .broken_area = v[BROKEN],
-                     .failed_area = v[FAILED],
-                     .momentum = {v[MOMENTUM], v[MOMENTUM + 1], v[MOMENTUM + 2]},
-                     .angular_momentum = {v[ANGULAR], v[ANGULAR + 1], v[ANGULAR + 2]}};
+    rg_energy e = {.step = s->step,
+                   .time = s->time,
+                   .kinetic = v[KINETIC],
+                   .bodies = bodies.kinetic,
+                   .bulk = v[BULK],
+                   .penalty = part[RG_E_PENALTY],
+                   .cohesive = part[RG_E_COHESIVE],
+                   .contact = part[RG_E_CONTACT],
+                   .dissipated = part[RG_E_DISSIPATED],
+                   .plastic = v[RELEASED + RG_RELEASED_PLASTIC],
+                   .damage = v[RELEASED + RG_RELEASED_DAMAGE],
+                   .viscous = v[VISCOUS],
+                   .friction = v[FRICTION],
+                   .external = v[EXTERNAL] + bodies.work,
+                   .broken_area = v[BROKEN],
+                   .failed_area = v[FAILED],
+                   .momentum = {v[MOMENTUM], v[MOMENTUM + 1], v[MOMENTUM + 2]},
+                   .angular_momentum = {v[ANGULAR], v[ANGULAR + 1], v[ANGULAR + 2]}};
     for (int c = 0; c < 3; c++) {
-        e->momentum[c] += bodies.momentum[c];
-        e->angular_momentum[c] += bodies.angular_momentum[c];
+        e.momentum[c] += bodies.momentum[c];
+        e.angular_momentum[c] += bodies.angular_momentum[c];
     }
-    double stored = e->kinetic + e->bodies + e->bulk + e->penalty + e->cohesive + e->contact + e->dissipated +
-                    e->plastic + e->damage + e->viscous + e->friction;
-    e->total = stored - e->external;
-    if (!l->begun) {
-        *l = (rg_ledger){.begun = true, .start = e->total, .last = *e};
-    }
+    e.spent = e.dissipated + e.plastic + e.damage + e.viscous + e.friction;
+    return e;
+}
+
+/* What rounding of F makes of the energy of a body at rest (J). */
+static double rounding(const rg_solver *s, double volume) {
     double mu = 0;
     for (int m = 0; m < s->materials; m++) {
         mu = fmax(mu, s->material[m].mu);
     }
-    l->largest = fmax(fmax(l->largest, fabs(stored)), 1e3 * DBL_EPSILON * mu * v[VOLUME]);
-    e->error = e->total == l->start ? 0 : (e->total - l->start) / l->largest;
-    l->worst = isnan(e->error) ? INFINITY : fmax(l->worst, fabs(e->error));
+    return 1e3 * DBL_EPSILON * mu * volume;
+}
+
+const rg_energy *rg_ledger_take(rg_ledger *l, rg_solver *s) {
+    double *v = RG_NEW(double, sums(s));
+    values(s, v);
+    rg_energy *e = &l->last;
+    *e = energy_of(s, v);
+    double stored = e->kinetic + e->bodies + e->bulk + e->penalty + e->cohesive + e->contact + e->spent;
+    e->total = stored - e->external;
+    if (!l->begun) {
+        *l = (rg_ledger){.begun = true, .start = e->total, .last = *e};
+    }
+    for (int m = 0; m < s->materials; m++) {
+        const double *part = v + PARTS + PART * m;
+        l->material[m] = (rg_energy_part){part[PART_KINETIC], part[PART_BULK], part[PART_DISSIPATED]};
+    }
+    double change = e->total - l->start;
+    l->largest = fmax(fmax(l->largest, fabs(stored)), rounding(s, v[VOLUME]));
+    e->error = change == 0 ? 0 : change / l->largest;
+    e->share = e->spent > RG_JUDGED * l->largest ? change / e->spent : NAN;
+    l->change = isnan(change) ? INFINITY : fmax(l->change, fabs(change));
+    rg_free(v);
     return e;
+}
+
+double rg_ledger_worst(const rg_ledger *l) {
+    return l->change > 0 ? l->change / l->largest : 0;
+}
+
+double rg_ledger_share(const rg_ledger *l) {
+    return l->last.spent > RG_JUDGED * l->largest ? l->change / l->last.spent : NAN;
+}
+
+bool rg_ledger_off(const rg_ledger *l, const rg_case *c, char *why, size_t size) {
+    const rg_energy *e = &l->last;
+    double limit = c->output.energy_limit, of_spent = c->output.dissipation_limit;
+    if (!(fabs(e->error) <= limit)) {
+        snprintf(why, size, "the energy error %.3g passed the limit %.3g (output.energy_limit)", e->error,
+                 limit);
+        return true;
+    }
+    if (of_spent > 0 && fabs(e->share) > of_spent) {
+        snprintf(why, size,
+                 "the energy error %.3g of what has been dissipated passed the limit %.3g "
+                 "(output.dissipation_limit)",
+                 e->share, of_spent);
+        return true;
+    }
+    return false;
 }
 
 double rg_first_fracture(const rg_solver *s) {
@@ -221,37 +309,56 @@ double rg_first_fracture(const rg_solver *s) {
     return first;
 }
 
-void rg_energy_header(rg_csv *t) {
-    rg_csv_header(
-        t, "step,time,kinetic,bodies,bulk,penalty,cohesive,contact,dissipated,plastic,damage,viscous,"
-           "friction,external_work,total,error_rel,broken_area,failed_area,momentum_x,momentum_y,momentum_z,"
-           "angular_x,angular_y,"
-           "angular_z");
+void rg_energy_header(rg_csv *t, const rg_solver *s) {
+    static const char *const parts[PART] = {"kinetic", "bulk", "dissipated"};
+    size_t length = 0;
+    char *columns = NULL;
+    FILE *f = open_memstream(&columns, &length);
+    fputs("step,time,kinetic,bodies,bulk,penalty,cohesive,contact,dissipated,plastic,damage,viscous,friction,"
+          "external_work,total,error_rel,error_dissipated,broken_area,failed_area,momentum_x,momentum_y,"
+          "momentum_z,angular_x,angular_y,angular_z",
+          f);
+    for (int m = 0; s->materials > 1 && m < s->materials; m++) {
+        for (int k = 0; k < PART; k++) {
+            fprintf(f, ",%s_%s", parts[k], rg_case_material_name(s->input, m));
+        }
+    }
+    fclose(f);
+    rg_csv_header(t, columns);
+    free(columns);
 }
 
-void rg_energy_row(rg_csv *t, const rg_energy *e) {
-    const double row[] = {e->time,
-                          e->kinetic,
-                          e->bodies,
-                          e->bulk,
-                          e->penalty,
-                          e->cohesive,
-                          e->contact,
-                          e->dissipated,
-                          e->plastic,
-                          e->damage,
-                          e->viscous,
-                          e->friction,
-                          e->external,
-                          e->total,
-                          e->error,
-                          e->broken_area,
-                          e->failed_area,
-                          e->momentum[0],
-                          e->momentum[1],
-                          e->momentum[2],
-                          e->angular_momentum[0],
-                          e->angular_momentum[1],
-                          e->angular_momentum[2]};
-    rg_csv_row(t, &e->step, 1, row, sizeof row / sizeof *row);
+void rg_energy_row(rg_csv *t, const rg_ledger *l, const rg_solver *s) {
+    const rg_energy *e = &l->last;
+    double row[ROW + PART * RG_MAX_MATERIALS] = {e->time,
+                                                 e->kinetic,
+                                                 e->bodies,
+                                                 e->bulk,
+                                                 e->penalty,
+                                                 e->cohesive,
+                                                 e->contact,
+                                                 e->dissipated,
+                                                 e->plastic,
+                                                 e->damage,
+                                                 e->viscous,
+                                                 e->friction,
+                                                 e->external,
+                                                 e->total,
+                                                 e->error,
+                                                 e->share,
+                                                 e->broken_area,
+                                                 e->failed_area,
+                                                 e->momentum[0],
+                                                 e->momentum[1],
+                                                 e->momentum[2],
+                                                 e->angular_momentum[0],
+                                                 e->angular_momentum[1],
+                                                 e->angular_momentum[2]};
+    size_t values = ROW;
+    for (int m = 0; s->materials > 1 && m < s->materials; m++) {
+        row[values++] = l->material[m].kinetic;
+        row[values++] = l->material[m].bulk;
+        row[values++] = l->material[m].dissipated;
+    }
+    rg_csv_row(t, &e->step, 1, row, values);
 }

@@ -25,14 +25,38 @@ typedef struct {
     double broken_area; /* of the points that switched (m^2) */
     double failed_area; /* of those that carry nothing any more (m^2) */
     double momentum[3], angular_momentum[3]; /* with free bodies: kg m/s, kg m^2/s about the origin */
+    double spent;                            /* dissipated + plastic + damage + viscous + friction (J) */
+    double share; /* change of the total since the start, over `spent`; not a number before that is
+                   * RG_JUDGED of the largest energy */
 } rg_energy;
+
+/* From this part of the largest energy on the error is judged by what has been dissipated. */
+#define RG_JUDGED 0.01
+
+/* Of one material (J): its elements' kinetic and stored energy; what plastic flow, damage and viscosity took
+ * in them and half of what cracks and friction took at their faces (all of it between two of them). */
+typedef struct {
+    double kinetic, bulk, dissipated;
+} rg_energy_part;
 
 typedef struct {
     bool begun;
     double start, largest; /* total at the start, largest energy so far (J) */
-    double worst;          /* largest |error| so far */
+    double change;         /* largest |total - start| so far (J) */
     rg_energy last;
+    rg_energy_part material[RG_MAX_MATERIALS];
 } rg_ledger;
+
+/* The largest change of the total so far over the largest energy so far; infinite where one was no number. */
+double rg_ledger_worst(const rg_ledger *l);
+
+/* The same over what has been dissipated by now; not a number before that is
+ * RG_JUDGED of the largest energy. */
+double rg_ledger_share(const rg_ledger *l);
+
+/* Whether the error, over the largest energy or over what has been dissipated, is beyond what the case
+ * allows; then `why` says so. */
+bool rg_ledger_off(const rg_ledger *l, const rg_case *c, char *why, size_t size);
 
 /* Takes stock of the current state, between its kick and its drift. Sums are exact: the same bits on any
  * ranks and threads. Collective; returns &l->last. */
@@ -41,8 +65,8 @@ const rg_energy *rg_ledger_take(rg_ledger *l, rg_solver *s);
 /* Time at which the first point switched (s); infinite if none has. Collective. */
 double rg_first_fracture(const rg_solver *s);
 
-/* Columns of energy.csv, and a row of it. */
-void rg_energy_header(rg_csv *t);
-void rg_energy_row(rg_csv *t, const rg_energy *e);
+/* Columns of energy.csv, and a row of it: of more than one material, also the parts of each. */
+void rg_energy_header(rg_csv *t, const rg_solver *s);
+void rg_energy_row(rg_csv *t, const rg_ledger *l, const rg_solver *s);
 
 #endif

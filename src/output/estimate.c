@@ -107,7 +107,7 @@ static double frames(const rg_case *c, double steps, double dt) {
     }
     double intervals = c->output.interval_steps > 0 ? steps / (double)c->output.interval_steps
                                                     : fmin(c->time.end, steps * dt) / c->output.interval_time;
-    return ceil(intervals * (1 - 1e-9)); /* none at the start */
+    return 1 + ceil(intervals * (1 - 1e-9)); /* one at the start */
 }
 
 rg_estimate rg_estimate_run(const rg_solver *s) {

@@ -40,11 +40,17 @@ void rg_progress_show(rg_progress *p, const rg_solver *s, const rg_energy *e) {
         return;
     }
     if (!p->headed) {
-        printf("    step    time (s)    dt (s)  energy error  failed (m2)  broken (m2)   left\n");
+        printf("    step    time (s)    dt (s)  energy error  of dissip.  failed (m2)   left\n");
         p->headed = true;
     }
-    printf("%s%8" PRId64 "  %10.4e  %8.2e  %+12.1e  %11.3e  %11.3e  ", p->terminal ? "\r\033[K" : "", s->step,
-           s->time, s->dt, e->error, e->failed_area, e->broken_area);
+    printf("%s%8" PRId64 "  %10.4e  %8.2e  %+12.1e  ", p->terminal ? "\r\033[K" : "", s->step, s->time, s->dt,
+           e->error);
+    if (isfinite(e->share)) {
+        printf("%+10.1e", e->share);
+    } else {
+        printf("%10s", "-"); /* too little to judge by */
+    }
+    printf("  %11.3e  ", e->failed_area);
     show_left(rg_progress_left(p, s));
     printf("%s", p->terminal ? "" : "\n");
     fflush(stdout);

@@ -72,7 +72,8 @@ static void write_run(FILE *f, const rg_summary *m, const rg_solver *s, const rg
 }
 
 static void write_physics(FILE *f, const rg_summary *m, const rg_ledger *l) {
-    rg_json_number(f, "energy_error_rel", l->worst);
+    rg_json_number(f, "energy_error_rel", rg_ledger_worst(l));
+    rg_json_number(f, "energy_error_dissipated", rg_ledger_share(l));
     rg_json_number(f, "energy_largest_J", l->largest);
     rg_json_number(f, "dissipated_J", l->last.dissipated);
     rg_json_number(f, "plastic_J", l->last.plastic);
@@ -133,7 +134,11 @@ void rg_summary_print(const rg_summary *m, const rg_solver *s, const rg_ledger *
     fprintf(out,
             "set-up %.2f s, time loop %.2f s, output %.2f s: %.3g us of core time per element and step\n",
             m->setup_seconds, m->loop_seconds, m->output_seconds, m->us_per_tet_step);
-    fprintf(out, "energy error %.2g of the largest energy, %.4g J\n", l->worst, l->largest);
+    fprintf(out, "energy error %.2g of the largest energy, %.4g J", rg_ledger_worst(l), l->largest);
+    if (isfinite(rg_ledger_share(l))) {
+        fprintf(out, "; %.2g of all that was dissipated, %.4g J", rg_ledger_share(l), l->last.spent);
+    }
+    fputc('\n', out);
     if (isfinite(m->first_fracture)) {
         fprintf(out, "first fracture at %.5g s; failed %.4g m2, broken %.4g m2, dissipated %.4g J\n",
                 m->first_fracture, l->last.failed_area, l->last.broken_area, l->last.dissipated);

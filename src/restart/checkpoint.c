@@ -19,7 +19,7 @@
 #include "restart/state_table.h"
 #include "revision.h"
 
-enum { FORMAT_VERSION = 1, WORD = 32 };
+enum { FORMAT_VERSION = 2, WORD = 32 };
 
 /* What must be the same in the run that goes on: attributes of the file. */
 typedef struct {

@@ -666,7 +666,7 @@ def test_plot_of_a_real_run(run, monkeypatch):
     scale = np.abs(drawn_parts).max()
     assert drawn_parts - line(upper, "external work")[1] == pytest.approx(total, abs=1e-9 * scale)
     assert scale == pytest.approx(1e6 * result.summary["energy_largest_J"], rel=0.05) and upper.get_ylabel() == "energy (µJ)"
-    known = {"step", "time", "external_work", "total", "error_rel", "broken_area", "failed_area", *plot.PARTS}
+    known = {"step", "time", "external_work", "total", "error_rel", "error_dissipated", "broken_area", "failed_area", *plot.PARTS}
     assert {name for name in table.dtype.names if not name.startswith(("momentum_", "angular_"))} == known
     time, stress = line(figures["history.png"].axes[0], "computed")
     after = (time > 0.13) & (time < 0.22)

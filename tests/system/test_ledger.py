@@ -65,14 +65,19 @@ def test_conserving_activation_keeps_the_energy_of_a_violent_break(run, figure, 
     assert (energy["dissipated"] >= TOUGHNESS * energy["failed_area"] * (1 - 1e-12)).all()
 
 
-@pytest.mark.parametrize("name, bound", [("spall", 1.5e-5), ("jittered", 7e-6)])
-def test_work_of_the_ends_is_accounted_for(run, figure, name, bound):
+@pytest.mark.parametrize("name, bound, later", [("spall", 6e-5, 6e-6), ("jittered", 4e-5, 3e-6)])
+def test_work_of_the_ends_is_accounted_for(run, figure, name, bound, later):
     case, sets = RUNS[name]
     spall = run(case, threads=2, sets=sets)
     whole = spall.energy[spall.energy["time"] < spall.summary["first_fracture_time_s"]]
     assert len(whole) > 20 and whole["external_work"][-1] > 1e-5
     mesh = "regular" if name == "spall" else name
-    figure(f"spall, {mesh}: energy error until it breaks", np.abs(whole["error_rel"]).max(), bound=bound)
+    change, largest = np.abs(whole["total"] - whole["total"][0]), (whole["total"] + whole["external_work"]).max()
+    figure(f"spall, {mesh}: energy error until it breaks", change.max() / largest, bound=bound)
+    first = change[1:3].mean()  # what the sudden start of the ends costs, of order (omega dt)^2; nothing is added to it
+    figure(f"spall, {mesh}: energy error until it breaks, but for the first output", np.abs(change[1:] - first).max() / largest,
+           bound=later)
+    assert whole["time"][0] == whole["external_work"][0] == whole["total"][0] == 0
 
 
 @pytest.mark.parametrize("velocity, bound", [(15, 0.03), (40, 0.012)])

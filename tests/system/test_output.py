@@ -114,5 +114,5 @@ def test_check_says_how_much_disk_the_fields_take(tmp_path):
     size, frames, frame = map(float, re.search(r"^disk +(\S+) GB: (\d+) frames of (\S+) GB", launch("check", *words).stdout, re.M).groups())
     assert launch("run", *words, "-q").returncode == 0
     files = sorted((tmp_path / "out/fields").glob("0*.h5"))
-    assert frames == len(files) == 3 and size == pytest.approx(3 * frame, rel=5e-3)
+    assert frames == len(files) == 4 and size == pytest.approx(4 * frame, rel=5e-3)
     assert sum(path.stat().st_size for path in files) == pytest.approx(size * 1e9, rel=0.01)

@@ -250,7 +250,7 @@ static void test_steps_as_interval(void **state) {
     assert_true(fabs(dt / summary("dt_critical") - 0.5) < 1e-12);
 }
 
-/* The first state at or after each multiple of the interval, but for the start, and the last one; the last
+/* The first state at or after each multiple of the interval, the start being one, and the last one; the last
  * step ends at time.end. */
 static void test_time_as_interval(void **state) {
     (void)state;
@@ -260,7 +260,7 @@ static void test_time_as_interval(void **state) {
         RUN(RG_OK, option(0, "output.interval=%.17g", interval * dt), option(1, "time.end=%.17g", end * dt));
         table t = read_energy();
         int rows = 0, steps = (int)ceil(end - 1e-6);
-        double next = interval;
+        double next = 0;
         for (int i = 0; i <= steps; i++) {
             double time = i < steps ? i : end;
             if (time >= next - 1e-6 || i == steps) {
@@ -307,6 +307,26 @@ static void test_moments(void **state) {
     }
 }
 
+/* The energy is looked at between outputs, too, at powers of two. */
+static void test_energy_limit_between_outputs(void **state) {
+    (void)state;
+    RUN(RG_FAILURE, "output.energy_limit=1e-9", "output.interval=100", "time.steps=30", "time.safety=0.9");
+    table t = read_energy();
+    assert_true(t.rows == 2 && t.step[0] == 0 && t.step[1] == 16);
+    assert_non_null(strstr(said, " passed the limit 1e-09 (output.energy_limit)"));
+    clear(NULL);
+    RUN(RG_OK, "output.interval=100", "time.steps=30"); /* looking leaves no trace */
+    t = read_energy();
+    assert_true(t.rows == 2 && t.step[1] == 30);
+    static char hash[2][64];
+    snprintf(hash[0], sizeof hash[0], "%s", strstr(read_all("out/summary.json"), "state_hash"));
+    clear(NULL);
+    RUN(RG_OK, "output.interval=1", "time.steps=30");
+    snprintf(hash[1], sizeof hash[1], "%s", strstr(read_all("out/summary.json"), "state_hash"));
+    hash[0][30] = hash[1][30] = '\0';
+    assert_string_equal(hash[0], hash[1]);
+}
+
 /* An element that is pressed together is stiffer: the step is that of rest over a power of 2^(1/8). */
 static void test_step_follows_stiffness(void **state) {
     (void)state;
@@ -332,7 +352,7 @@ static void test_energy_limit(void **state) {
     table t = read_energy();
     assert_non_null(strstr(said, "rhegma: stopped: the energy error "));
     assert_non_null(strstr(said, " passed the limit 1e-09 (output.energy_limit)"));
-    assert_true(t.rows >= 2 && t.step[t.rows - 1] < 30 && t.step[t.rows - 1] % 3 == 0);
+    assert_true(t.rows == 7 && t.step[5] == 15 && t.step[6] == 16); /* judged from there on */
     double time[MOST];
     assert_int_equal(frames(time), t.rows); /* the failed state, too */
     const char *autopsy = read_all("out/autopsy.json");
@@ -537,20 +557,20 @@ static void test_restart_with_another_interval(void **state) {
     job.set[0] = option(0, "output.interval=%.17g", 4 * dt);
     job.set[2] = "time.steps=13";
     restart(RG_OK);
-    static const int64_t step[] = {2, 4, 8, 12, 13};
+    static const int64_t step[] = {0, 2, 4, 8, 12, 13};
     table t = read_energy();
-    assert_int_equal(t.rows, 5);
-    for (int i = 0; i < 5; i++) {
+    assert_int_equal(t.rows, 6);
+    for (int i = 0; i < 6; i++) {
         assert_int_equal(t.step[i], step[i]);
     }
     clear(NULL);
     RUN(RG_OK, option(0, "output.interval=%.17g", 4 * dt), "checkpoint.steps=3", "time.steps=5");
     job.set[2] = "time.steps=13"; /* the same interval */
     restart(RG_OK);
-    static const int64_t same[] = {4, 8, 12, 13};
+    static const int64_t same[] = {0, 4, 8, 12, 13};
     t = read_energy();
-    assert_int_equal(t.rows, 4);
-    for (int i = 0; i < 4; i++) {
+    assert_int_equal(t.rows, 5);
+    for (int i = 0; i < 5; i++) {
         assert_int_equal(t.step[i], same[i]);
     }
 }
@@ -591,6 +611,7 @@ int main(int argc, char **argv) {
         cmocka_unit_test_teardown(test_moments, clear),
         cmocka_unit_test_teardown(test_step_follows_stiffness, clear),
         cmocka_unit_test_teardown(test_energy_limit, clear),
+        cmocka_unit_test_teardown(test_energy_limit_between_outputs, clear),
         cmocka_unit_test_teardown(test_collapse, clear),
         cmocka_unit_test_teardown(test_not_finite, clear),
         cmocka_unit_test_teardown(test_restart, clear),

@@ -2,6 +2,7 @@
 #define _DEFAULT_SOURCE /* mkdtemp */
 #include <errno.h>
 #include <fcntl.h>
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -501,36 +502,50 @@ static void test_table(void **state) {
 
 static void test_energy_table(void **state) {
     (void)state;
-    rg_csv *t = rg_csv_open(".", "e.csv", 0);
-    const rg_energy e = {.step = 41,
-                         .time = 1,
-                         .kinetic = 2,
-                         .bodies = 3,
-                         .bulk = 4,
-                         .penalty = 5,
-                         .cohesive = 6,
-                         .contact = 7,
-                         .dissipated = 8,
-                         .plastic = 9,
-                         .damage = 10,
-                         .viscous = 11,
-                         .friction = 12,
-                         .external = 13,
-                         .total = 14,
-                         .error = 15,
-                         .broken_area = 16,
-                         .failed_area = 17,
-                         .momentum = {18, 19, 20},
-                         .angular_momentum = {21, 22, 23}};
-    rg_energy_header(t);
-    rg_energy_row(t, &e);
-    rg_csv_close(t);
-    expect_file("e.csv",
-                "step,time,kinetic,bodies,bulk,penalty,cohesive,contact,dissipated,plastic,damage,viscous,"
-                "friction,external_work,total,error_rel,broken_area,failed_area,momentum_x,momentum_y,"
-                "momentum_z,angular_x,angular_y,angular_z\n"
-                "41,1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16,17,18,19,20,21,22,23\n");
-    remove("e.csv");
+    rg_other_material steel = {.is = {.name = (char[]){"steel"}}};
+    rg_case input = {.material = {.name = (char[]){"glass"}}, .other = &steel, .others = 1};
+    rg_solver solver = {.input = &input, .materials = 1};
+    const rg_ledger l = {.last = {.step = 41,
+                                  .time = 1,
+                                  .kinetic = 2,
+                                  .bodies = 3,
+                                  .bulk = 4,
+                                  .penalty = 5,
+                                  .cohesive = 6,
+                                  .contact = 7,
+                                  .dissipated = 8,
+                                  .plastic = 9,
+                                  .damage = 10,
+                                  .viscous = 11,
+                                  .friction = 12,
+                                  .external = 13,
+                                  .total = 14,
+                                  .error = 15,
+                                  .share = NAN,
+                                  .broken_area = 16,
+                                  .failed_area = 17,
+                                  .momentum = {18, 19, 20},
+                                  .angular_momentum = {21, 22, 23}},
+                         .material = {{24, 25, 26}, {27, 28, 29}}};
+    static const char header[] =
+        "step,time,kinetic,bodies,bulk,penalty,cohesive,contact,dissipated,plastic,damage,viscous,friction,"
+        "external_work,total,error_rel,error_dissipated,broken_area,failed_area,momentum_x,momentum_y,"
+        "momentum_z,angular_x,angular_y,angular_z";
+    static const char row[] = "41,1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,nan,16,17,18,19,20,21,22,23";
+    char wanted[1000];
+    for (int two = 0; two < 2; two++) {
+        rg_csv *t = rg_csv_open(".", "e.csv", 0);
+        solver.materials = 1 + two;
+        rg_energy_header(t, &solver);
+        rg_energy_row(t, &l, &solver);
+        rg_csv_close(t);
+        snprintf(wanted, sizeof wanted, "%s%s\n%s%s\n", header,
+                 two ? ",kinetic_glass,bulk_glass,dissipated_glass,kinetic_steel,bulk_steel,dissipated_steel"
+                     : "",
+                 row, two ? ",24,25,26,27,28,29" : "");
+        expect_file("e.csv", wanted);
+        remove("e.csv");
+    }
 }
 
 static void write_full(void) {

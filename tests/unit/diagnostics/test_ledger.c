@@ -42,7 +42,7 @@ static const double gauss_w[4] = {0.17392742256872693, 0.32607257743127307, 0.32
                                   0.17392742256872693};
 
 typedef struct {
-    double kinetic, volume, momentum[3], angular[3];
+    double kinetic, of[2] /* materials */, volume, momentum[3], angular[3];
 } integrals;
 
 static void at_point(const double x[4][3], rg_gid id, const double l[4], double place[3], double v[3]) {
@@ -83,6 +83,7 @@ static void integrate(const random_state *r, rg_gid id, integrals *sum) {
         at_point((const double(*)[3])x, id, l, place, v);
         rg_reference_cross(place, v, turn);
         sum->kinetic += 0.5 * w * rg_reference_dot(v, v);
+        sum->of[mesh_material(r, id)] += 0.5 * w * rg_reference_dot(v, v);
         for (int i = 0; i < 3; i++) {
             sum->momentum[i] += w * v[i];
             sum->angular[i] += w * turn[i];
@@ -94,6 +95,7 @@ static void integrate(const random_state *r, rg_gid id, integrals *sum) {
 
 typedef struct {
     double broken, failed, friction, first, heat, plastic, damage;
+    double of[2]; /* heat, plastic, damage and half the friction of faces, by material */
     int64_t faces;
 } sums;
 
@@ -118,7 +120,10 @@ static void add_face(const random_state *r, rg_gid face, sums *sum) {
         double share = area * rg_reference_face_point(q, l);
         sum->broken += share;
         sum->failed += drawn_damage(SEED, face, q) >= 1 ? share : 0;
-        sum->friction += drawn_friction(SEED, face, q, RG_FRICTION_HEAT);
+        double heat = drawn_friction(SEED, face, q, RG_FRICTION_HEAT);
+        sum->friction += heat;
+        sum->of[mesh_material(r, face / 4)] += heat / 2;
+        sum->of[mesh_material(r, r->mesh->neighbour[face])] += heat / 2;
         sum->first = fmin(sum->first, drawn_time(SEED, face, q));
     }
     sum->faces += drawn_broken(SEED, face) != 0;
@@ -127,13 +132,15 @@ static void add_face(const random_state *r, rg_gid face, sums *sum) {
 static sums add_up(const random_state *r) {
     sums sum = {.first = INFINITY};
     for (rg_gid id = 0; id < r->mesh->elements; id++) {
-        sum.heat += drawn_heat(SEED, id);
+        double heat = drawn_heat(SEED, id), plastic = 0, damage = 0;
         if (mesh_material(r, id) == 1) {
-            sum.plastic +=
-                drawn_history(SEED, id, RG_J2_HISTORY, RG_GAUSS * RG_J2_HISTORY + RG_RELEASED_PLASTIC);
-            sum.damage +=
-                drawn_history(SEED, id, RG_J2_HISTORY, RG_GAUSS * RG_J2_HISTORY + RG_RELEASED_DAMAGE);
+            plastic = drawn_history(SEED, id, RG_J2_HISTORY, RG_GAUSS * RG_J2_HISTORY + RG_RELEASED_PLASTIC);
+            damage = drawn_history(SEED, id, RG_J2_HISTORY, RG_GAUSS * RG_J2_HISTORY + RG_RELEASED_DAMAGE);
         }
+        sum.heat += heat;
+        sum.plastic += plastic;
+        sum.damage += damage;
+        sum.of[mesh_material(r, id)] += heat + plastic + damage;
         for (int f = 0; f < 4; f++) {
             if (r->mesh->neighbour[4 * id + f] > id) {
                 add_face(r, 4 * id + f, &sum);
@@ -143,11 +150,27 @@ static sums add_up(const random_state *r) {
     return sum;
 }
 
-/* By the reference kernels: energies of the bulk, and of the interfaces by kind. */
-static void stored_energies(const rg_solver *s, double *bulk, double part[RG_E_INTERFACE]) {
+/* By the reference kernels: energies of the bulk, and of the interfaces by kind; by material that of the bulk
+ * and what cracks have dissipated, half of it on each side. */
+typedef struct {
+    double bulk, part[RG_E_INTERFACE], bulk_of[2], dissipated_of[2];
+} stored_parts;
+
+static void add_interface(const random_state *r, const rg_tile *t, size_t i, const double *energy,
+                          stored_parts *sum) {
+    for (int k = 0; k < RG_E_INTERFACE; k++) {
+        sum->part[k] += energy[(size_t)k * RG_LANES + i % RG_LANES];
+    }
+    rg_gid face = interface_key(r, t, i);
+    double half = energy[RG_E_DISSIPATED * RG_LANES + i % RG_LANES] / 2;
+    sum->dissipated_of[mesh_material(r, face / 4)] += half;
+    sum->dissipated_of[mesh_material(r, r->mesh->neighbour[face])] += half;
+}
+
+static stored_parts stored_energies(const random_state *r) {
+    const rg_solver *s = r->solver;
     const rg_domain *d = s->domain;
-    *bulk = 0;
-    memset(part, 0, RG_E_INTERFACE * sizeof *part);
+    stored_parts sum = {0};
     for (size_t k = 0; k < d->tiles; k++) {
         const rg_tile *t = &d->tile[k];
         double energy[RG_E_INTERFACE * RG_LANES];
@@ -157,22 +180,24 @@ static void stored_energies(const rg_solver *s, double *bulk, double part[RG_E_I
             rg_bulk_state_args args = {.bulk = &bulk_args, .energy = energy};
             rg_reference_bulk_state(&args, b, b + 1);
             for (size_t lane = 0; lane < RG_LANES; lane++) {
-                *bulk += d->id[(t->begin + b) * RG_LANES + lane] >= 0 ? energy[lane] : 0;
+                rg_gid id = d->id[(t->begin + b) * RG_LANES + lane];
+                sum.bulk += id >= 0 ? energy[lane] : 0;
+                sum.bulk_of[id >= 0 ? mesh_material(r, id) : 0] += id >= 0 ? energy[lane] : 0;
             }
         }
         rg_interface_args interface_args = rg_tile_interfaces(s, t, s->work);
         rg_interface_state_args args = {&interface_args, energy};
         for (size_t b = 0; b < t->iend - t->ibegin; b++) {
             rg_reference_interface_state(&args, b, b + 1);
-            for (size_t n = 0; n < RG_E_INTERFACE * RG_LANES; n++) {
-                part[n / RG_LANES] += d->counted[(t->ibegin + b) * RG_LANES + n % RG_LANES] ? energy[n] : 0;
+            for (size_t i = (t->ibegin + b) * RG_LANES; i < (t->ibegin + b + 1) * RG_LANES; i++) {
+                if (d->counted[i]) {
+                    add_interface(r, t, i, energy, &sum);
+                }
             }
         }
     }
-    *bulk = total(*bulk);
-    for (int k = 0; k < RG_E_INTERFACE; k++) {
-        part[k] = total(part[k]);
-    }
+    MPI_Allreduce(MPI_IN_PLACE, &sum, sizeof sum / sizeof(double), MPI_DOUBLE, MPI_SUM, MPI_COMM_WORLD);
+    return sum;
 }
 
 static double body_energy(const rg_solver *s) {
@@ -209,8 +234,8 @@ static void check_energies(random_state *r) {
         integrate(r, id, &whole);
     }
     sums sum = add_up(r);
-    double bulk, part[RG_E_INTERFACE], touch = body_energy(r->solver);
-    stored_energies(r->solver, &bulk, part);
+    stored_parts in = stored_energies(r);
+    double bulk = in.bulk, *part = in.part, touch = body_energy(r->solver);
     part[RG_E_CONTACT] += touch;
     rg_bodies_account bodies = rg_bodies_take(r->solver->bodies);
     report(e == &ledger.last && e->step == r->solver->step && e->time == r->solver->time, "ledger",
@@ -246,8 +271,18 @@ static void check_energies(random_state *r) {
     report(good, "ledger", "momentum and angular momentum");
     double stored = e->kinetic + e->bodies + bulk + part[0] + part[1] + part[2] + part[3] + sum.plastic +
                     sum.damage + sum.heat + sum.friction;
-    report(near(e->total, stored - work, stored) && e->error == 0 && ledger.worst == 0 && ledger.begun &&
-               ledger.start == e->total && near(ledger.largest, stored, stored),
+    double spent = part[RG_E_DISSIPATED] + sum.plastic + sum.damage + sum.heat + sum.friction;
+    report(near(e->spent, spent, spent), "ledger", "all that was dissipated");
+    for (int m = 0; m < 2; m++) {
+        const rg_energy_part *p = &ledger.material[m];
+        double dissipated = in.dissipated_of[m] + sum.of[m];
+        report(near(p->kinetic, whole.of[m], whole.kinetic) && near(p->bulk, in.bulk_of[m], bulk) &&
+                   near(p->dissipated, dissipated, spent) && whole.of[m] > 0.05 * whole.kinetic &&
+                   in.bulk_of[m] > 0.05 * bulk && in.dissipated_of[m] > 0.01 * part[RG_E_DISSIPATED],
+               "ledger", m == 0 ? "of the first material" : "of the second material");
+    }
+    report(near(e->total, stored - work, stored) && e->error == 0 && rg_ledger_worst(&ledger) == 0 &&
+               ledger.begun && ledger.start == e->total && near(ledger.largest, stored, stored),
            "ledger", "total");
     report(rg_first_fracture(r->solver) == sum.first, "ledger", "first fracture");
     report(memcmp(&ledger.last, e, sizeof *e) == 0, "ledger", "the last one is kept");
@@ -260,6 +295,38 @@ static void scale_velocity(rg_solver *s, double factor) {
     }
 }
 
+/* The words that a ledger gets with these limits; "" where it is within them. */
+static const char *off(const random_state *r, const rg_ledger *l, double limit, double of_dissipated) {
+    static char why[200];
+    rg_case c = *r->input;
+    c.output.energy_limit = limit;
+    c.output.dissipation_limit = of_dissipated;
+    why[0] = '\0';
+    bool is = rg_ledger_off(l, &c, why, sizeof why);
+    return is == (why[0] != '\0') ? why : "?";
+}
+
+static void check_limits(const random_state *r, const rg_ledger *l, double error, double share) {
+    char wanted[2][200];
+    snprintf(wanted[0], sizeof wanted[0], "the energy error %.3g passed the limit %.3g (output.energy_limit)",
+             l->last.error, 0.99 * error);
+    snprintf(wanted[1], sizeof wanted[1],
+             "the energy error %.3g of what has been dissipated passed the limit %.3g "
+             "(output.dissipation_limit)",
+             l->last.share, 0.99 * share);
+    report(strcmp(off(r, l, 1.01 * error, 0), "") == 0 &&
+               strcmp(off(r, l, 1.01 * error, 1.01 * share), "") == 0 &&
+               strcmp(off(r, l, 0.99 * error, 1.01 * share), wanted[0]) == 0 &&
+               strcmp(off(r, l, 1.01 * error, 0.99 * share), wanted[1]) == 0,
+           "ledger", "limits");
+    rg_ledger early = *l;
+    early.last.share = NAN;
+    report(strcmp(off(r, &early, 1.01 * error, 0.99 * share), "") == 0, "ledger",
+           "no limit where little was dissipated");
+    early.last.error = NAN;
+    report(strcmp(off(r, &early, 1, 0), "") != 0, "ledger", "no number is no energy");
+}
+
 static void check_errors(random_state *r) {
     rg_ledger ledger = {0};
     rg_energy first = *rg_ledger_take(&ledger, r->solver);
@@ -268,13 +335,13 @@ static void check_errors(random_state *r) {
     rg_energy second = *rg_ledger_take(&ledger, r->solver);
     double gain = 3 * first.kinetic, most = stored + gain;
     report(near(second.total, first.total + gain, most) && near(second.error, gain / most, 1) &&
-               near(ledger.worst, gain / most, 1) && ledger.start == first.total &&
+               near(rg_ledger_worst(&ledger), gain / most, 1) && ledger.start == first.total &&
                near(ledger.largest, most, most),
            "ledger", "error over the largest energy");
     scale_velocity(r->solver, 0.25);
     rg_energy third = *rg_ledger_take(&ledger, r->solver);
     double loss = 0.75 * first.kinetic;
-    report(near(third.error, -loss / most, 1) && near(ledger.worst, gain / most, 1) &&
+    report(near(third.error, -loss / most, 1) && near(rg_ledger_worst(&ledger), gain / most, 1) &&
                near(ledger.largest, most, most),
            "ledger", "the largest error and energy stay");
     scale_velocity(r->solver, 0);
@@ -286,7 +353,49 @@ static void check_errors(random_state *r) {
         }
     }
     rg_ledger_take(&ledger, r->solver);
-    report(isinf(ledger.worst) && ledger.worst > 0, "ledger", "energies that are none");
+    report(isinf(rg_ledger_worst(&ledger)) && rg_ledger_worst(&ledger) > 0, "ledger",
+           "energies that are none");
+}
+
+/* Heat of all elements (J). */
+static void heat_up(rg_solver *s, double each) {
+    for (size_t slot = 0; slot < s->domain->blocks * RG_LANES; slot++) {
+        s->heat[slot] = s->domain->id[slot] >= 0 ? each : 0;
+    }
+}
+
+/* The change over what was dissipated, once that is a hundredth of the largest energy. */
+static void check_share(void) {
+    random_state r = random_state_make(0, NULL, MPI_COMM_WORLD);
+    random_state_draw(&r, SEED);
+    memset(r.solver->u, 0, r.solver->domain->blocks * RG_NODE_BLOCK * sizeof *r.solver->u);
+    rg_ledger ledger = {0};
+    rg_energy first = *rg_ledger_take(&ledger, r.solver);
+    double stored = first.total + first.external, each = stored / (double)r.mesh->elements;
+    report(isnan(first.share) && isnan(rg_ledger_share(&ledger)) && stored > 0, "ledger",
+           "nothing to judge by");
+    double before = first.spent - first.viscous;
+    heat_up(r.solver, 0.5 * each);
+    rg_energy second = *rg_ledger_take(&ledger, r.solver);
+    double gain = 0.5 * stored - first.viscous, spent = before + 0.5 * stored;
+    report(near(second.spent, spent, spent) && near(second.share, gain / spent, 1) &&
+               near(rg_ledger_share(&ledger), gain / spent, 1),
+           "ledger", "error over what was dissipated");
+    check_limits(&r, &ledger, second.error, second.share);
+    heat_up(r.solver, 0.25 * each);
+    rg_energy third = *rg_ledger_take(&ledger, r.solver);
+    spent = before + 0.25 * stored;
+    report(near(third.share, (0.25 * stored - first.viscous) / spent, 1) &&
+               near(rg_ledger_share(&ledger), gain / spent, 1),
+           "ledger", "the largest change over what was dissipated at last");
+    for (int more = 0; more < 2; more++) {
+        heat_up(r.solver,
+                ((more ? 1.001 : 0.999) * RG_JUDGED * ledger.largest - before) / (double)r.mesh->elements);
+        rg_energy fourth = *rg_ledger_take(&ledger, r.solver);
+        report(isnan(fourth.share) == !more && isnan(rg_ledger_share(&ledger)) == !more, "ledger",
+               more ? "enough to judge by" : "not enough to judge by");
+    }
+    random_state_free(&r);
 }
 
 /* A loss that is larger than all gains before makes the worst error; and one of a body next to rest is
@@ -296,8 +405,8 @@ static void check_rest(void) {
     rg_ledger ledger = {0};
     rg_energy e = *rg_ledger_take(&ledger, r.solver);
     rg_bodies_account bodies = rg_bodies_take(r.solver->bodies);
-    report(e.total == bodies.kinetic - bodies.work && e.error == 0 && e.broken_area == 0 &&
-               e.failed_area == 0 && isinf(rg_first_fracture(r.solver)),
+    report(isnan(e.share) && isnan(rg_ledger_share(&ledger)) && e.total == bodies.kinetic - bodies.work &&
+               e.error == 0 && e.broken_area == 0 && e.failed_area == 0 && isinf(rg_first_fracture(r.solver)),
            "ledger", "at rest");
     double volume = 1.1e-3 * 1.7e-3 * 2.9e-3, mu = 210e9 / 2.6;
     report(near(ledger.largest, 1e3 * DBL_EPSILON * mu * volume, ledger.largest), "ledger",
@@ -318,7 +427,7 @@ static void check_rest(void) {
     rg_ledger_take(&ledger, r.solver);
     scale_velocity(r.solver, 0.1);
     rg_ledger_take(&ledger, r.solver);
-    report(near(ledger.worst, 0.99, 1), "ledger", "a loss is an error, too");
+    report(near(rg_ledger_worst(&ledger), 0.99, 1), "ledger", "a loss is an error, too");
     random_state_free(&r);
 }
 
@@ -583,6 +692,7 @@ int main(int argc, char **argv) {
     random_state_draw(&r, SEED);
     check_errors(&r);
     random_state_free(&r);
+    check_share();
     check_rest();
     check_plain();
     check_lumped();

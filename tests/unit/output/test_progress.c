@@ -59,9 +59,9 @@ static const char *heard(void) {
 
 static rg_case input;
 static rg_solver solver;
-static const rg_energy energy = {.error = -2.5e-4, .broken_area = 8.125e-7, .failed_area = 3.125e-7};
-#define HEAD  "    step    time (s)    dt (s)  energy error  failed (m2)  broken (m2)   left\n"
-#define STATE "      30  4.0000e-06  2.00e-07      -2.5e-04    3.125e-07    8.125e-07   60 s"
+static const rg_energy energy = {.error = -2.5e-4, .share = 3.76e-2, .failed_area = 3.125e-7};
+#define HEAD  "    step    time (s)    dt (s)  energy error  of dissip.  failed (m2)   left\n"
+#define STATE "      30  4.0000e-06  2.00e-07      -2.5e-04    +3.8e-02    3.125e-07   60 s"
 
 static int set_up(void **state) {
     (void)state;
@@ -127,6 +127,17 @@ static void lines_to_a_file(void **state) {
     assert_string_equal(heard(), HEAD STATE "\n" STATE "\nword 3 of many\n");
 }
 
+static void too_little_dissipated_to_judge_by(void **state) {
+    (void)state;
+    rg_progress p = begun(true);
+    rg_energy first = energy;
+    first.share = NAN;
+    listen();
+    rg_progress_show(&p, &solver, &first);
+    assert_string_equal(heard(), HEAD "      30  4.0000e-06  2.00e-07      -2.5e-04           -"
+                                      "    3.125e-07   60 s\n");
+}
+
 static void live_line_on_a_terminal(void **state) {
     (void)state;
     terminal[STDOUT_FILENO] = terminal[STDERR_FILENO] = true;
@@ -183,6 +194,7 @@ int main(void) {
         cmocka_unit_test_setup(time_left, set_up),
         cmocka_unit_test_setup(time_left_to_the_last_step, set_up),
         cmocka_unit_test_setup(lines_to_a_file, set_up),
+        cmocka_unit_test_setup(too_little_dissipated_to_judge_by, set_up),
         cmocka_unit_test_setup(live_line_on_a_terminal, set_up),
         cmocka_unit_test_setup(units_of_the_time_left, set_up),
         cmocka_unit_test_setup(half_a_terminal_is_none, set_up),

@@ -115,8 +115,9 @@ static int fresh(void **state) {
                          .dt = 1.5e-9,
                          .step = 120};
     ledger = (rg_ledger){.largest = 8.5,
-                         .worst = 0.00390625,
-                         .last = {.dissipated = 0.5,
+                         .change = 8.5 * 0.00390625,
+                         .last = {.spent = 0.53125,
+                                  .dissipated = 0.5,
                                   .plastic = 0.25,
                                   .damage = 0.125,
                                   .viscous = 0.0625,
@@ -171,7 +172,8 @@ static const char run_lines[] =
     "\"checkpoint_median_s\": 0.375,\n"
     "  \"halo_wait_s\": 1.25,\n  \"us_per_tet_step\": 1200,\n  \"exchange_alone_s\": 0.0625,\n  \"phases\": "
     "9,\n"
-    "  \"energy_error_rel\": 0.00390625,\n  \"energy_largest_J\": 8.5,\n  \"dissipated_J\": 0.5,\n  "
+    "  \"energy_error_rel\": 0.00390625,\n  \"energy_error_dissipated\": 0.0625,\n  \"energy_largest_J\": "
+    "8.5,\n  \"dissipated_J\": 0.5,\n  "
     "\"plastic_J\": 0.25,\n"
     "  \"damage_J\": 0.125,\n  \"viscous_J\": 0.0625,\n  \"friction_J\": 0.03125,\n"
     "  \"first_fracture_time_s\": 1.4999999999999999e-07,\n  \"broken_area_m2\": 1.5,\n  \"failed_area_m2\": "
@@ -211,6 +213,8 @@ static void other_runs(void **state) {
     summary.failure = "it \"broke\"";
     first_fracture = INFINITY;
     fragments.count = 2;
+    ledger.last.spent = 0.084;
+    ledger.change = 0;
     rg_summary_write(&summary, &solver, &ledger, &fragments);
     const char *found = read_summary();
     assert_int_equal(halos_asked, 3);
@@ -221,6 +225,7 @@ static void other_runs(void **state) {
     assert_non_null(strstr(found, "  \"status\": \"it \\\"broke\\\"\",\n"));
     assert_non_null(strstr(found, "  \"first_fracture_time_s\": null,\n"));
     assert_non_null(strstr(found, "\n  \"fragments\": 2,\n"));
+    assert_non_null(strstr(found, "  \"energy_error_rel\": 0,\n  \"energy_error_dissipated\": null,\n"));
     assert_false(rg_completed(place));
 }
 
@@ -252,7 +257,7 @@ static void words(void **state) {
     summary.first_fracture = 1.5e-7;
     snprintf(wanted, sizeof wanted,
              "set-up 0.25 s, time loop 8.00 s, output 4.00 s: 0.123 us of core time per element and step\n"
-             "energy error 0.0039 of the largest energy, 8.5 J\n"
+             "energy error 0.0039 of the largest energy, 8.5 J; 0.062 of all that was dissipated, 0.5312 J\n"
              "first fracture at 1.5e-07 s; failed 1.25 m2, broken 1.5 m2, dissipated 0.5 J\n"
              "ball: at (1, 2, 3) m, velocity (4, 5, 6) m/s\n"
              "wall: at (11, 12, 13) m, velocity (14, 15, 16) m/s\n"
@@ -261,6 +266,7 @@ static void words(void **state) {
     expect_words(wanted);
     summary.first_fracture = INFINITY;
     bodies.count = 0;
+    ledger.last.spent = 0.084; /* below a hundredth of the largest: too little to judge by */
     snprintf(wanted, sizeof wanted,
              "set-up 0.25 s, time loop 8.00 s, output 4.00 s: 0.123 us of core time per element and step\n"
              "energy error 0.0039 of the largest energy, 8.5 J\nresults in %s\n",

@@ -334,7 +334,7 @@ static void check_content(void) {
     bool head = true, elements = true, faces = true, whole = true;
     if (rank == 0) {
         hid_t file = H5Fopen(in("content/checkpoints/step-000000000105.h5"), H5F_ACC_RDONLY, H5P_DEFAULT);
-        head = text_is(file, "program", "rhegma") && attribute_is(file, "format", 1) &&
+        head = text_is(file, "program", "rhegma") && attribute_is(file, "format", 2) &&
                attribute_is(file, "elements", 144) && attribute_is(file, "mesh", (int64_t)x->k.mesh) &&
                text_is(file, "precision", RG_PRECISION) &&
                text_is(file, "instruction_set", x->r.solver->kernels->name);

@@ -27,7 +27,7 @@ void *load(hid_t file, const char *path, hid_t type, int64_t *rows, int columns)
 }
 
 const checkpoint_change checkpoint_tampers[CHECKPOINT_TAMPERS] = {
-    {"another format", "step-000000000107.h5: a checkpoint of format 2; this program reads 1", NULL},
+    {"another format", "step-000000000107.h5: a checkpoint of format 1; this program reads 2", NULL},
     {"another number of elements", "a checkpoint of 145 elements; the mesh of the case has 144", NULL},
     {"another mesh", "a checkpoint on another mesh: vertices or surface sets differ", NULL},
     {"another precision",
@@ -139,7 +139,7 @@ static void shorten_case(hid_t file) {
 void checkpoint_tamper(hid_t file, int which) {
     switch (which) {
     case 0:
-        put_attribute(file, "format", H5T_NATIVE_INT, &(int){2});
+        put_attribute(file, "format", H5T_NATIVE_INT, &(int){1});
         break;
     case 1:
         put_attribute(file, "elements", H5T_NATIVE_INT64, &(int64_t){145});
