@@ -12,6 +12,7 @@
 #include <stdbool.h>
 #include "layout.h"
 #include "materials.h"
+#include "modes.h"
 
 /* Traces: what tile-boundary faces tell each other. `send` writes the own traces as rows, `receive` collects
  * those of the other sides into ghosts, and traction rows likewise. Blocks are the tile's tile-boundary face
@@ -27,10 +28,10 @@ typedef struct {
     rg_real *ghost;          /* out: ghost traces */
 } rg_trace_args;
 
-/* Bulk: tet10 at the lifted gradient F + R (Ten Eyck & Lew 2006), or at F alone. */
+/* Bulk: tet10 at the lifted gradient F + R (Ten Eyck & Lew 2006), or at its own F. */
 typedef struct {
     rg_material material;
-    bool lift;                /* variational form: add the lifted jumps R to F */
+    rg_gradient gradient;
     const rg_real *u;         /* displacement (m) */
     const rg_real *ghost;     /* traces of the other tiles' elements (m) */
     const rg_real *geom;      /* element geometry */
@@ -82,24 +83,20 @@ typedef struct {
 /* 12-node interface. The area vector points from minus to plus, jump [u] = u+ - u-. Force on the minus side
  * is +g, on the plus side -g. */
 typedef struct {
-    double strength;      /* sigma_c (Pa); infinite: never breaks */
-    double opening;       /* delta_c (m) */
-    double beta;          /* weight of shear, in the criterion (5.3) and in the law; 0: normal only (5.17) */
-    double contact_below; /* contact acts where the normal opening is below this: 0, or +inf for its linear
-                             part */
-    bool total;           /* activation: the law takes the total jump, not the jump since the switch */
-    double onset;   /* activation: conserving, from this opening on, in units as RG_ONSET's; 0: others */
-    double beta_s;  /* of the penalty; read by a conserving activation alone */
-    bool flux;      /* contact: all DG terms return on closure, not a one-sided penalty */
-    bool potential; /* contact is a potential of the two sides: it fades as they slide off each other, and
-                       tractions turn the mid-surface; not with flux */
-    bool intrinsic; /* every point is broken from the start and takes the total jump */
+    double strength; /* sigma_c (Pa); infinite: never breaks */
+    double opening;  /* delta_c (m) */
+    double beta;     /* weight of shear, in the criterion (5.3) and in the law; 0: normal only (5.17) */
+    rg_form form;    /* intrinsic: every point is broken from the start and takes the total jump */
+    rg_activation activation;
+    double onset;  /* conserving activation: opening from which the law starts, in units as RG_ONSET's */
+    double beta_s; /* of the penalty; likewise read by it alone */
     rg_law law;
     double shape[RG_LAW_SHAPE]; /* the law's own parameters */
     double separation;          /* effective opening of full separation (m) */
-    double slope;    /* contact is at least so stiff (Pa/m): the law's own slope where it starts with one */
-    double friction; /* coefficient mu of closed points (cohesive/friction.h); 0: none, and no state of it */
-    bool stick; /* with friction: points stick without limit or memory (the linear part, for the time step) */
+    rg_contact contact;         /* potential: tractions turn the mid-surface besides */
+    double slope; /* contact is at least so stiff (Pa/m): the law's own slope where it starts with one */
+    rg_sliding sliding;
+    double friction; /* coefficient mu of Coulomb's */
 } rg_cohesive;
 
 typedef struct {
@@ -123,28 +120,28 @@ typedef struct {
     uint8_t *active;   /* [block] in/out: not 0 where some lane of the block has a broken point */
     rg_real *crack;    /* crack state, in/out */
     size_t crack_stride; /* values from one block's crack state to the next: RG_CRACK_BLOCK, the memory of the
-                            law and, with friction, RG_FRICTION_BLOCK; or 0 to share one */
+                            law and, with Coulomb's friction, RG_FRICTION_BLOCK; or 0 to share one */
     rg_real *force;      /* out: g, nodal force on the minus side (N) */
-    rg_real *turn; /* out, with law.potential and only of broken faces: nodal force on either side (N), laid
-                      out as `force` */
+    rg_real *turn;       /* out, of contact as a potential and only of broken faces: nodal force on either
+                            side (N), laid out as `force` */
 } rg_interface_args;
 
-/* Central difference, in two parts: v += dt M^-1 (bulk force + interfaces inside the tile), and, once the
- * tile-boundary faces are known, v += dt M^-1 tile-boundary faces. */
+/* Central difference, in two parts: in the element sweep v += dt M^-1 (bulk force + interfaces inside the
+ * tile), and in the boundary sweep, once they are known, v += dt M^-1 tile-boundary faces. */
 typedef struct {
     double density;
-    bool lumped;     /* HRZ diagonal mass instead of the consistent one */
-    bool tile_faces; /* second part: tile-boundary faces alone, else bulk and inside */
-    double dt;       /* s */
+    rg_mass mass;
+    rg_sweep sweep;
+    rg_contact contact;
+    double dt; /* s */
     const rg_real *geom;
-    const rg_real *force;     /* bulk; not read in the second part */
-    const rg_real *iforce;    /* interface */
-    const rg_real *turn;      /* NULL, or of broken interfaces, on either side alike */
-    const uint8_t *broken;    /* [interface], read with `turn` */
+    const rg_real *force;  /* bulk; read in the element sweep */
+    const rg_real *iforce; /* interface */
+    const rg_real *turn;   /* of broken interfaces, on either side alike; read where contact is a potential */
+    const uint8_t *broken; /* [interface], likewise */
     const int32_t *interface; /* links */
     rg_real *velocity;        /* in/out (m/s) */
-    rg_real
-        *step_velocity; /* NULL, or out: first part v + dt_now M^-1 (...), second part += dt_now M^-1 (...) */
+    rg_real *step_velocity;   /* NULL, or out: v + dt_now M^-1 (...), in the boundary sweep += */
     double dt_now;
 } rg_kick_args;
 
@@ -171,7 +168,7 @@ enum { RG_INTERNAL_DAMAGE, RG_INTERNAL_REGIME, RG_INTERNAL_PLASTIC, RG_INTERNAL 
 
 typedef struct {
     double density;
-    bool lumped;
+    rg_mass mass;
     const rg_real *geom, *velocity;
     double *energy; /* out: [row][lane] v M v / 2 (J) */
 } rg_kinetic_args;

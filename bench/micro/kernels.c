@@ -22,43 +22,65 @@ typedef struct {
 #define J2        RG_MATERIAL_J2
 
 static const kernel_case cases[] = {
-    {"bulk lifted", RG_COST_BULK, 0, {.lift = true}, BENCH_ROUGH},
-    {"bulk lifted, 10 % broken", RG_COST_BULK, 10, {.lift = true}, BENCH_ROUGH},
-    {"bulk not lifted", RG_COST_BULK, 0, {.lift = false}, BENCH_ROUGH},
-    {"linear elastic", RG_COST_BULK, 0, {.lift = true, .model = LINEAR}, BENCH_ROUGH},
-    {"St. Venant-Kirchhoff", RG_COST_BULK, 0, {.lift = true, .model = KIRCHHOFF}, BENCH_ROUGH},
-    {"J2 elastic", RG_COST_BULK, 0, {.lift = true, .model = J2, .advance = true}, BENCH_QUIET},
+    {"bulk lifted", RG_COST_BULK, 0, {.gradient = RG_GRADIENT_LIFTED}, BENCH_ROUGH},
+    {"bulk lifted, 10 % broken", RG_COST_BULK, 10, {.gradient = RG_GRADIENT_LIFTED}, BENCH_ROUGH},
+    {"bulk not lifted", RG_COST_BULK, 0, {.gradient = RG_GRADIENT_OWN}, BENCH_ROUGH},
+    {"linear elastic", RG_COST_BULK, 0, {.gradient = RG_GRADIENT_LIFTED, .model = LINEAR}, BENCH_ROUGH},
+    {"St. Venant-Kirchhoff",
+     RG_COST_BULK,
+     0,
+     {.gradient = RG_GRADIENT_LIFTED, .model = KIRCHHOFF},
+     BENCH_ROUGH},
+    {"J2 elastic",
+     RG_COST_BULK,
+     0,
+     {.gradient = RG_GRADIENT_LIFTED, .model = J2, .advance = true},
+     BENCH_QUIET},
     {"J2 flowing",
      RG_COST_BULK,
      0,
-     {.lift = true, .model = J2, .advance = true, .flowing = 1, .newton = 3},
+     {.gradient = RG_GRADIENT_LIFTED, .model = J2, .advance = true, .flowing = 1, .newton = 3},
      BENCH_FLOWING},
-    {"ceramic quiet", RG_COST_BULK, 0, {.lift = true, .model = CERAMIC, .advance = true}, BENCH_QUIET},
+    {"ceramic quiet",
+     RG_COST_BULK,
+     0,
+     {.gradient = RG_GRADIENT_LIFTED, .model = CERAMIC, .advance = true},
+     BENCH_QUIET},
     {"ceramic cracking",
      RG_COST_BULK,
      0,
-     {.lift = true, .model = CERAMIC, .advance = true, .growing = 1, .panels = 1},
+     {.gradient = RG_GRADIENT_LIFTED, .model = CERAMIC, .advance = true, .growing = 1, .panels = 1},
      BENCH_CRACKING},
     {"ceramic flowing",
      RG_COST_BULK,
      0,
-     {.lift = true, .model = CERAMIC, .advance = true, .flowing = 1, .newton = 1},
+     {.gradient = RG_GRADIENT_LIFTED, .model = CERAMIC, .advance = true, .flowing = 1, .newton = 1},
      BENCH_FLOWING},
     {"ceramic flowing, cracking",
      RG_COST_BULK,
      0,
-     {.lift = true, .model = CERAMIC, .advance = true, .growing = 1, .panels = 1, .flowing = 1, .newton = 1},
+     {.gradient = RG_GRADIENT_LIFTED,
+      .model = CERAMIC,
+      .advance = true,
+      .growing = 1,
+      .panels = 1,
+      .flowing = 1,
+      .newton = 1},
      BENCH_CRUSHED},
-    {"interface intact", RG_COST_INTERFACE, 0, {.lift = true}, BENCH_ROUGH},
-    {"interface 10 % broken", RG_COST_INTERFACE, 10, {.lift = true}, BENCH_ROUGH},
-    {"interface all broken", RG_COST_INTERFACE, 100, {.lift = true}, BENCH_ROUGH},
-    {"kick consistent", RG_COST_KICK, 0, {.lumped = false}, BENCH_ROUGH},
-    {"kick lumped", RG_COST_KICK, 0, {.lumped = true}, BENCH_ROUGH},
-    {"drift", RG_COST_DRIFT, 0, {.lumped = false}, BENCH_ROUGH},
-    {"bulk state", RG_COST_BULK_STATE, 0, {.lift = true, .cauchy = true}, BENCH_ROUGH},
-    {"kinetic", RG_COST_KINETIC, 0, {.lumped = false}, BENCH_ROUGH},
-    {"interface state", RG_COST_INTERFACE_STATE, 0, {.lift = true}, BENCH_ROUGH},
-    {"interface state, all broken", RG_COST_INTERFACE_STATE, 100, {.lift = true}, BENCH_ROUGH},
+    {"interface intact", RG_COST_INTERFACE, 0, {.gradient = RG_GRADIENT_LIFTED}, BENCH_ROUGH},
+    {"interface 10 % broken", RG_COST_INTERFACE, 10, {.gradient = RG_GRADIENT_LIFTED}, BENCH_ROUGH},
+    {"interface all broken", RG_COST_INTERFACE, 100, {.gradient = RG_GRADIENT_LIFTED}, BENCH_ROUGH},
+    {"kick consistent", RG_COST_KICK, 0, {.mass = RG_MASS_CONSISTENT}, BENCH_ROUGH},
+    {"kick lumped", RG_COST_KICK, 0, {.mass = RG_MASS_LUMPED}, BENCH_ROUGH},
+    {"drift", RG_COST_DRIFT, 0, {.mass = RG_MASS_CONSISTENT}, BENCH_ROUGH},
+    {"bulk state", RG_COST_BULK_STATE, 0, {.gradient = RG_GRADIENT_LIFTED, .cauchy = true}, BENCH_ROUGH},
+    {"kinetic", RG_COST_KINETIC, 0, {.mass = RG_MASS_CONSISTENT}, BENCH_ROUGH},
+    {"interface state", RG_COST_INTERFACE_STATE, 0, {.gradient = RG_GRADIENT_LIFTED}, BENCH_ROUGH},
+    {"interface state, all broken",
+     RG_COST_INTERFACE_STATE,
+     100,
+     {.gradient = RG_GRADIENT_LIFTED},
+     BENCH_ROUGH},
 };
 enum { CASES = sizeof cases / sizeof *cases };
 
@@ -81,7 +103,7 @@ typedef struct {
 static rg_bulk_args bulk_args(const job *j) {
     bench_problem *p = j->problem;
     return (rg_bulk_args){.material = p->material[j->what->flags.model],
-                          .lift = j->what->flags.lift,
+                          .gradient = j->what->flags.gradient,
                           .u = p->u,
                           .geom = p->domain->geom,
                           .neighbour = p->domain->neighbour,
@@ -116,7 +138,7 @@ static rg_interface_args interface_args(const job *j) {
 static rg_kick_args kick_args(const job *j) {
     bench_problem *p = j->problem;
     return (rg_kick_args){.density = p->density,
-                          .lumped = j->what->flags.lumped,
+                          .mass = j->what->flags.mass,
                           .dt = 1e-9,
                           .geom = p->domain->geom,
                           .force = p->pull,
@@ -138,7 +160,7 @@ static void run_states(const job *j, size_t begin, size_t end) {
         rg_interface_state_args a = {&interface, p->ienergy + begin * RG_E_INTERFACE * RG_LANES};
         j->set->interface_state(&a, begin, end);
     } else {
-        rg_kinetic_args a = {p->density, j->what->flags.lumped, p->domain->geom, p->velocity,
+        rg_kinetic_args a = {p->density, j->what->flags.mass, p->domain->geom, p->velocity,
                              p->kinetic + begin * RG_LANES};
         j->set->kinetic(&a, begin, end);
     }
@@ -379,11 +401,12 @@ void bench_print_costs(void) {
             print_cost(c->name, &cost);
         }
     }
-    for (int lift = 1; lift >= 0; lift--) {
-        rg_cost_variant v = large_mesh((rg_cost_variant){.lift = lift}, false);
+    for (int lifted = 1; lifted >= 0; lifted--) {
+        rg_gradient gradient = lifted ? RG_GRADIENT_LIFTED : RG_GRADIENT_OWN;
+        rg_cost_variant v = large_mesh((rg_cost_variant){.gradient = gradient}, false);
         v.interfaces = 2.46; /* tile-boundary faces belong to both their tiles */
         v.tile_faces = 0.93;
         rg_cost cost = rg_cost_step(&v);
-        print_cost(lift ? "step variational" : "step incomplete", &cost);
+        print_cost(lifted ? "step variational" : "step incomplete", &cost);
     }
 }

@@ -1,5 +1,5 @@
 /* What a cohesive law is to the kernels: three functions of a point, in vectors. One file per law, listed in
- * laws.h; element/interface.c compiles the kernel once around each.
+ * laws.h; element/interface.c compiles the kernel once around each (element/interface_law.h calls them).
  *
  *   void rg_NAME_respond(const rg_law_point *p, rg_law_state *state, rg_law_response *r)
  *       traction of a point whose largest opening is up to date; advances the memory, if the law has one

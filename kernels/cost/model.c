@@ -66,7 +66,7 @@ enum {
 /* All up to the gradients at the four points. */
 static double gradient_flops(const rg_cost_variant *v) {
     double sum = COMMON + RG_GAUSS * GRADIENT;
-    if (v->lift) {
+    if (v->gradient == RG_GRADIENT_LIFTED) {
         sum += MOMENTS + COMMON_LIFT + RG_GAUSS * GRADIENT_LIFT + UNLINKED * v->unlinked;
     }
     return sum;
@@ -173,11 +173,11 @@ enum {
 };
 
 static double kick_flops(const rg_cost_variant *v) {
-    return 2 + ADD_FACES + (v->lumped ? SOLVE_LUMPED : SOLVE_CONSISTENT) + ADVANCE;
+    return 2 + ADD_FACES + (v->mass == RG_MASS_LUMPED ? SOLVE_LUMPED : SOLVE_CONSISTENT) + ADVANCE;
 }
 
 static double kinetic_flops(const rg_cost_variant *v) {
-    return 2 + (v->lumped ? SQUARE_LUMPED : SQUARE_CONSISTENT);
+    return 2 + (v->mass == RG_MASS_LUMPED ? SQUARE_LUMPED : SQUARE_CONSISTENT);
 }
 
 /* ---- Bytes, in rows: one value of each lane of a block ---- */
@@ -212,8 +212,9 @@ static traffic bulk_traffic(const rg_cost_variant *v, double out) {
     } else {
         t.in += history > 0 ? RG_GAUSS * (history - 1) : 0; /* the plastic strain serves to go on alone */
     }
-    if (v->lift) { /* links, one flag; where points are unlinked, interface links and the masks of two sides
-                    */
+    if (v->gradient == RG_GRADIENT_LIFTED) { /* links, one flag; where points are unlinked, interface links
+                                              * and the masks of two sides
+                                              */
         t.index = LINKS + 1 + (v->unlinked > 0 ? LINKS + v->interfaces * RG_LANES : 0);
     }
     return t;

@@ -5,12 +5,13 @@
 #include <stdbool.h>
 
 #include "materials.h"
+#include "modes.h"
 
 /* The work asked for and the state of the mesh. Each kernel reads the members that concern it. */
 typedef struct {
     rg_material_model model; /* bulk, bulk_state */
-    bool lift;               /* bulk, bulk_state: variational form */
-    bool lumped;             /* kick, kinetic: HRZ mass */
+    rg_gradient gradient;    /* bulk, bulk_state */
+    rg_mass mass;            /* kick, kinetic */
     bool cauchy;             /* bulk_state: writes the stress, not the energy alone */
     bool advance;            /* bulk: the history of the material goes on */
     double growing, panels;  /* ceramic: share of its points (by vectors) whose cracks grow; panels of each */

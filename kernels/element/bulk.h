@@ -60,18 +60,18 @@ RG_INLINE void store_released(rg_real *to, const rg_vec released[RG_RELEASED]) {
     }
 }
 
-RG_INLINE void bulk_vector(const rg_bulk_args *args, size_t block, int lane, bool lift) {
+RG_INLINE void bulk_vector(const rg_bulk_args *args, size_t block, int lane, rg_gradient gradient) {
     element e;
-    load_element(&e, args, block, lane, lift);
+    load_element(&e, args, block, lane, gradient);
     vec3 common[4], q[4][RG_GAUSS], Q[4] = {{{0}}};
-    common_derivatives(&e, lift, common);
+    common_derivatives(&e, gradient, common);
     rg_real *past = history_of(args, block, lane);
     rg_vec stiffening = {0}, bad = {0}, weight = 0.25 * e.volume, released[RG_RELEASED] = {{0}};
     for (int first = 0; first < RG_GAUSS; first += RG_TOGETHER) {
         rg_vec H[RG_TOGETHER][3][3], P[RG_TOGETHER][3][3], history[RG_TOGETHER][HISTORY_VALUES];
         rg_point point[RG_TOGETHER];
         for (int i = 0; i < RG_TOGETHER; i++) {
-            displacement_gradient(&e, lift, common, first + i, H[i]);
+            displacement_gradient(&e, gradient, common, first + i, H[i]);
             load_history(past, first + i, history[i]);
         }
         material_steps(args, H, history, P, point);
@@ -100,10 +100,10 @@ RG_INLINE void bulk_vector(const rg_bulk_args *args, size_t block, int lane, boo
 void BULK_KERNEL(rg_bulk)(const rg_bulk_args *args, size_t begin, size_t end) {
     for (size_t b = begin; b < end; b++) {
         for (int lane = 0; lane < RG_LANES; lane += RG_VLEN) {
-            if (args->lift) {
-                bulk_vector(args, b, lane, true);
+            if (args->gradient == RG_GRADIENT_LIFTED) {
+                bulk_vector(args, b, lane, RG_GRADIENT_LIFTED);
             } else {
-                bulk_vector(args, b, lane, false);
+                bulk_vector(args, b, lane, RG_GRADIENT_OWN);
             }
         }
     }
@@ -119,18 +119,19 @@ RG_INLINE void store_cauchy(double *out, rg_vec H[3][3], rg_point_state *s) {
     }
 }
 
-RG_INLINE void state_vector(const rg_bulk_state_args *args, size_t block, size_t row, int lane, bool lift) {
+RG_INLINE void state_vector(const rg_bulk_state_args *args, size_t block, size_t row, int lane,
+                            rg_gradient gradient) {
     element e;
-    load_element(&e, args->bulk, block, lane, lift);
+    load_element(&e, args->bulk, block, lane, gradient);
     vec3 common[4];
-    common_derivatives(&e, lift, common);
+    common_derivatives(&e, gradient, common);
     const rg_real *past = history_of(args->bulk, block, lane);
     rg_vec energy = {0};
     for (int g = 0; g < RG_GAUSS; g++) {
         rg_vec H[3][3], history[RG_HISTORY + 1];
         rg_point_state s;
         size_t at = row * RG_GAUSS + (size_t)g;
-        displacement_gradient(&e, lift, common, g, H);
+        displacement_gradient(&e, gradient, common, g, H);
         load_history(past, g, history);
         material_state(&args->bulk->material, H, history, args->cauchy != NULL, &s);
         energy += 0.25 * e.volume * s.energy;
@@ -149,10 +150,10 @@ RG_INLINE void state_vector(const rg_bulk_state_args *args, size_t block, size_t
 void BULK_KERNEL(rg_bulk_state)(const rg_bulk_state_args *args, size_t begin, size_t end) {
     for (size_t b = begin; b < end; b++) {
         for (int lane = 0; lane < RG_LANES; lane += RG_VLEN) {
-            if (args->bulk->lift) {
-                state_vector(args, b, b - begin, lane, true);
+            if (args->bulk->gradient == RG_GRADIENT_LIFTED) {
+                state_vector(args, b, b - begin, lane, RG_GRADIENT_LIFTED);
             } else {
-                state_vector(args, b, b - begin, lane, false);
+                state_vector(args, b, b - begin, lane, RG_GRADIENT_OWN);
             }
         }
     }

@@ -100,7 +100,8 @@ RG_INLINE void gather_moments(element *e) {
 }
 
 /* Loads the element geometry and, for the variational form, the moments of its jumps. */
-RG_INLINE void load_element(element *e, const rg_bulk_args *args, size_t block, int lane, bool lift) {
+RG_INLINE void load_element(element *e, const rg_bulk_args *args, size_t block, int lane,
+                            rg_gradient gradient) {
     e->args = args;
     e->block = block;
     e->lane = lane;
@@ -112,13 +113,13 @@ RG_INLINE void load_element(element *e, const rg_bulk_args *args, size_t block, 
         }
     }
     e->volume = rg_load(geom + RG_GEOM_VOLUME * RG_LANES);
-    if (lift) {
+    if (gradient == RG_GRADIENT_LIFTED) {
         gather_moments(e);
     }
 }
 
 /* The part of d_k(g) that is the same at all points, k = 0..3. */
-RG_INLINE void common_derivatives(element *e, bool lift, vec3 common[4]) {
+RG_INLINE void common_derivatives(element *e, rg_gradient gradient, vec3 common[4]) {
     for (int k = 0; k < 4; k++) {
         for (int c = 0; c < 3; c++) {
             rg_vec edges = {0};
@@ -128,7 +129,7 @@ RG_INLINE void common_derivatives(element *e, bool lift, vec3 common[4]) {
                 }
             }
             common[k][c] = rg_splat(4 * RG_GAUSS_A - 1) * node(e, k, c) + rg_splat(4 * RG_GAUSS_A) * edges;
-            if (lift) {
+            if (gradient == RG_GRADIENT_LIFTED) {
                 vec3 *m = e->moment[k];
                 common[k][c] += rg_splat(6 * RG_GAUSS_A / RG_GAUSS_BA) * (m[0][c] + m[1][c] + m[2][c]);
             }
@@ -137,12 +138,13 @@ RG_INLINE void common_derivatives(element *e, bool lift, vec3 common[4]) {
 }
 
 /* H = F_g + R_g - I at Gauss point g. */
-RG_INLINE void displacement_gradient(const element *e, bool lift, vec3 common[4], int g, rg_vec H[3][3]) {
+RG_INLINE void displacement_gradient(const element *e, rg_gradient gradient, vec3 common[4], int g,
+                                     rg_vec H[3][3]) {
     vec3 d[4];
     for (int k = 0; k < 4; k++) {
         for (int c = 0; c < 3; c++) {
             d[k][c] = common[k][c] + rg_splat(4 * RG_GAUSS_BA) * node(e, rg_edge_node[k][g], c);
-            if (lift && g != k) {
+            if (gradient == RG_GRADIENT_LIFTED && g != k) {
                 d[k][c] -= rg_splat(6 / RG_GAUSS_BA) * e->moment[k][g < k ? g : g - 1][c];
             }
         }

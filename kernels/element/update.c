@@ -9,14 +9,19 @@
 static const int edge_corner[6][2] = {{0, 1}, {1, 2}, {0, 2}, {0, 3}, {1, 3}, {2, 3}};
 static const int edge_opposite[6] = {5, 3, 4, 1, 2, 0};
 
-/* Adds the interface forces of face k, if it is one of the kind asked for. */
-RG_INLINE void add_face(const rg_kick_args *args, const int32_t link[RG_VLEN], int k, bool tile_faces,
+/* Whether the interface of a link, if there is one, belongs to the sweep. */
+RG_INLINE bool is_swept(int32_t link, rg_sweep sweep) {
+    return link >= 0 && ((link & RG_TILE_FACE) != 0) == (sweep == RG_SWEEP_BOUNDARY);
+}
+
+/* Adds the interface forces of face k, if the sweep is over it. */
+RG_INLINE void add_face(const rg_kick_args *args, const int32_t link[RG_VLEN], int k, rg_sweep sweep,
                         rg_vec f[3][RG_NODES]) {
     static _Alignas(64) const rg_real none[RG_IFORCE_BLOCK];
     rg_lanes at;
     rg_vec sign;
     for (int l = 0; l < RG_VLEN; l++) {
-        bool there = link[l] >= 0 && ((link[l] & RG_TILE_FACE) != 0) == tile_faces;
+        bool there = is_swept(link[l], sweep);
         at.lane[l] = there ? rg_first_value(args->iforce, (uint32_t)link[l] / 4, RG_IFORCE_BLOCK) : none;
         sign[l] = (rg_real)(1 - 2 * (link[l] & 1));
     }
@@ -28,14 +33,13 @@ RG_INLINE void add_face(const rg_kick_args *args, const int32_t link[RG_VLEN], i
 }
 
 /* Adds what turns the mid-surface of face k, which is the same for both sides. */
-RG_INLINE void add_turn(const rg_kick_args *args, const int32_t link[RG_VLEN], int k, bool tile_faces,
+RG_INLINE void add_turn(const rg_kick_args *args, const int32_t link[RG_VLEN], int k, rg_sweep sweep,
                         rg_vec f[3][RG_NODES]) {
     static _Alignas(64) const rg_real none[RG_IFORCE_BLOCK];
     rg_lanes at;
     bool any = false;
     for (int l = 0; l < RG_VLEN; l++) {
-        bool there = link[l] >= 0 && ((link[l] & RG_TILE_FACE) != 0) == tile_faces &&
-                     args->broken[(uint32_t)link[l] / 4];
+        bool there = is_swept(link[l], sweep) && args->broken[(uint32_t)link[l] / 4];
         at.lane[l] = there ? rg_first_value(args->turn, (uint32_t)link[l] / 4, RG_IFORCE_BLOCK) : none;
         any |= there;
     }
@@ -48,20 +52,20 @@ RG_INLINE void add_turn(const rg_kick_args *args, const int32_t link[RG_VLEN], i
 
 /* Nodal forces: bulk, then the faces in their local order. The order is the mesh's, so the sum has the same
  * bits however the mesh is distributed. */
-RG_INLINE void sum_force(const rg_kick_args *args, size_t block, int lane, bool tile_faces,
+RG_INLINE void sum_force(const rg_kick_args *args, size_t block, int lane, rg_sweep sweep,
                          rg_vec f[3][RG_NODES]) {
     for (int n = 0; n < RG_NODES; n++) {
         for (int c = 0; c < 3; c++) {
-            f[c][n] = tile_faces
+            f[c][n] = sweep == RG_SWEEP_BOUNDARY
                           ? rg_splat(0.0)
                           : rg_load(args->force + block * RG_NODE_BLOCK + (n * 3 + c) * RG_LANES + lane);
         }
     }
     for (int k = 0; k < RG_FACES; k++) {
         const int32_t *link = args->interface + block * RG_LINK_BLOCK + k * RG_LANES + lane;
-        add_face(args, link, k, tile_faces, f);
-        if (args->turn != NULL) {
-            add_turn(args, link, k, tile_faces, f);
+        add_face(args, link, k, sweep, f);
+        if (args->contact == RG_CONTACT_POTENTIAL) {
+            add_turn(args, link, k, sweep, f);
         }
     }
 }
@@ -96,14 +100,15 @@ RG_INLINE void solve_lumped(rg_vec f[RG_NODES]) {
 }
 
 /* Adds dt M^-1 f to the velocity; dt_now M^-1 f leads to the velocity at the step, the time of the forces. */
-RG_INLINE void kick_vector(const rg_kick_args *args, size_t block, int lane, bool lumped, bool tile_faces) {
+RG_INLINE void kick_vector(const rg_kick_args *args, size_t block, int lane, rg_mass mass_matrix,
+                           rg_sweep sweep) {
     rg_vec mass = rg_splat(args->density) *
                   rg_load(args->geom + block * RG_GEOM_BLOCK + RG_GEOM_VOLUME * RG_LANES + lane);
     rg_vec scale = rg_splat(args->dt) / mass, scale_now = rg_splat(args->dt_now) / mass;
     rg_vec f[3][RG_NODES];
-    sum_force(args, block, lane, tile_faces, f);
+    sum_force(args, block, lane, sweep, f);
     for (int c = 0; c < 3; c++) {
-        if (lumped) {
+        if (mass_matrix == RG_MASS_LUMPED) {
             solve_lumped(f[c]);
         } else {
             solve_consistent(f[c]);
@@ -113,7 +118,8 @@ RG_INLINE void kick_vector(const rg_kick_args *args, size_t block, int lane, boo
             rg_vec v = rg_load(args->velocity + at);
             if (args->step_velocity != NULL) {
                 rg_store(args->step_velocity + at,
-                         (tile_faces ? rg_load(args->step_velocity + at) : v) + scale_now * f[c][n]);
+                         (sweep == RG_SWEEP_BOUNDARY ? rg_load(args->step_velocity + at) : v) +
+                             scale_now * f[c][n]);
             }
             rg_store(args->velocity + at, v + scale * f[c][n]);
         }
@@ -130,16 +136,16 @@ static bool has_tile_face(const int32_t *link) {
 
 void RG_ISA_NAME(rg_kick)(const rg_kick_args *args, size_t begin, size_t end) {
     for (size_t b = begin; b < end; b++) {
-        if (args->tile_faces && !has_tile_face(args->interface + b * RG_LINK_BLOCK)) {
+        if (args->sweep == RG_SWEEP_BOUNDARY && !has_tile_face(args->interface + b * RG_LINK_BLOCK)) {
             continue;
         }
         for (int lane = 0; lane < RG_LANES; lane += RG_VLEN) {
-            if (args->tile_faces) {
-                kick_vector(args, b, lane, args->lumped, true);
-            } else if (args->lumped) {
-                kick_vector(args, b, lane, true, false);
+            if (args->sweep == RG_SWEEP_BOUNDARY) {
+                kick_vector(args, b, lane, args->mass, RG_SWEEP_BOUNDARY);
+            } else if (args->mass == RG_MASS_LUMPED) {
+                kick_vector(args, b, lane, RG_MASS_LUMPED, RG_SWEEP_ELEMENT);
             } else {
-                kick_vector(args, b, lane, false, false);
+                kick_vector(args, b, lane, RG_MASS_CONSISTENT, RG_SWEEP_ELEMENT);
             }
         }
     }
@@ -187,7 +193,7 @@ void RG_ISA_NAME(rg_kinetic)(const rg_kinetic_args *args, size_t begin, size_t e
                 for (int n = 0; n < RG_NODES; n++) {
                     v[n] = rg_load(args->velocity + b * RG_NODE_BLOCK + (n * 3 + c) * RG_LANES + lane);
                 }
-                sum += args->lumped ? lumped_square(v) : consistent_square(v);
+                sum += args->mass == RG_MASS_LUMPED ? lumped_square(v) : consistent_square(v);
             }
             rg_store_wide(args->energy + (b - begin) * RG_LANES + lane,
                           rg_splat(0.5 * args->density) * volume * sum);

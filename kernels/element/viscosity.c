@@ -45,18 +45,18 @@ RG_INLINE void limit_step(const rg_viscosity_args *v, rg_real *stiffening, rg_ve
 
 RG_INLINE void viscous_vector(const rg_viscosity_args *v, size_t block, int lane) {
     element e, rate;
-    load_element(&e, v->bulk, block, lane, false);
+    load_element(&e, v->bulk, block, lane, RG_GRADIENT_OWN);
     rate = e;
     rate.u = v->velocity + block * RG_NODE_BLOCK + lane;
     vec3 common[4], common_rate[4], q[4][RG_GAUSS], Q[4] = {{{0}}};
-    common_derivatives(&e, false, common);
-    common_derivatives(&rate, false, common_rate);
+    common_derivatives(&e, RG_GRADIENT_OWN, common);
+    common_derivatives(&rate, RG_GRADIENT_OWN, common_rate);
     rg_vec h = smallest_height(&e), weight = 0.25 * e.volume, heat = {0}, worst = {0};
     rg_vec scale = rg_splat(v->bulk->material.density) * h, quadratic = rg_splat(v->quadratic) * h;
     for (int g = 0; g < RG_GAUSS; g++) {
         rg_vec H[3][3], G[3][3], cof[3][3], P[3][3], J;
-        displacement_gradient(&e, false, common, g, H);
-        displacement_gradient(&rate, false, common_rate, g, G);
+        displacement_gradient(&e, RG_GRADIENT_OWN, common, g, H);
+        displacement_gradient(&rate, RG_GRADIENT_OWN, common_rate, g, G);
         volume_change(H, cof, &J);
         rg_vec shrinking = -(rg_dot(cof[0], G[0]) + rg_dot(cof[1], G[1]) + rg_dot(cof[2], G[2]));
         rg_vec closing = shrinking / J, squeeze = rg_max(closing, rg_splat(0.0));

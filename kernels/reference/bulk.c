@@ -69,7 +69,7 @@ static void load(const rg_bulk_args *args, size_t e, element *el) {
     for (int a = 0; a < RG_NODES; a++)
         for (int c = 0; c < 3; c++)
             el->u[a][c] = args->u[rg_node_index(e, a, c)];
-    if (args->lift)
+    if (args->gradient == RG_GRADIENT_LIFTED)
         load_jumps(args, e, el);
 }
 
@@ -243,7 +243,7 @@ static void viscous_element(const rg_viscosity_args *v, size_t e) {
     rg_bulk_args args = *v->bulk;
     element el, rate;
     double force[RG_NODES][3] = {{0}}, worst = 0;
-    args.lift = false;
+    args.gradient = RG_GRADIENT_OWN;
     load(&args, e, &el);
     args.u = v->velocity;
     load(&args, e, &rate);

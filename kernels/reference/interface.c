@@ -1,4 +1,5 @@
-/* Reference interface: DG terms where a point holds, the cohesive law and contact where it broke. */
+/* Reference interface: DG terms where a point holds; where it breaks or has broken, one after the other,
+ * criterion, law, contact and friction (kernels/README.md, sections 6 and 7). */
 #include <math.h>
 #include "cohesive/facts.h"
 #include "reference/cohesive.h"
@@ -137,6 +138,21 @@ static void sample_traction(const rg_interface_args *args, size_t i, int q, poin
     }
 }
 
+static crack crack_of(const rg_interface_args *args, size_t i, int q) {
+    rg_real *block = args->crack + i / RG_LANES * args->crack_stride;
+    int memory = rg_law_facts_of(args->law.law, args->law.shape, args->law.beta).memory;
+    crack found = {{NULL}, {NULL}, {NULL}};
+    for (int k = 0; k < RG_CRACK; k++)
+        found.state[k] = block + rg_crack_index(i % RG_LANES, q, k);
+    for (int m = 0; m < memory; m++)
+        found.memory[m] = block + RG_CRACK_BLOCK + (size_t)(q * memory + m) * RG_LANES + i % RG_LANES;
+    for (int k = 0; k < RG_FRICTION && args->law.sliding == RG_SLIDING_COULOMB; k++)
+        found.friction[k] = args->crack + rg_friction_index(i, q, k, args->crack_stride);
+    return found;
+}
+
+/* ---- 1. Criterion (5.3, 5.17), and the opening with which a point that breaks starts ---- */
+
 /* Whether an unbroken point breaks now; if so, `direction` is that of its first opening. */
 static bool breaks(const rg_cohesive *law, const point *p, double direction[3]) {
     double beta2 = law->beta * law->beta, shear[3];
@@ -160,8 +176,10 @@ static bool breaks(const rg_cohesive *law, const point *p, double direction[3]) 
 
 /* Opening from which a point that switches starts (m). */
 static double onset(const rg_cohesive *law, const point *p) {
-    double share = law->total ? 0 : law->onset > 0 ? law->onset : RG_ONSET;
-    return share * p->strength * p->area / (p->iso + p->norm);
+    double share[] = {[RG_ACTIVATION_CONTINUOUS] = RG_ONSET,
+                      [RG_ACTIVATION_TOTAL] = 0,
+                      [RG_ACTIVATION_CONSERVING] = law->onset};
+    return share[law->activation] * p->strength * p->area / (p->iso + p->norm);
 }
 
 /* What lift and penalty give back to a point that switches, over its strength (m). In the law's own terms the
@@ -180,18 +198,20 @@ static double given_back(const rg_cohesive *law, const point *p, const double di
 static void activate(const rg_interface_args *args, const point *p, const double direction[3],
                      const crack *k) {
     double start = onset(&args->law, p), first = start;
-    if (args->law.onset > 0) {
+    if (args->law.activation == RG_ACTIVATION_CONSERVING) {
         double given = given_back(&args->law, p, direction);
         double left = sqrt(fmax(0, 1 - 2 * fmax(0, given) / p->opening)); /* of the strength */
         first = fmax(RG_REFERENCE_NOTHING, p->opening * (1 - left));
         start = given > 0 ? start + first : start * sqrt(fmax(0, 1 + 2 * given / start));
     }
     *k->state[RG_CRACK_OPENING] = (rg_real)first;
+    bool total = args->law.activation == RG_ACTIVATION_TOTAL;
     for (int c = 0; c < 3; c++)
-        *k->state[RG_CRACK_ORIGIN + c] = args->law.total ? 0 : (rg_real)(p->jump[c] - start * direction[c]);
+        *k->state[RG_CRACK_ORIGIN + c] = total ? 0 : (rg_real)(p->jump[c] - start * direction[c]);
     *k->state[RG_CRACK_TIME] = (rg_real)args->time;
 }
 
+/* w_n, w_t and delta of (3.16). */
 static opening measure(const rg_cohesive *law, const point *p, const crack *k) {
     opening o = {0};
     double w[3];
@@ -204,6 +224,8 @@ static opening measure(const rg_cohesive *law, const point *p, const crack *k) {
     o.effective = sqrt(law->beta * law->beta * rg_reference_dot(o.shear, o.shear) + open * open);
     return o;
 }
+
+/* ---- 2. Law ---- */
 
 /* Asks the law; `before` is the largest opening before this state, `advance` whether its memory moves on. */
 static rg_law_answer ask(const rg_interface_args *args, const point *p, const opening *o, const crack *k,
@@ -222,11 +244,49 @@ static rg_law_answer ask(const rg_interface_args *args, const point *p, const op
     double state[1 + RG_LAW_MEMORY] = {*k->state[RG_CRACK_OPENING]};
     for (int m = 0; m < memory; m++)
         state[1 + m] = *k->memory[m];
-    rg_law_answer answer = law->onset > 0 ? rg_reference_conserving(law->law, &query, onset(law, p), state)
-                                          : rg_reference_law(law->law, &query, state);
+    bool conserving = law->activation == RG_ACTIVATION_CONSERVING;
+    rg_law_answer answer = conserving ? rg_reference_conserving(law->law, &query, onset(law, p), state)
+                                      : rg_reference_law(law->law, &query, state);
     for (int m = 0; m < memory && advance; m++)
         *k->memory[m] = (rg_real)state[1 + m];
     return answer;
+}
+
+/* Traction of the law, as t = along n + over w_t, area-weighted. */
+typedef struct {
+    double along, over;
+} traction;
+
+/* That of the law at opening o (3.19); keeps the largest opening. */
+static traction cohesive_traction(const rg_interface_args *args, const point *p, const opening *o,
+                                  const crack *k) {
+    const rg_cohesive *law = &args->law;
+    double start = law->activation == RG_ACTIVATION_CONSERVING ? onset(law, p) : 0; /* counts as no damage */
+    double before = *k->state[RG_CRACK_OPENING], largest = fmax(before, o->effective - start);
+    double parts = p->opening * (law->separation / law->opening);
+    *k->state[RG_CRACK_OPENING] = (rg_real)largest;
+    if (law->form == RG_FORM_INTRINSIC && before < parts && largest >= parts)
+        *k->state[RG_CRACK_TIME] = (rg_real)args->time;
+    rg_law_answer a = ask(args, p, o, k, before, true);
+    double sliding = sqrt(rg_reference_dot(o->shear, o->shear));
+    return (traction){p->area * a.normal, sliding > 0 ? p->area * a.sliding / sliding : 0};
+}
+
+/* ---- 3. Contact ---- */
+
+/* Whether contact acts at opening o: where it is closed; its linear part, anywhere. Contact `flux` is the DG
+ * terms instead. */
+static bool touches(const rg_cohesive *law, const opening *o) {
+    switch (law->contact) {
+    case RG_CONTACT_PENALTY:
+    case RG_CONTACT_POTENTIAL:
+        return o->normal < 0;
+    case RG_CONTACT_LINEAR:
+        return true;
+    case RG_CONTACT_FLUX:
+        break;
+    }
+    return false;
 }
 
 /* How much of a face lies over the other one. */
@@ -252,43 +312,22 @@ static void turn(const point *p, const opening *o, double across, double sliding
         }
 }
 
-/* Cohesive traction and contact, area-weighted; keeps the largest opening. */
-static void cohesive(const rg_interface_args *args, const point *p, const opening *o, const crack *k,
-                     double t[3], double turning[RG_FNODES][3]) {
-    const rg_cohesive *law = &args->law;
-    double start = law->onset > 0 ? onset(law, p) : 0; /* counts as no damage */
-    double before = *k->state[RG_CRACK_OPENING], largest = fmax(before, o->effective - start);
-    double parts = p->opening * (law->separation / law->opening);
-    *k->state[RG_CRACK_OPENING] = (rg_real)largest;
-    if (law->intrinsic && before < parts && largest >= parts)
-        *k->state[RG_CRACK_TIME] = (rg_real)args->time;
-    rg_law_answer a = ask(args, p, o, k, before, true);
-    double sliding = sqrt(rg_reference_dot(o->shear, o->shear));
-    bool touches = !law->flux && o->normal < law->contact_below;
-    double pressed = touches ? p->contact * o->normal * (law->potential ? overlap(p, o) : 1) : 0;
-    double apart = touches && law->potential
-                       ? -2 * p->contact * o->normal * o->normal * sqrt(overlap(p, o)) / p->area
-                       : 0;
-    double across = p->area * a.normal + pressed + 16 * apart * o->normal;
-    double secant = (sliding > 0 ? p->area * a.sliding / sliding : 0) + apart;
-    for (int c = 0; c < 3; c++)
-        t[c] = secant * o->shear[c] + across * p->normal[c];
-    if (law->potential)
-        turn(p, o, across, secant, turning);
+/* Adds contact, and the turn of the normal under contact as a potential. */
+static void add_contact(const rg_interface_args *args, const point *p, const opening *o, traction *t,
+                        double turning[RG_FNODES][3]) {
+    bool potential = args->law.contact == RG_CONTACT_POTENTIAL;
+    if (touches(&args->law, o))
+        t->along += p->contact * o->normal * (potential ? overlap(p, o) : 1);
+    if (touches(&args->law, o) && potential) {
+        double apart = -2 * p->contact * o->normal * o->normal * sqrt(overlap(p, o)) / p->area;
+        t->along += 16 * apart * o->normal;
+        t->over += apart;
+    }
+    if (potential)
+        turn(p, o, t->along, t->over, turning);
 }
 
-static crack crack_of(const rg_interface_args *args, size_t i, int q) {
-    rg_real *block = args->crack + i / RG_LANES * args->crack_stride;
-    int memory = rg_law_facts_of(args->law.law, args->law.shape, args->law.beta).memory;
-    crack found = {{NULL}, {NULL}, {NULL}};
-    for (int k = 0; k < RG_CRACK; k++)
-        found.state[k] = block + rg_crack_index(i % RG_LANES, q, k);
-    for (int m = 0; m < memory; m++)
-        found.memory[m] = block + RG_CRACK_BLOCK + (size_t)(q * memory + m) * RG_LANES + i % RG_LANES;
-    for (int k = 0; k < RG_FRICTION && args->law.friction > 0; k++)
-        found.friction[k] = args->crack + rg_friction_index(i, q, k, args->crack_stride);
-    return found;
-}
+/* ---- 4. Friction ---- */
 
 /* Unit tangents of the deformed mid-surface: along the edge from corner 0 to 1, and across it. */
 static void sample_tangents(const rg_interface_args *args, size_t i, const point *p, double tangent[2][3]) {
@@ -307,15 +346,10 @@ static void sample_tangents(const rg_interface_args *args, size_t i, const point
 
 /* Adds friction: a spring of the tangential penalty from an anchor, which slips where the spring would pull
  * with more than mu times damage times pressure. */
-static void rub(const rg_interface_args *args, size_t i, const point *p, const opening *o, const crack *k,
-                bool fresh, double t[3]) {
+static void add_coulomb(const rg_interface_args *args, size_t i, const point *p, const opening *o,
+                        const crack *k, bool fresh, double t[3]) {
     const rg_cohesive *law = &args->law;
     double tangent[2][3], slip[2], spring[2], slid = 0;
-    if (law->stick) {
-        for (int c = 0; c < 3; c++)
-            t[c] += p->iso * o->shear[c];
-        return;
-    }
     sample_tangents(args, i, p, tangent);
     double parts = p->opening * (law->separation / law->opening);
     double damage = parts > 0 ? fmin(1, *k->state[RG_CRACK_OPENING] / parts) : 1;
@@ -341,6 +375,8 @@ static void set_bit(uint8_t *mask, int q, bool on) {
     *mask = (uint8_t)(on ? *mask | 1 << q : *mask & ~(1 << q));
 }
 
+/* ---- The point ---- */
+
 /* Traction of point q, area-weighted; advances its state. */
 static void point_traction(const rg_interface_args *args, size_t i, int q, const point *p, double t[3],
                            double turning[RG_FNODES][3]) {
@@ -357,11 +393,17 @@ static void point_traction(const rg_interface_args *args, size_t i, int q, const
         args->active[i / RG_LANES] = 1;
     }
     opening o = measure(&args->law, p, &k);
-    bool closed = args->law.flux && o.normal < 0;
-    if (!closed)
-        cohesive(args, p, &o, &k, t, turning);
-    if (args->law.friction > 0)
-        rub(args, i, p, &o, &k, !broken, t);
+    bool closed = args->law.contact == RG_CONTACT_FLUX && o.normal < 0;
+    if (!closed) {
+        traction law = cohesive_traction(args, p, &o, &k);
+        add_contact(args, p, &o, &law, turning);
+        for (int c = 0; c < 3; c++)
+            t[c] = law.over * o.shear[c] + law.along * p->normal[c];
+    }
+    if (args->law.sliding == RG_SLIDING_COULOMB)
+        add_coulomb(args, i, p, &o, &k, !broken, t);
+    for (int c = 0; c < 3 && args->law.sliding == RG_SLIDING_STUCK; c++)
+        t[c] += p->iso * o.shear[c];
     set_bit(&args->unlinked[i], q, !closed);
 }
 
@@ -381,7 +423,7 @@ void rg_reference_interface(const rg_interface_args *args, size_t begin, size_t 
         for (int a = 0; a < RG_FNODES; a++)
             for (int c = 0; c < 3; c++) {
                 args->force[rg_iforce_index(i, a, c)] = (rg_real)g[a][c];
-                if (args->law.potential && args->broken[i] != 0)
+                if (args->law.contact == RG_CONTACT_POTENTIAL && args->broken[i] != 0)
                     args->turn[rg_iforce_index(i, a, c)] = (rg_real)turning[a][c];
             }
     }
@@ -402,10 +444,11 @@ static void point_energy(const rg_interface_args *args, size_t i, int q, double 
     rg_law_answer a = ask(args, &p, &o, &k, *k.state[RG_CRACK_OPENING], false);
     if (unlinked)
         energy[RG_E_COHESIVE] += p.weight * p.area * a.stored;
-    if (!law->flux && o.normal < law->contact_below)
-        energy[RG_E_CONTACT] +=
-            p.weight * p.contact * o.normal * o.normal / 2 * (law->potential ? overlap(&p, &o) : 1);
-    for (int d = 0; d < 2 && law->friction > 0; d++) {
+    if (touches(law, &o)) {
+        double share = law->contact == RG_CONTACT_POTENTIAL ? overlap(&p, &o) : 1;
+        energy[RG_E_CONTACT] += p.weight * p.contact * o.normal * o.normal / 2 * share;
+    }
+    for (int d = 0; d < 2 && law->sliding == RG_SLIDING_COULOMB; d++) {
         double stretch = *k.friction[RG_FRICTION_STRETCH + d];
         energy[RG_E_CONTACT] += p.weight * p.iso * stretch * stretch / 2;
     }

@@ -46,10 +46,10 @@ static double mean_product(polynomial p, polynomial r) {
 }
 
 /* Mass matrix divided by density and volume. */
-static void mass_matrix(bool lumped, double m[RG_NODES][RG_NODES]) {
+static void mass_matrix(rg_mass mass, double m[RG_NODES][RG_NODES]) {
     for (int a = 0; a < RG_NODES; a++)
         for (int b = 0; b < RG_NODES; b++)
-            if (lumped)
+            if (mass == RG_MASS_LUMPED)
                 m[a][b] = a != b ? 0 : a < 4 ? 1.0 / 36 : 4.0 / 27;
             else
                 m[a][b] = mean_product(shape(a), shape(b));
@@ -79,18 +79,19 @@ static void invert(double m[RG_NODES][RG_NODES], double inv[RG_NODES][RG_NODES])
 /* Bulk force plus the forces of the interfaces inside the tile, by side; or those of the tile-boundary faces
  * alone. */
 static void total_force(const rg_kick_args *args, size_t e, double f[RG_NODES][3]) {
+    bool boundary = args->sweep == RG_SWEEP_BOUNDARY;
     for (int a = 0; a < RG_NODES; a++)
         for (int c = 0; c < 3; c++)
-            f[a][c] = args->tile_faces ? 0 : args->force[rg_node_index(e, a, c)];
+            f[a][c] = boundary ? 0 : args->force[rg_node_index(e, a, c)];
     for (int face = 0; face < RG_FACES; face++) {
         int32_t link = args->interface[rg_link_index(e, face)];
-        if (link < 0 || (link % 4 >= RG_TILE_FACE) != args->tile_faces)
+        if (link < 0 || (link % 4 >= RG_TILE_FACE) != boundary)
             continue;
         double sign = link % 2 == 1 ? -1 : 1;
         for (int a = 0; a < RG_FNODES; a++)
             for (int c = 0; c < 3; c++)
                 f[rg_face_node[face][a]][c] += sign * args->iforce[rg_iforce_index((size_t)link / 4, a, c)];
-        bool turns = args->turn != NULL && args->broken[link / 4] != 0;
+        bool turns = args->contact == RG_CONTACT_POTENTIAL && args->broken[link / 4] != 0;
         for (int a = 0; turns && a < RG_FNODES; a++)
             for (int c = 0; c < 3; c++)
                 f[rg_face_node[face][a]][c] += args->turn[rg_iforce_index((size_t)link / 4, a, c)];
@@ -98,8 +99,9 @@ static void total_force(const rg_kick_args *args, size_t e, double f[RG_NODES][3
 }
 
 void rg_reference_kick(const rg_kick_args *args, size_t begin, size_t end) {
+    bool boundary = args->sweep == RG_SWEEP_BOUNDARY;
     double m[RG_NODES][RG_NODES], inv[RG_NODES][RG_NODES];
-    mass_matrix(args->lumped, m);
+    mass_matrix(args->mass, m);
     invert(m, inv);
     for (size_t e = begin * RG_LANES; e < end * RG_LANES; e++) {
         double f[RG_NODES][3];
@@ -113,7 +115,7 @@ void rg_reference_kick(const rg_kick_args *args, size_t begin, size_t end) {
                 size_t k = rg_node_index(e, a, c);
                 if (args->step_velocity)
                     args->step_velocity[k] =
-                        (rg_real)((args->tile_faces ? args->step_velocity[k] : args->velocity[k]) +
+                        (rg_real)((boundary ? args->step_velocity[k] : args->velocity[k]) +
                                   args->dt_now * acceleration);
                 args->velocity[k] = (rg_real)(args->velocity[k] + args->dt * acceleration);
             }
@@ -127,7 +129,7 @@ void rg_reference_drift(const rg_drift_args *args, size_t begin, size_t end) {
 
 void rg_reference_kinetic(const rg_kinetic_args *args, size_t begin, size_t end) {
     double m[RG_NODES][RG_NODES];
-    mass_matrix(args->lumped, m);
+    mass_matrix(args->mass, m);
     for (size_t e = begin * RG_LANES; e < end * RG_LANES; e++) {
         double sum = 0;
         for (int a = 0; a < RG_NODES; a++)

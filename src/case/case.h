@@ -8,16 +8,12 @@
 #include "case/expr.h"
 #include "kernels.h"
 #include "materials.h"
+#include "modes.h"
 
 typedef enum { RG_INTERACTION_THESIS, RG_INTERACTION_DERIVED } rg_interaction;
-typedef enum { RG_FORM_VARIATIONAL, RG_FORM_INCOMPLETE, RG_FORM_INTRINSIC, RG_FORM_CONTINUOUS } rg_form;
-typedef enum { RG_PENALTY_ELASTIC, RG_PENALTY_ISOTROPIC } rg_penalty;
-typedef enum { RG_ACTIVATION_CONTINUOUS, RG_ACTIVATION_TOTAL, RG_ACTIVATION_CONSERVING } rg_activation;
-typedef enum { RG_CONTACT_PENALTY, RG_CONTACT_FLUX, RG_CONTACT_POTENTIAL } rg_contact;
 typedef enum { RG_OUTPUT_DOUBLE, RG_OUTPUT_SINGLE } rg_output_precision;
 typedef enum { RG_FRAGMENTS_EACH, RG_FRAGMENTS_LAST, RG_FRAGMENTS_NONE } rg_fragments_when;
 typedef enum { RG_KEEP_ENERGY, RG_KEEP_OPENING } rg_keep;
-typedef enum { RG_MASS_CONSISTENT, RG_MASS_LUMPED } rg_mass;
 typedef enum { RG_SHAPE_SPHERE, RG_SHAPE_PLANE, RG_SHAPE_CYLINDER } rg_shape_kind;
 typedef enum { RG_MOTION_FREE, RG_MOTION_PRESCRIBED } rg_motion;
 

@@ -189,7 +189,7 @@ static void measure_here(harvest *h) {
     const rg_fragment_parts *p = h->p;
     for (int a = 0; a < RG_NODES; a++) {
         for (int b = 0; b < RG_NODES; b++) {
-            h->m[a][b] = rg_mass_entry(h->s->lumped, a, b);
+            h->m[a][b] = rg_mass_entry(h->s->input->mass, a, b);
         }
     }
     h->place = RG_NEW(size_t, p->count);

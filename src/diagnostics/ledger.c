@@ -46,7 +46,7 @@ static void add_all(rg_exact_sum *sum, const double *x, size_t count) {
  * nodes. */
 static void add_momentum(rg_exact_sum *sum, const rg_solver *s, size_t slot) {
     double mv[RG_NODES][3], p[3] = {0, 0, 0}, l[3] = {0, 0, 0};
-    rg_mass_times(s->lumped, rg_element_mass(s->domain, s->material, slot), s->step_velocity, slot, mv);
+    rg_mass_times(s->input->mass, rg_element_mass(s->domain, s->material, slot), s->step_velocity, slot, mv);
     for (int n = 0; n < RG_NODES; n++) {
         double x[3];
         rg_node_position(s->domain->corner + 12 * slot, n, x);
@@ -80,7 +80,7 @@ static void add_released(rg_exact_sum *sum, const rg_solver *s, size_t slot) {
 }
 
 static void kinetic_energies(const rg_solver *s, const rg_tile *t, double *energy) {
-    rg_kinetic_args kinetic = {.lumped = s->lumped,
+    rg_kinetic_args kinetic = {.mass = s->input->mass,
                                .geom = s->domain->geom + t->begin * RG_GEOM_BLOCK,
                                .velocity = s->step_velocity + t->begin * RG_NODE_BLOCK};
     for (size_t begin = 0, end; begin < rg_tile_eblocks(t); begin = end) {
@@ -140,7 +140,7 @@ static void share_out(rg_exact_sum *sum, const rg_solver *s, size_t i, double di
 }
 
 static void add_friction(rg_exact_sum *sum, const rg_solver *s, size_t i) {
-    for (int q = 0; q < RG_POINTS && s->law.friction > 0; q++) {
+    for (int q = 0; q < RG_POINTS && s->law.sliding == RG_SLIDING_COULOMB; q++) {
         if (s->broken[i] >> q & 1) {
             double heat = *rg_friction_value(s, i, q, RG_FRICTION_HEAT);
             rg_exact_add(&sum[FRICTION], heat);

@@ -57,28 +57,28 @@ static double by_kind(const double kind[7], int a, int b) {
     return kind[a == b ? 4 : common > 0 ? 5 : 6];
 }
 
-double rg_mass_entry(bool lumped, int a, int b) {
-    static const double kind[7] = {6. / 420, 1. / 420, -4. / 420, -6. / 420, 32. / 420, 16. / 420, 8. / 420};
-    if (lumped) {
+double rg_mass_entry(rg_mass kind, int a, int b) {
+    static const double entry[7] = {6. / 420, 1. / 420, -4. / 420, -6. / 420, 32. / 420, 16. / 420, 8. / 420};
+    if (kind == RG_MASS_LUMPED) {
         return a != b ? 0 : a < 4 ? 1. / 36 : 4. / 27;
     }
-    return by_kind(kind, a, b);
+    return by_kind(entry, a, b);
 }
 
-double rg_inverse_mass_entry(bool lumped, int a, int b) {
-    static const double kind[7] = {100, 10, 2.5, 10, 28.75, -6.875, 10};
-    if (lumped) {
+double rg_inverse_mass_entry(rg_mass kind, int a, int b) {
+    static const double entry[7] = {100, 10, 2.5, 10, 28.75, -6.875, 10};
+    if (kind == RG_MASS_LUMPED) {
         return a != b ? 0 : a < 4 ? 36 : 27. / 4;
     }
-    return by_kind(kind, a, b);
+    return by_kind(entry, a, b);
 }
 
-void rg_mass_times(bool lumped, double mass, const rg_real *v, size_t slot, double out[RG_NODES][3]) {
+void rg_mass_times(rg_mass kind, double mass, const rg_real *v, size_t slot, double out[RG_NODES][3]) {
     for (int a = 0; a < RG_NODES; a++) {
         for (int c = 0; c < 3; c++) {
             out[a][c] = 0;
             for (int b = 0; b < RG_NODES; b++) {
-                out[a][c] += mass * rg_mass_entry(lumped, a, b) * v[rg_node_index(slot, b, c)];
+                out[a][c] += mass * rg_mass_entry(kind, a, b) * v[rg_node_index(slot, b, c)];
             }
         }
     }

@@ -3,9 +3,8 @@
 #ifndef RG_ELEMENT_H
 #define RG_ELEMENT_H
 
-#include <stdbool.h>
-
 #include "layout.h"
+#include "modes.h"
 
 /* Reference position of a node from the four corners [4][3] (m). */
 void rg_node_position(const double *corner, int node, double x[3]);
@@ -16,11 +15,11 @@ void rg_barycentric(const double *corner, const double x[3], double l[4]);
 /* The ten shape functions at barycentric coordinates l. */
 void rg_shape(const double l[4], double N[RG_NODES]);
 
-/* Entry (a, b) of the mass matrix over rho V, and of its inverse: consistent, or lumped (HRZ). */
-double rg_mass_entry(bool lumped, int a, int b);
-double rg_inverse_mass_entry(bool lumped, int a, int b);
+/* Entry (a, b) of the mass matrix over rho V, and of its inverse. */
+double rg_mass_entry(rg_mass kind, int a, int b);
+double rg_inverse_mass_entry(rg_mass kind, int a, int b);
 
 /* M v of element `slot` of total mass `mass`; v laid out as in layout.h. */
-void rg_mass_times(bool lumped, double mass, const rg_real *v, size_t slot, double out[RG_NODES][3]);
+void rg_mass_times(rg_mass kind, double mass, const rg_real *v, size_t slot, double out[RG_NODES][3]);
 
 #endif

@@ -214,7 +214,7 @@ void rg_estimate_print(const rg_solver *s, const rg_estimate *e, FILE *out) {
     if (e->seconds > 30.0 * DAY) {
         fprintf(out, "warning: it would run for months: is time.end in seconds, and the mesh in metres?\n");
     }
-    if (s->law.onset > 0 && c->time.safety > steady_safety(&s->law)) {
+    if (s->law.activation == RG_ACTIVATION_CONSERVING && c->time.safety > steady_safety(&s->law)) {
         fprintf(out,
                 "warning: with interface.onset %.3g no step of time.safety above %.2g follows points that "
                 "have just "

@@ -313,7 +313,7 @@ rg_bodies *rg_bodies_make(const rg_case *c, const rg_domain *d, const rg_part *p
     make_rule(&b->rule);
     for (int i = 0; i < RG_NODES * RG_NODES; i++) {
         b->inverse_mass[i / RG_NODES][i % RG_NODES] =
-            rg_inverse_mass_entry(c->mass == RG_MASS_LUMPED, i / RG_NODES, i % RG_NODES);
+            rg_inverse_mass_entry(c->mass, i / RG_NODES, i % RG_NODES);
     }
     b->body = RG_NEW(rg_body, (size_t)b->count);
     for (int i = 0; i < b->count; i++) {

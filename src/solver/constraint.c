@@ -51,9 +51,9 @@ struct rg_constraints {
     size_t entries, *tile_begin; /* entries of tile t: tile_begin[t] .. tile_begin[t + 1] - 1 */
     entry *entry;
     pattern *patterns[1 << RG_NODES];
-    bool lumped, varies; /* varies: some value depends on time or is a displacement */
-    bool moving;         /* at the start the velocities are the initial ones */
-    rg_first_bad bad;    /* where a value was not finite first, and when */
+    bool varies;      /* some value depends on time or is a displacement */
+    bool moving;      /* at the start the velocities are the initial ones */
+    rg_first_bad bad; /* where a value was not finite first, and when */
 };
 
 /* ---- Patterns ---- */
@@ -99,7 +99,7 @@ static const pattern *pattern_of(rg_constraints *k, unsigned mask) {
     double block[RG_NODES][RG_NODES];
     for (int i = 0; i < p->constrained; i++) {
         for (int j = 0; j < p->constrained; j++) {
-            block[i][j] = rg_inverse_mass_entry(k->lumped, p->node[i], p->node[j]);
+            block[i][j] = rg_inverse_mass_entry(k->input->mass, p->node[i], p->node[j]);
         }
     }
     invert(p->constrained, block, p->impulse);
@@ -107,7 +107,7 @@ static const pattern *pattern_of(rg_constraints *k, unsigned mask) {
         for (int i = 0; i < p->constrained; i++) {
             for (int j = 0; j < p->constrained; j++) {
                 p->follow[f][i] +=
-                    rg_inverse_mass_entry(k->lumped, p->node[f], p->node[j]) * p->impulse[j][i];
+                    rg_inverse_mass_entry(k->input->mass, p->node[f], p->node[j]) * p->impulse[j][i];
             }
         }
     }
@@ -179,8 +179,7 @@ static void add_entry(rg_constraints *k, double mass, size_t slot, int c, unsign
 rg_constraints *rg_constraints_make(const rg_case *c, const rg_domain *d, const rg_part *part,
                                     const rg_material *m, rg_assembly *nodes) {
     rg_constraints *k = RG_NEW(rg_constraints, 1);
-    *k = (rg_constraints){
-        .input = c, .domain = d, .lumped = c->mass == RG_MASS_LUMPED, .bad = {.which = RG_NOWHERE}};
+    *k = (rg_constraints){.input = c, .domain = d, .bad = {.which = RG_NOWHERE}};
     int *set = RG_NEW(int, (size_t)c->boundaries + 1);
     for (int b = 0; b < c->boundaries; b++) {
         set[b] = set_number(part, c->boundary[b].set);

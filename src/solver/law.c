@@ -3,7 +3,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "case/key.h"
 #include "cohesive/facts.h"
 
 static rg_law_facts facts_of(const rg_cohesive *law) {
@@ -20,17 +19,21 @@ void rg_law_stiffness(const rg_cohesive *law, double slope[2]) {
 /* The critical opening of a law without work of separation means nothing: any does. */
 rg_cohesive rg_law_make(const rg_case *c) {
     if (c->interface.law == RG_LAW_NONE) {
-        return (rg_cohesive){.strength = INFINITY, .opening = 1, .separation = 1, .beta = c->interface.beta};
+        return (rg_cohesive){.strength = INFINITY,
+                             .opening = 1,
+                             .separation = 1,
+                             .beta = c->interface.beta,
+                             .form = c->interface.form};
     }
     rg_cohesive law = {.law = c->interface.law,
                        .strength = c->interface.strength,
                        .beta = c->interface.beta,
-                       .total = c->interface.activation == RG_ACTIVATION_TOTAL,
-                       .onset = rg_group_used(RG_GROUP_ONSET, c) ? c->interface.onset : 0,
+                       .form = c->interface.form,
+                       .activation = c->interface.activation,
+                       .onset = c->interface.onset,
                        .beta_s = c->interface.beta_s,
-                       .flux = c->interface.contact == RG_CONTACT_FLUX,
-                       .potential = c->interface.contact == RG_CONTACT_POTENTIAL,
-                       .intrinsic = c->interface.form == RG_FORM_INTRINSIC,
+                       .contact = c->interface.contact,
+                       .sliding = c->interface.friction > 0 ? RG_SLIDING_COULOMB : RG_SLIDING_FREE,
                        .friction = c->interface.friction};
     memcpy(law.shape, c->interface.shape[law.law], sizeof law.shape);
     rg_law_facts facts = facts_of(&law);
@@ -39,7 +42,7 @@ rg_cohesive rg_law_make(const rg_case *c) {
     }
     law.opening = facts.work > 0 ? c->interface.energy / (facts.work * law.strength) : 1;
     law.separation = facts.separation * law.opening;
-    if (law.intrinsic) {
+    if (law.form == RG_FORM_INTRINSIC) {
         double slope[2];
         rg_law_stiffness(&law, slope);
         law.slope = slope[0];
@@ -52,12 +55,12 @@ double rg_law_steps(const rg_cohesive *law) {
 }
 
 size_t rg_crack_stride(const rg_cohesive *law) {
-    size_t friction = law->friction > 0 ? RG_FRICTION_BLOCK : 0;
+    size_t friction = law->sliding == RG_SLIDING_COULOMB ? RG_FRICTION_BLOCK : 0;
     return RG_CRACK_BLOCK + (size_t)facts_of(law).memory * RG_POINTS * RG_LANES + friction;
 }
 
 void rg_law_start(rg_solver *s) {
-    if (!s->law.intrinsic) {
+    if (s->law.form != RG_FORM_INTRINSIC) {
         return;
     }
     const rg_domain *d = s->domain;

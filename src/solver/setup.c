@@ -73,6 +73,12 @@ static void build_domain(rg_solver *s, const rg_interface_material *m) {
     s->part->element = NULL;
 }
 
+/* Without faces form continuous has no jumps to lift. */
+static rg_gradient gradient_of(const rg_case *c) {
+    bool lifts = c->interface.form == RG_FORM_VARIATIONAL || c->interface.faces != NULL;
+    return lifts ? RG_GRADIENT_LIFTED : RG_GRADIENT_OWN;
+}
+
 rg_solver *rg_solver_make_from_part(const rg_case *input, rg_part *part, MPI_Comm comm) {
     rg_solver *s = RG_NEW(rg_solver, 1);
     *s = (rg_solver){.input = input,
@@ -84,8 +90,7 @@ rg_solver *rg_solver_make_from_part(const rg_case *input, rg_part *part, MPI_Com
                      .materials = 1 + input->others,
                      .material = rg_materials_of_case(input),
                      .law = rg_law_make(input),
-                     .lift = input->interface.form == RG_FORM_VARIATIONAL || input->interface.faces != NULL,
-                     .lumped = input->mass == RG_MASS_LUMPED};
+                     .gradient = gradient_of(input)};
     MPI_Comm_rank(comm, &s->rank);
     MPI_Comm_size(comm, &s->ranks);
     select_kernels(s);

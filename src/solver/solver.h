@@ -53,7 +53,7 @@ struct rg_solver {
     rg_cohesive law;
     rg_real *scale;  /* layout as in rg_interface_args; NULL: all faces alike */
     double stiffest; /* largest ratio of strength to critical opening, over that of the law; 1: all alike */
-    bool lift, lumped;
+    rg_gradient gradient;
     size_t crack_stride,
         history_stride; /* values of a block of crack and history: as many as the longest needs */
     double damping;     /* by viscosity.linear 1, of the stiffest mode */

@@ -45,7 +45,7 @@ static double mass_dot(rg_solver *s, const rg_real *a, const rg_real *b) {
                     both[i] = sign == 0 ? a[at] + b[at] : a[at] - b[at];
                 }
                 rg_kinetic_args args = {.density = rg_material_of(s, block * RG_LANES)->density,
-                                        .lumped = s->lumped,
+                                        .mass = s->input->mass,
                                         .geom = d->geom + block * RG_GEOM_BLOCK,
                                         .velocity = both,
                                         .energy = energy[sign]};
@@ -294,11 +294,9 @@ static void set_state(rg_solver *s, state which, double sliding, rg_real *shared
     s->crack = shared;
     s->crack_stride = 0;
     s->law.opening = 1;
-    s->law.strength = 1e300; /* never reached */
-    s->law.contact_below = INFINITY;
-    s->law.flux = false;
-    s->law.stick = true;
-    s->law.potential = false; /* no matter where nothing has slid */
+    s->law.strength = 1e300;            /* never reached */
+    s->law.contact = RG_CONTACT_LINEAR; /* that of a potential too where nothing has slid */
+    s->law.sliding = s->law.sliding == RG_SLIDING_FREE ? RG_SLIDING_FREE : RG_SLIDING_STUCK;
     s->law.law =
         RG_LAW_LINEAR; /* failed, so contact alone acts; and without memory, which `shared` has no room for */
     if (which == COHESIVE) { /* contact, no softer than the law, both ways; the law's own slope in sliding */
@@ -371,9 +369,8 @@ void rg_spectrum_whole(rg_solver *s) {
     rg_real *shared = RG_NEW(rg_real, RG_CRACK_BLOCK);
     double worst = 0;
     bool closes = s->input->interface.law != RG_LAW_NONE && s->input->interface.contact != RG_CONTACT_FLUX;
-    state first = law.intrinsic ? COHESIVE : INTACT, last = law.intrinsic ? COHESIVE
-                                                            : closes      ? CLOSED
-                                                                          : INTACT;
+    bool intrinsic = law.form == RG_FORM_INTRINSIC;
+    state first = intrinsic ? COHESIVE : INTACT, last = intrinsic ? COHESIVE : closes ? CLOSED : INTACT;
     lanczos run[STATES] = {{0}};
     state limiting = first;
     double slope[2];

@@ -43,17 +43,18 @@ static void mark_cracked(rg_solver *s, const rg_tile *t, size_t begin, size_t en
     }
 }
 
-static void kick(rg_solver *s, size_t tile, const rg_workspace *w, const impulse *p, bool tile_faces) {
+static void kick(rg_solver *s, size_t tile, const rg_workspace *w, const impulse *p, rg_sweep sweep) {
     const rg_tile *t = &s->domain->tile[tile];
     size_t at = t->begin * RG_NODE_BLOCK;
     rg_real *now = now_of(s, tile, p);
-    rg_kick_args args = {.lumped = s->lumped,
-                         .tile_faces = tile_faces,
+    rg_kick_args args = {.mass = s->input->mass,
+                         .sweep = sweep,
+                         .contact = s->law.contact,
                          .dt = p->dt,
                          .geom = s->domain->geom + t->begin * RG_GEOM_BLOCK,
                          .force = w->force,
                          .iforce = w->iforce,
-                         .turn = s->law.potential ? w->turn : NULL,
+                         .turn = w->turn,
                          .broken = s->broken + t->ibegin * RG_LANES,
                          .interface = s->domain->interface + t->begin * RG_LINK_BLOCK,
                          .velocity = p->velocity + at,
@@ -121,7 +122,7 @@ static void inside(rg_solver *s, size_t tile, const rg_workspace *w, const impul
     s->kernels->send_tractions(&traces, 0, rg_tile_face_blocks(t));
     s->kernels->interface(&interface, 0, rg_tile_inner_blocks(t));
     mark_cracked(s, t, t->ibegin, t->sbegin);
-    kick(s, tile, w, p, false);
+    kick(s, tile, w, p, RG_SWEEP_ELEMENT);
     if (p->constrain) {
         touch(s, tile, p);
     }
@@ -161,7 +162,7 @@ static void across(rg_solver *s, size_t tile, const rg_workspace *w, const impul
     if (s->tile_opening_rate != NULL && p->constrain) {
         s->tile_opening_rate[tile] = rg_tile_opening_rate(s, t);
     }
-    kick(s, tile, w, p, true);
+    kick(s, tile, w, p, RG_SWEEP_BOUNDARY);
     if (p->apart) {
         rg_assembly_sum(s->assembly, tile, p->velocity);
     } else {
@@ -397,7 +398,7 @@ static void set_initial(rg_solver *s) {
 /* The stiffening of the initial state, with faces that cannot break yet. */
 static void measure(rg_solver *s) {
     rg_cohesive law = s->law;
-    s->law.strength = law.intrinsic ? law.strength : INFINITY;
+    s->law.strength = law.form == RG_FORM_INTRINSIC ? law.strength : INFINITY;
     double begin = MPI_Wtime();
     rg_solver_impulse(s, s->step_velocity, 0);
     s->pass_seconds = MPI_Wtime() - begin;

@@ -26,7 +26,7 @@ static rg_real *history_of(const rg_solver *s, const rg_tile *t) {
 rg_bulk_args rg_tile_bulk(const rg_solver *s, const rg_tile *t, const rg_workspace *w, size_t block) {
     const rg_domain *d = s->domain;
     return (rg_bulk_args){.material = *rg_block_material(s, t, block),
-                          .lift = s->lift,
+                          .gradient = s->gradient,
                           .u = s->u + t->begin * RG_NODE_BLOCK,
                           .ghost = w->ghost,
                           .geom = d->geom + t->begin * RG_GEOM_BLOCK,
@@ -91,8 +91,8 @@ double rg_separation(const rg_solver *s, size_t i) {
 
 bool rg_point_is_broken(const rg_solver *s, size_t i, int q) {
     bool cohesive = s->broken[i] >> q & 1;
-    return cohesive &&
-           (!s->law.intrinsic || *rg_crack_value(s, i, q, RG_CRACK_OPENING) >= rg_separation(s, i));
+    return cohesive && (s->law.form != RG_FORM_INTRINSIC ||
+                        *rg_crack_value(s, i, q, RG_CRACK_OPENING) >= rg_separation(s, i));
 }
 
 bool rg_face_is_broken(const rg_solver *s, size_t i) {

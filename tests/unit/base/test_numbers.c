@@ -264,16 +264,16 @@ static void test_json(void **state) {
 
 static void test_mass_and_inverse(void **state) {
     (void)state;
-    for (int lumped = 0; lumped < 2; lumped++) {
+    for (rg_mass kind = RG_MASS_CONSISTENT; kind <= RG_MASS_LUMPED; kind++) {
         double total = 0;
         for (int a = 0; a < RG_NODES; a++) {
             for (int b = 0; b < RG_NODES; b++) {
                 double product = 0;
                 for (int k = 0; k < RG_NODES; k++) {
-                    product += rg_mass_entry(lumped, a, k) * rg_inverse_mass_entry(lumped, k, b);
+                    product += rg_mass_entry(kind, a, k) * rg_inverse_mass_entry(kind, k, b);
                 }
                 assert_true(fabs(product - (a == b)) < 1e-13);
-                total += rg_mass_entry(lumped, a, b);
+                total += rg_mass_entry(kind, a, b);
             }
         }
         assert_true(fabs(total - 1) < 1e-14);

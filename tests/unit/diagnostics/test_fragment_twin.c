@@ -145,10 +145,10 @@ static double volume_of(double x[4][3]) {
 
 /* Point k of an element's mass, and its share: the nodes of a lumped one, else those of a rule that is exact.
  */
-static double mass_point(bool lumped, int k, double l[4]) {
+static double mass_point(rg_mass mass, int k, double l[4]) {
     static const int end[RG_NODES][2] = {{0, 0}, {1, 1}, {2, 2}, {3, 3}, {0, 1},
                                          {1, 2}, {0, 2}, {0, 3}, {1, 3}, {2, 3}};
-    if (lumped) {
+    if (mass == RG_MASS_LUMPED) {
         for (int i = 0; i < 4; i++) {
             l[i] = 0.5 * (end[k][0] == i) + 0.5 * (end[k][1] == i);
         }
@@ -169,8 +169,8 @@ static void integrate(const random_state *r, uint64_t seed, rg_gid e, const doub
     sum->elements++;
     sum->volume += volume;
     sum->mass += density * volume;
-    for (int k = 0; k < (r->solver->lumped ? RG_NODES : 64); k++) {
-        double l[4], N[RG_NODES], w = density * volume * mass_point(r->solver->lumped, k, l);
+    for (int k = 0; k < (r->solver->input->mass == RG_MASS_LUMPED ? RG_NODES : 64); k++) {
+        double l[4], N[RG_NODES], w = density * volume * mass_point(r->solver->input->mass, k, l);
         double at[3], v[3] = {0, 0, 0}, turn[3];
         rg_shape(l, N);
         for (int i = 0; i < 3; i++) {

@@ -99,13 +99,13 @@ static void make_history(const input *in, double *history) {
     }
 }
 
-static output run(const rg_kernels *set, const input *in, bool lift, bool advance) {
+static output run(const rg_kernels *set, const input *in, rg_gradient gradient, bool advance) {
     output out;
     for (int f = 0; f < FIELDS; f++)
         out.value[f] = zeros(f);
     make_history(in, out.value[PAST]);
     rg_bulk_args bulk = input_bulk_args(in, out.value[FORCE], out.value[TRACTION], out.value[STIFFENING]);
-    bulk.lift = lift;
+    bulk.gradient = gradient;
     bulk.history = out.value[PAST];
     bulk.advance = advance;
     rg_bulk_state_args state = {&bulk, out.value[ENERGY], out.value[CAUCHY], out.value[INTERNAL]};
@@ -166,10 +166,11 @@ static void count(const input *in, const output *out, census *c) {
 static const double sizes[] = {0.03, 0.3, 1, 3, -0.1, -1, -3};
 enum { SIZES = sizeof sizes / sizeof *sizes };
 
-static void check_set(const rg_kernels *set, bool lift, bool advance, census *c) {
+static void check_set(const rg_kernels *set, rg_gradient gradient, bool advance, census *c) {
     for (int k = 0; k < SIZES; k++) {
         input *in = make_input(sizes[k], 0);
-        output expected = run(&rg_kernels_reference, in, lift, advance), out = run(set, in, lift, advance);
+        output expected = run(&rg_kernels_reference, in, gradient, advance),
+               out = run(set, in, gradient, advance);
         for (int f = 0; f < FIELDS; f++)
             for (size_t kind = 0; kind < kinds_of(f); kind++)
                 compare_kind(set->name, f, kind, &out, &expected);
@@ -187,9 +188,9 @@ static void test_ceramic(void **state) {
     model = RG_MATERIAL_DESHPANDE_EVANS;
     for (int s = 0; s < n; s++) {
         census c = {{0}, 0, 0}, rest = {{0}, 0, 0};
-        check_set(sets[s], true, true, &c);
-        check_set(sets[s], false, true, &c);
-        check_set(sets[s], true, false, &rest);
+        check_set(sets[s], RG_GRADIENT_LIFTED, true, &c);
+        check_set(sets[s], RG_GRADIENT_OWN, true, &c);
+        check_set(sets[s], RG_GRADIENT_LIFTED, false, &rest);
         print_message("# %s: %d, %d, %d points in regime I, II, III; %d grow, %d flow\n", sets[s]->name,
                       c.regime[1], c.regime[2], c.regime[3], c.grown, c.flown);
         assert_true(c.regime[0] == 0 && c.regime[1] > 100 && c.regime[2] > 100 && c.regime[3] > 100);
@@ -206,9 +207,9 @@ static void test_metals(void **state) {
     for (metal = 0; metal < 3; metal++)
         for (int s = 0; s < n; s++) {
             census c = {{0}, 0, 0}, rest = {{0}, 0, 0};
-            check_set(sets[s], true, true, &c);
-            check_set(sets[s], false, true, &c);
-            check_set(sets[s], true, false, &rest);
+            check_set(sets[s], RG_GRADIENT_LIFTED, true, &c);
+            check_set(sets[s], RG_GRADIENT_OWN, true, &c);
+            check_set(sets[s], RG_GRADIENT_LIFTED, false, &rest);
             print_message("# %s: metal %d, %d of %d points flow\n", sets[s]->name, metal, c.flown,
                           c.regime[0]);
             assert_true(c.flown > 1000 && c.regime[0] - c.flown > 1000 && rest.flown == 0);

@@ -150,13 +150,13 @@ static void bind_elements(call *c) {
     const rg_cost_variant *v = &c->variant;
     input *in = c->in;
     c->bulk = input_bulk_args(in, c->out[0], c->out[1], c->out[2]);
-    c->bulk.lift = v->lift;
+    c->bulk.gradient = v->gradient;
     c->bulk.history = c->history;
     c->bulk.advance = v->advance;
     c->bulk_state =
         (rg_bulk_state_args){.bulk = &c->bulk, .energy = c->out[0], .cauchy = v->cauchy ? c->out[1] : NULL};
     c->kick = (rg_kick_args){.density = in->material.density,
-                             .lumped = v->lumped,
+                             .mass = v->mass,
                              .dt = 1e-9,
                              .geom = in->geom,
                              .force = in->pull,
@@ -173,7 +173,7 @@ static void bind_elements(call *c) {
                                        .allowed = 0.7,
                                        .dt = 1e-9,
                                        .heat = c->out[1]};
-    c->kinetic = (rg_kinetic_args){in->material.density, v->lumped, in->geom, in->velocity, c->out[0]};
+    c->kinetic = (rg_kinetic_args){in->material.density, v->mass, in->geom, in->velocity, c->out[0]};
 }
 
 static void bind_interfaces(call *c) {
@@ -242,40 +242,40 @@ static const struct {
     rg_cost_kernel kernel;
     rg_cost_variant variant;
 } cases[] = {
-    {"bulk", RG_COST_BULK, {.lift = false}},
-    {"bulk lifted", RG_COST_BULK, {.lift = true}},
-    {"bulk lifted, broken", RG_COST_BULK, {.lift = true, .unlinked = 4}},
+    {"bulk", RG_COST_BULK, {.gradient = RG_GRADIENT_OWN}},
+    {"bulk lifted", RG_COST_BULK, {.gradient = RG_GRADIENT_LIFTED}},
+    {"bulk lifted, broken", RG_COST_BULK, {.gradient = RG_GRADIENT_LIFTED, .unlinked = 4}},
     {"linear", RG_COST_BULK, {.model = LINEAR}},
     {"linear state, energy", RG_COST_BULK_STATE, {.model = LINEAR}},
     {"linear state, stress", RG_COST_BULK_STATE, {.model = LINEAR, .cauchy = true}},
     {"St. Venant-Kirchhoff", RG_COST_BULK, {.model = KIRCHHOFF}},
-    {"St. Venant-Kirchhoff lifted", RG_COST_BULK, {.lift = true, .model = KIRCHHOFF}},
+    {"St. Venant-Kirchhoff lifted", RG_COST_BULK, {.gradient = RG_GRADIENT_LIFTED, .model = KIRCHHOFF}},
     {"St. Venant-Kirchhoff state, energy", RG_COST_BULK_STATE, {.model = KIRCHHOFF}},
     {"St. Venant-Kirchhoff state, stress", RG_COST_BULK_STATE, {.model = KIRCHHOFF, .cauchy = true}},
-    {"ceramic at rest", RG_COST_BULK, {.lift = true, .model = CERAMIC}},
+    {"ceramic at rest", RG_COST_BULK, {.gradient = RG_GRADIENT_LIFTED, .model = CERAMIC}},
     {"ceramic quiet", RG_COST_BULK, {.model = CERAMIC, .advance = true}},
     {"ceramic cracking", RG_COST_BULK, {.model = CERAMIC, .advance = true, .growing = 1, .panels = 1}},
     {"ceramic flowing", RG_COST_BULK, {.model = CERAMIC, .advance = true, .flowing = 1, .newton = 1}},
-    {"ceramic state, energy", RG_COST_BULK_STATE, {.lift = true, .model = CERAMIC}},
+    {"ceramic state, energy", RG_COST_BULK_STATE, {.gradient = RG_GRADIENT_LIFTED, .model = CERAMIC}},
     {"ceramic state, stress", RG_COST_BULK_STATE, {.model = CERAMIC, .cauchy = true}},
-    {"J2 at rest", RG_COST_BULK, {.lift = true, .model = J2}},
+    {"J2 at rest", RG_COST_BULK, {.gradient = RG_GRADIENT_LIFTED, .model = J2}},
     {"J2 elastic", RG_COST_BULK, {.model = J2, .advance = true}},
     {"J2 flowing", RG_COST_BULK, {.model = J2, .advance = true, .flowing = 1}},
     {"J2 saturating", RG_COST_BULK, {.model = J2, .advance = true, .flowing = 1, .newton = 3}},
-    {"J2 state, energy", RG_COST_BULK_STATE, {.lift = true, .model = J2}},
+    {"J2 state, energy", RG_COST_BULK_STATE, {.gradient = RG_GRADIENT_LIFTED, .model = J2}},
     {"J2 state, stress", RG_COST_BULK_STATE, {.model = J2, .cauchy = true}},
-    {"bulk state, energy", RG_COST_BULK_STATE, {.lift = true}},
+    {"bulk state, energy", RG_COST_BULK_STATE, {.gradient = RG_GRADIENT_LIFTED}},
     {"bulk state, stress", RG_COST_BULK_STATE, {.cauchy = true}},
     {"interface", RG_COST_INTERFACE, {.damaged = 0}},
     {"interface, broken", RG_COST_INTERFACE, {.damaged = 1, .points = 6}},
     {"interface state", RG_COST_INTERFACE_STATE, {.damaged = 0}},
     {"interface state, broken", RG_COST_INTERFACE_STATE, {.damaged = 1}},
-    {"viscosity", RG_COST_VISCOSITY, {.lift = false}},
-    {"kick consistent", RG_COST_KICK, {.lumped = false}},
-    {"kick lumped", RG_COST_KICK, {.lumped = true}},
-    {"drift", RG_COST_DRIFT, {.lumped = false}},
-    {"kinetic", RG_COST_KINETIC, {.lumped = false}},
-    {"kinetic lumped", RG_COST_KINETIC, {.lumped = true}},
+    {"viscosity", RG_COST_VISCOSITY, {.gradient = RG_GRADIENT_OWN}},
+    {"kick consistent", RG_COST_KICK, {.mass = RG_MASS_CONSISTENT}},
+    {"kick lumped", RG_COST_KICK, {.mass = RG_MASS_LUMPED}},
+    {"drift", RG_COST_DRIFT, {.mass = RG_MASS_CONSISTENT}},
+    {"kinetic", RG_COST_KINETIC, {.mass = RG_MASS_CONSISTENT}},
+    {"kinetic lumped", RG_COST_KINETIC, {.mass = RG_MASS_LUMPED}},
 };
 enum { CASES = sizeof cases / sizeof *cases };
 
@@ -483,7 +483,7 @@ static void test_bytes(void **state) {
  */
 static void test_step(void **state) {
     (void)state;
-    const rg_cost_variant v = {.lift = true, .interfaces = 2, .fill = 1};
+    const rg_cost_variant v = {.gradient = RG_GRADIENT_LIFTED, .interfaces = 2, .fill = 1};
     rg_cost_variant split = v;
     split.tile_faces = 1;
     rg_cost bulk = rg_cost_block(RG_COST_BULK, &v), kick = rg_cost_block(RG_COST_KICK, &v),

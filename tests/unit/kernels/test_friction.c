@@ -23,8 +23,13 @@ enum {
     NODES = INPUT_EBLOCKS * RG_NODE_BLOCK,
 };
 
-static const rg_cohesive law = {
-    .strength = 4e8, .opening = 1.7e-7, .separation = 1.7e-7, .beta = 1, .total = true, .friction = 0.4};
+static const rg_cohesive law = {.strength = 4e8,
+                                .opening = 1.7e-7,
+                                .separation = 1.7e-7,
+                                .beta = 1,
+                                .activation = RG_ACTIVATION_TOTAL,
+                                .sliding = RG_SLIDING_COULOMB,
+                                .friction = 0.4};
 
 /* A mesh of which every point is broken, its displacement on its way, and what the kernel keeps. */
 typedef struct {

@@ -30,8 +30,9 @@ enum { ALL = 63, MINUS_FACE = 3, PLUS_FACE = 1 };
 typedef struct {
     const char *name;
     double beta;
-    bool total, flux, linear, strong; /* linear: contact_below is infinite; strong: infinite strength */
-    bool conserving;
+    rg_activation activation;
+    rg_contact contact;
+    bool strong; /* infinite strength */
     double
         beta_s; /* of a conserving activation; where lift and penalty are alike it gives back t . [u] alone */
     bool broken, unlinked;     /* before */
@@ -127,7 +128,7 @@ static const scenario scenarios[] = {
     {.name = "infinite strength", .beta = 1, .strong = true, .pull = {1e12, 1e12}, .traction = {1e12, 1e12}},
     {.name = "conserving activation, no jump",
      .beta = 2,
-     .conserving = true,
+     .activation = RG_ACTIVATION_CONSERVING,
      .pull = {0, 2.001 * SIGMA},
      .traction = {0, 2 * SIGMA},
      .is_broken = true,
@@ -135,7 +136,7 @@ static const scenario scenarios[] = {
      .new_origin = {0, -ONSET / 2}},
     {.name = "conserving activation, jump along the traction", /* W(1e-8) = SIGMA g */
      .beta = 1,
-     .conserving = true,
+     .activation = RG_ACTIVATION_CONSERVING,
      .pull = {1.001 * SIGMA, 0},
      .jump = {1e-8 * (1 - 0.5e-8 / DELTA), 3e-9},
      .traction = {SIGMA * (1 - 1e-8 / DELTA), 0},
@@ -146,7 +147,7 @@ static const scenario scenarios[] = {
      .energy = {0, SIGMA *(1 - 1e-8 / DELTA) * 1e-8 / 2, 0, GC * 1e-8 / DELTA}},
     {.name = "conserving activation, jump against the traction", /* delta_0 = onset/2 */
      .beta = 1,
-     .conserving = true,
+     .activation = RG_ACTIVATION_CONSERVING,
      .pull = {1.001 * SIGMA, 0},
      .jump = {-0.375 * ONSET, 0},
      .traction = {SIGMA / 2, 0},
@@ -157,7 +158,7 @@ static const scenario scenarios[] = {
     {.name =
          "conserving activation, penalty given back", /* g = 1.6e-8 + 0.3125 STIFF 1.6e-8^2/SIGMA = 2e-8 */
      .beta = 1,
-     .conserving = true,
+     .activation = RG_ACTIVATION_CONSERVING,
      .beta_s = 4,
      .pull = {1.001 * SIGMA, 0},
      .jump = {1.6e-8, 0},
@@ -169,7 +170,7 @@ static const scenario scenarios[] = {
      .energy = {0, SIGMA *LEFT *DELTA *(1 - LEFT) / 2, 0, GC *(1 - LEFT)}},
     {.name = "conserving activation, jump that takes all of the energy",
      .beta = 1,
-     .conserving = true,
+     .activation = RG_ACTIVATION_CONSERVING,
      .pull = {1.001 * SIGMA, 0},
      .jump = {0.6 * DELTA, 0},
      .is_broken = true,
@@ -179,7 +180,7 @@ static const scenario scenarios[] = {
      .energy = {0, 0, 0, GC}},
     {.name = "conserving activation, jump far against the traction",
      .beta = 1,
-     .conserving = true,
+     .activation = RG_ACTIVATION_CONSERVING,
      .pull = {1.001 * SIGMA, 0},
      .jump = {-2 * ONSET, 0},
      .is_broken = true,
@@ -188,7 +189,7 @@ static const scenario scenarios[] = {
      .energy = {0, -SIGMA *ONSET / 2, 0, 0}},
     {.name = "conserving, loading",
      .beta = 1,
-     .conserving = true,
+     .activation = RG_ACTIVATION_CONSERVING,
      .broken = true,
      .unlinked = true,
      .opening = 3e-8,
@@ -200,7 +201,7 @@ static const scenario scenarios[] = {
      .energy = {0, SIGMA * 0.75 * 4e-8 / 2, 0, GC / 4}},
     {.name = "conserving, half unloaded, aside",
      .beta = 2,
-     .conserving = true,
+     .activation = RG_ACTIVATION_CONSERVING,
      .broken = true,
      .unlinked = true,
      .opening = 4e-8,
@@ -212,7 +213,7 @@ static const scenario scenarios[] = {
      .energy = {0, SIGMA * 0.75 / 2 * ((4e-8 + ONSET) / 4 - ONSET), 0, GC / 4}},
     {.name = "conserving, closed",
      .beta = 1,
-     .conserving = true,
+     .activation = RG_ACTIVATION_CONSERVING,
      .broken = true,
      .unlinked = true,
      .opening = 4e-8,
@@ -224,7 +225,7 @@ static const scenario scenarios[] = {
      .energy = {0, -SIGMA * 0.75 / 2 * ONSET, STIFF * 1e-18 / 2, GC / 4}},
     {.name = "conserving, failed",
      .beta = 1,
-     .conserving = true,
+     .activation = RG_ACTIVATION_CONSERVING,
      .broken = true,
      .unlinked = true,
      .opening = 1e-8,
@@ -235,7 +236,7 @@ static const scenario scenarios[] = {
      .energy = {0, 0, 0, GC}},
     {.name = "total activation",
      .beta = 1,
-     .total = true,
+     .activation = RG_ACTIVATION_TOTAL,
      .pull = {1.1 * SIGMA, 0},
      .jump = {4e-8, 3e-8},
      .traction = {SECANT(5e-8) * 4e-8, SECANT(5e-8) * 3e-8},
@@ -245,7 +246,7 @@ static const scenario scenarios[] = {
      .energy = {0, SECANT(5e-8) * 25e-16 / 2, 0, GC * 5e-8 / DELTA}},
     {.name = "total activation, closed, penalty",
      .beta = 1,
-     .total = true,
+     .activation = RG_ACTIVATION_TOTAL,
      .pull = {1.1 * SIGMA, 0},
      .jump = {-1e-9, 2e-8},
      .traction = {-STIFF * 1e-9, SECANT(2e-8) * 2e-8},
@@ -255,8 +256,8 @@ static const scenario scenarios[] = {
      .energy = {0, SECANT(2e-8) * 4e-16 / 2, STIFF * 1e-18 / 2, GC * 2e-8 / DELTA}},
     {.name = "total activation, closed, flux",
      .beta = 1,
-     .total = true,
-     .flux = true,
+     .activation = RG_ACTIVATION_TOTAL,
+     .contact = RG_CONTACT_FLUX,
      .pull = {1.1 * SIGMA, 0},
      .jump = {-1e-9, 2e-9},
      .traction = {1.1 * SIGMA - STIFF * 1e-9, ISO * 2e-9},
@@ -334,7 +335,7 @@ static const scenario scenarios[] = {
      .energy = {0, SECANT(1e-7) * 36e-16 / 2, STIFF * 4e-18 / 2, GC * 1e-7 / DELTA}},
     {.name = "linear contact acts on an open point",
      .beta = 1,
-     .linear = true,
+     .contact = RG_CONTACT_LINEAR,
      .broken = true,
      .unlinked = true,
      .opening = 1e-7,
@@ -346,7 +347,7 @@ static const scenario scenarios[] = {
      .energy = {0, SECANT(1e-7) * 16e-16 / 2, STIFF * 16e-16 / 2, GC * 1e-7 / DELTA}},
     {.name = "closes under flux",
      .beta = 1,
-     .flux = true,
+     .contact = RG_CONTACT_FLUX,
      .broken = true,
      .unlinked = true,
      .opening = 1e-8,
@@ -360,7 +361,7 @@ static const scenario scenarios[] = {
      .energy = {(ISO * (1e-18 + 81e-16) + NORM * 1e-18) / 2, 0, 0, GC * 1e-8 / DELTA}},
     {.name = "opens again under flux",
      .beta = 1,
-     .flux = true,
+     .contact = RG_CONTACT_FLUX,
      .broken = true,
      .opening = 1e-7,
      .pull = {1e8, 2e8},
@@ -515,11 +516,10 @@ static void check_scenario(const rg_kernels *set, const scenario *s, double up, 
     const rg_cohesive law = {.strength = s->strong ? INFINITY : SIGMA,
                              .opening = DELTA,
                              .beta = s->beta,
-                             .contact_below = s->linear ? INFINITY : 0,
-                             .total = s->total,
-                             .onset = s->conserving ? 0.3 : 0,
+                             .activation = s->activation,
+                             .onset = 0.3,
                              .beta_s = s->beta_s > 0 ? s->beta_s : 1.5,
-                             .flux = s->flux};
+                             .contact = s->contact};
     const double pull[3] = {s->pull[1], 0, up * s->pull[0]}, jump[3] = {s->jump[1], 0, up * s->jump[0]};
     const double traction[3] = {s->traction[1], 0, up * s->traction[0]};
     bench b;

@@ -89,7 +89,7 @@ static void points_step(points *p) {
                 p->in->u[rg_node_index(p->in->element[e], a, c)] =
                     rg_reference_dot(p->F[e][c], p->in->x[e][a]) - p->in->x[e][a][c];
     rg_bulk_args bulk = input_bulk_args(p->in, p->force, p->traction, p->stiffening);
-    bulk.lift = false;
+    bulk.gradient = RG_GRADIENT_OWN;
     bulk.history = p->history;
     bulk.advance = true;
     p->set->bulk(&bulk, 0, INPUT_EBLOCKS);

@@ -119,7 +119,8 @@ static void run_elements(const rg_kernels *set, const input *in, range r, output
         .geom = in->geom,
         .force = in->pull,
         .iforce = in->ipull,
-        .turn = in->law.potential ? in->ipull : NULL,
+        .contact = in->law.contact,
+        .turn = in->ipull,
         .broken = in->broken,
         .interface = in->interface,
         .velocity = out->velocity,
@@ -132,7 +133,7 @@ static void run_elements(const rg_kernels *set, const input *in, range r, output
     set->kinetic(&kinetic, r.begin, r.end);
     set->kick(&kick, r.begin, r.end);
     set->drift(&drift, r.begin, r.end);
-    kinetic.lumped = kick.lumped = true;
+    kinetic.mass = kick.mass = RG_MASS_LUMPED;
     kinetic.energy = out->lumped_kinetic + r.begin * RG_LANES;
     kick.velocity = out->lumped_velocity;
     kick.step_velocity = out->lumped_now;
@@ -237,9 +238,9 @@ static void count_broken(const input *in, const output *ref, size_t i, int q, ta
         t->crack[CRACK_UNLOADING]++;
         break;
     case CRACK_CLOSED:
-        assert_true(in->law.flux ? !(ref->unlinked[s] >> q & 1) : contact);
+        assert_true(in->law.contact == RG_CONTACT_FLUX ? !(ref->unlinked[s] >> q & 1) : contact);
         t->crack[CRACK_CLOSED]++;
-        t->closed_flux += in->law.flux;
+        t->closed_flux += in->law.contact == RG_CONTACT_FLUX;
         break;
     default:
         assert_true(failed);
@@ -450,10 +451,10 @@ static void test_state_reads_only(void **state) {
 }
 
 /* Bulk of the input alone; the caller frees the result. */
-static output run_bulk(const rg_kernels *set, const input *in, bool lift) {
+static output run_bulk(const rg_kernels *set, const input *in, rg_gradient gradient) {
     output out = output_make(in);
     rg_bulk_args args = input_bulk_args(in, out.force, out.traction, out.stiffening);
-    args.lift = lift;
+    args.gradient = gradient;
     set->bulk(&args, 0, INPUT_EBLOCKS);
     return out;
 }
@@ -463,8 +464,8 @@ static void check_nan(const rg_kernels *set, input_kind kind, rg_cohesive law) {
     const size_t e = in->element[40];
     int spread = 0;
     in->u[rg_node_index(e, 7, 1)] = NAN;
-    for (int lift = 0; lift < 2; lift++) {
-        output ref = run_bulk(&rg_kernels_reference, in, lift), out = run_bulk(set, in, lift);
+    for (rg_gradient gradient = RG_GRADIENT_OWN; gradient <= RG_GRADIENT_LIFTED; gradient++) {
+        output ref = run_bulk(&rg_kernels_reference, in, gradient), out = run_bulk(set, in, gradient);
         assert_true(isnan(out.stiffening[e]));
         for (size_t s = 0; s < INPUT_ESLOTS; s++) {
             assert_int_equal(isnan(out.stiffening[s]) != 0, isnan(ref.stiffening[s]) != 0);

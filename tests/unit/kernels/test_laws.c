@@ -341,7 +341,7 @@ typedef struct {
 } output;
 
 static size_t stride_of(const input *in) {
-    size_t friction = in->law.friction > 0 ? RG_FRICTION_BLOCK : 0;
+    size_t friction = in->law.sliding == RG_SLIDING_COULOMB ? RG_FRICTION_BLOCK : 0;
     return RG_CRACK_BLOCK + friction +
            (size_t)rg_law_facts_of(in->law.law, in->law.shape, in->law.beta).memory * RG_POINTS * RG_LANES;
 }
@@ -465,7 +465,7 @@ static void compare_kept(const char *set, const char *law, const kept *part, con
 static void check_kernel(const rg_kernels *set, input_kind kind, const rg_cohesive *law,
                          const rg_real *scale) {
     input *in = input_make(kind, *law, 7, 3);
-    input_break(in, law->intrinsic ? 1 : 0.4);
+    input_break(in, law->form == RG_FORM_INTRINSIC ? 1 : 0.4);
     output out = run(set, in, scale), ref = run(&rg_kernels_reference, in, scale);
     const char *word = rg_law_facts_of(law->law, law->shape, law->beta).word;
     assert_memory_equal(out.broken, ref.broken, sizeof out.broken);
@@ -475,7 +475,7 @@ static void check_kernel(const rg_kernels *set, input_kind kind, const rg_cohesi
     size_t stride = stride_of(in), memory = (size_t)rg_law_facts_of(law->law, law->shape, law->beta).memory;
     compare_cracks(set->name, word, &out, &ref, stride);
     compare_kept(set->name, word, &(kept){"memory", stride, RG_CRACK_BLOCK, memory}, &out, &ref);
-    if (law->friction > 0 && !law->stick)
+    if (law->sliding == RG_SLIDING_COULOMB)
         compare_kept(set->name, word, &(kept){"friction", stride, stride - RG_FRICTION_BLOCK, RG_FRICTION},
                      &out, &ref);
     output_free(&out);
@@ -488,7 +488,7 @@ static rg_cohesive cohesive_of(const subject *s, bool intrinsic) {
                        .opening = DELTA,
                        .beta = s->beta,
                        .law = s->law,
-                       .intrinsic = intrinsic,
+                       .form = intrinsic ? RG_FORM_INTRINSIC : RG_FORM_VARIATIONAL,
                        .separation = s->facts.separation * DELTA,
                        .slope = intrinsic ? s->facts.slope[0] * SIGMA / DELTA : 0};
     memcpy(law.shape, s->shape, sizeof law.shape);
@@ -514,12 +514,13 @@ static void test_kernels(void **state) {
                 rg_cohesive law = cohesive_of(&s, (s.facts.forms & RG_FORMS_DG) == 0);
                 check_kernel(sets[k], (input_kind)kind, &law, NULL);
                 check_kernel(sets[k], (input_kind)kind, &law, scale);
+                law.sliding = RG_SLIDING_COULOMB;
                 law.friction = 0.4;
                 check_kernel(sets[k], (input_kind)kind, &law, kind == 0 ? scale : NULL);
-                law.stick = true;
+                law.sliding = RG_SLIDING_STUCK;
                 check_kernel(sets[k], (input_kind)kind, &law, NULL);
-                law.friction = 0;
-                law.stick = false;
+                law.sliding = RG_SLIDING_FREE;
+                law.activation = RG_ACTIVATION_CONSERVING;
                 law.onset = 0.3; /* in units of the penalty, as the kernels take it */
                 law.beta_s = 4;
                 if (s.onset > 0) {

@@ -107,7 +107,7 @@ static double node_force(const body *b, size_t s, int a, int c) {
                     continue;
                 double g = b->iforce[rg_iforce_index((size_t)link / 4, k, c)];
                 f += link % 4 == 1 ? -g : g;
-                if (b->in->law.potential && b->broken[link / 4])
+                if (b->in->law.contact == RG_CONTACT_POTENTIAL && b->broken[link / 4])
                     f += b->turn[rg_iforce_index((size_t)link / 4, k, c)];
             }
     return f;
@@ -204,7 +204,8 @@ static void check_slid_gradient(const rg_kernels *set) {
     static const double w[CRACKS][2] = {{0.02, 0.05}, {0.01, 0.1}, {-0.1, 0.3}, {-0.02, 1.5}};
     static const double largest[CRACKS] = {0.01, 0.5, 0.6, 1.6};
     for (int beta = 0; beta < 2; beta++) {
-        const rg_cohesive law = {.strength = 2e10, .opening = INPUT_SIZE, .beta = beta, .potential = true};
+        const rg_cohesive law = {
+            .strength = 2e10, .opening = INPUT_SIZE, .beta = beta, .contact = RG_CONTACT_POTENTIAL};
         input *in = input_make(INPUT_SMALL, law, 3, 1);
         set_smooth(in, 2e-7);
         break_some(in, w, largest);
@@ -397,12 +398,12 @@ static void test_extension(void **state) {
 }
 
 /* Kinetic energy of the first element for nodal speeds v along one axis, over density times volume. */
-static double kinetic(const rg_kernels *set, const input *in, bool lumped, const double v[RG_NODES]) {
+static double kinetic(const rg_kernels *set, const input *in, rg_mass kind, const double v[RG_NODES]) {
     double velocity[RG_NODE_BLOCK] __attribute__((aligned(64))) = {0};
     double energy[RG_LANES] __attribute__((aligned(64)));
     for (int a = 0; a < RG_NODES; a++)
         velocity[rg_node_index(5, a, 1)] = v[a];
-    rg_kinetic_args args = {1000, lumped, in->geom, velocity, energy};
+    rg_kinetic_args args = {1000, kind, in->geom, velocity, energy};
     set->kinetic(&args, 0, 1);
     assert_near(energy[4], 0, 0);
     return energy[5] / 1000 / in->geom[rg_geom_index(5, RG_GEOM_VOLUME)];
@@ -426,15 +427,15 @@ static void check_mass(const rg_kernels *set) {
     input *in = input_make(INPUT_SMALL, unbreakable, 3, 0);
     for (int a = 0; a < RG_NODES; a++)
         for (int b = 0; b < RG_NODES; b++)
-            for (int lumped = 0; lumped < 2; lumped++) {
+            for (rg_mass kind = RG_MASS_CONSISTENT; kind <= RG_MASS_LUMPED; kind++) {
                 double one[RG_NODES] = {0}, other[RG_NODES] = {0}, sum[RG_NODES] = {0};
                 one[a] = other[b] = 1;
                 sum[a] += 1;
                 sum[b] += 1;
-                double mass = kinetic(set, in, lumped, sum) - kinetic(set, in, lumped, one) -
-                              kinetic(set, in, lumped, other);
+                double mass =
+                    kinetic(set, in, kind, sum) - kinetic(set, in, kind, one) - kinetic(set, in, kind, other);
                 double expected = literature_mass(a, b) / 420;
-                if (lumped)
+                if (kind == RG_MASS_LUMPED)
                     expected = a != b ? 0 : a < 4 ? 1.0 / 36 : 4.0 / 27;
                 assert_near(mass, expected, 4e-16);
             }
@@ -452,14 +453,14 @@ static void test_mass(void **state) {
 }
 
 /* f - M a for the element in slot s, along component c, with the accelerations `a` of the whole mesh. */
-static void check_balance(const body *b, size_t s, bool lumped, const double *a) {
+static void check_balance(const body *b, size_t s, rg_mass kind, const double *a) {
     const double mass = b->in->material.density * b->in->geom[rg_geom_index(s, RG_GEOM_VOLUME)];
     for (int c = 0; c < 3; c++)
         for (int n = 0; n < RG_NODES; n++) {
             double sum = 0;
             for (int k = 0; k < RG_NODES; k++) {
                 double entry = literature_mass(n, k) / 420;
-                if (lumped)
+                if (kind == RG_MASS_LUMPED)
                     entry = n != k ? 0 : n < 4 ? 1.0 / 36 : 4.0 / 27;
                 sum += mass * entry * a[rg_node_index(s, k, c)];
             }
@@ -468,9 +469,9 @@ static void check_balance(const body *b, size_t s, bool lumped, const double *a)
 }
 
 /* Kick of the whole body by the input's forces, from the input's velocities. */
-static void kick(const body *b, bool lumped, double *velocity, double *now) {
+static void kick(const body *b, rg_mass kind, double *velocity, double *now) {
     const rg_kick_args args = {.density = b->in->material.density,
-                               .lumped = lumped,
+                               .mass = kind,
                                .dt = 1e-9,
                                .geom = b->in->geom,
                                .force = b->force,
@@ -488,15 +489,15 @@ static void check_kick(const rg_kernels *set) {
     double *velocity = input_alloc(bytes), *now = input_alloc(bytes), *a = input_alloc(bytes);
     memcpy(b.force, b.in->pull, bytes);
     memcpy(b.iforce, b.in->ipull, INPUT_IBLOCKS * RG_IFORCE_BLOCK * sizeof(double));
-    for (int lumped = 0; lumped < 2; lumped++) {
+    for (rg_mass kind = RG_MASS_CONSISTENT; kind <= RG_MASS_LUMPED; kind++) {
         memset(velocity, 0, bytes);
-        kick(&b, lumped, velocity, NULL);
+        kick(&b, kind, velocity, NULL);
         for (size_t k = 0; k < NODE_VALUES; k++)
             a[k] = velocity[k] / 1e-9;
         for (size_t e = 0; e < INPUT_ELEMENTS; e++)
-            check_balance(&b, b.in->element[e], lumped, a);
+            check_balance(&b, b.in->element[e], kind, a);
         memcpy(velocity, b.in->velocity, bytes);
-        kick(&b, lumped, velocity, now);
+        kick(&b, kind, velocity, now);
         for (size_t k = 0; k < NODE_VALUES; k++) {
             double v = b.in->velocity[k];
             assert_near(velocity[k], v + 1e-9 * a[k], 1e-12 * fabs(1e-9 * a[k]) + 1e-13);
@@ -504,7 +505,7 @@ static void check_kick(const rg_kernels *set) {
         }
         memcpy(a, velocity, bytes);
         memcpy(velocity, b.in->velocity, bytes);
-        kick(&b, lumped, velocity, NULL);
+        kick(&b, kind, velocity, NULL);
         assert_memory_equal(velocity, a, bytes);
     }
     free(velocity);

@@ -266,7 +266,8 @@ static void check_interface(const rg_kernels *set, input_kind kind, rg_cohesive 
         for (size_t i = 0; i < INPUT_INTERFACES; i++) {
             switched += in->broken[in->slot[i]] != before[in->slot[i]];
             for (int k = 0; k < 2 && c.copy[i][k] != NONE; k++) {
-                compare(set->name, law.potential, &a, in->slot[i], &b, (size_t)c.copy[i][k]);
+                compare(set->name, law.contact == RG_CONTACT_POTENTIAL, &a, in->slot[i], &b,
+                        (size_t)c.copy[i][k]);
                 assert_true(!in->broken[in->slot[i]] || c.active[c.copy[i][k] / RG_LANES]);
                 tile_faces += is_tile_face(&c, i);
             }
@@ -436,13 +437,14 @@ static void motion_free(motion *m) {
     free(m->now);
 }
 
-static rg_kick_args kick_args(const input *in, const motion *m, bool lumped) {
+static rg_kick_args kick_args(const input *in, const motion *m, rg_mass mass) {
     return (rg_kick_args){.density = in->material.density,
-                          .lumped = lumped,
+                          .mass = mass,
                           .dt = 1e-10,
                           .geom = in->geom,
                           .force = in->pull,
                           .iforce = in->ipull,
+                          .contact = RG_CONTACT_POTENTIAL,
                           .turn = in->ipull, /* any forces do, on any faces */
                           .broken = in->broken,
                           .interface = in->interface,
@@ -452,15 +454,15 @@ static rg_kick_args kick_args(const input *in, const motion *m, bool lumped) {
 }
 
 /* Both parts of the kick of the cut body. The second must do without the bulk's forces. */
-static motion kick_cut(const rg_kernels *set, const cut *c, bool lumped, bool now) {
+static motion kick_cut(const rg_kernels *set, const cut *c, rg_mass mass, bool now) {
     motion m = motion_make(c->in);
-    rg_kick_args args = kick_args(c->in, &m, lumped);
+    rg_kick_args args = kick_args(c->in, &m, mass);
     args.iforce = args.turn = c->ipull;
     args.broken = c->broken;
     args.interface = c->interface;
     args.step_velocity = now ? m.now : NULL;
     set->kick(&args, 0, INPUT_EBLOCKS);
-    args.tile_faces = true;
+    args.sweep = RG_SWEEP_BOUNDARY;
     args.force = NULL;
     set->kick(&args, 0, INPUT_EBLOCKS);
     return m;
@@ -484,12 +486,12 @@ static void check_now(const char *set, const input *in, const motion *m) {
     free(expected);
 }
 
-static void check_kick(const rg_kernels *set, uint64_t every, bool lumped) {
+static void check_kick(const rg_kernels *set, uint64_t every, rg_mass mass) {
     input *in = make_broken(INPUT_SMALL, input_laws[0]);
     cut c = cut_make(in, every);
-    motion whole = motion_make(in), parts = kick_cut(set, &c, lumped, true);
-    motion ref = kick_cut(&rg_kernels_reference, &c, lumped, true), quiet = kick_cut(set, &c, lumped, false);
-    rg_kick_args args = kick_args(in, &whole, lumped);
+    motion whole = motion_make(in), parts = kick_cut(set, &c, mass, true);
+    motion ref = kick_cut(&rg_kernels_reference, &c, mass, true), quiet = kick_cut(set, &c, mass, false);
+    rg_kick_args args = kick_args(in, &whole, mass);
     set->kick(&args, 0, INPUT_EBLOCKS);
     assert_close(set->name, "velocity, one part against two", parts.velocity, whole.velocity);
     assert_close(set->name, "now, one part against two", parts.now, whole.now);
@@ -516,8 +518,8 @@ static void test_kick(void **state) {
     (void)state;
     for (int k = 0; k < n; k++)
         for (uint64_t every = 0; every <= 20; every += every < 2 ? 1 : 18) /* none, all, half, few */
-            for (int lumped = 0; lumped < 2; lumped++)
-                check_kick(sets[k], every, lumped);
+            for (rg_mass mass = RG_MASS_CONSISTENT; mass <= RG_MASS_LUMPED; mass++)
+                check_kick(sets[k], every, mass);
 }
 
 int main(void) {

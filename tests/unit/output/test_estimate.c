@@ -253,6 +253,7 @@ static bool words_are(const rg_solver *s, const rg_estimate *e, const char *want
 static bool check_onset(random_state *r, double onset, double beta, double safety, const char *limit) {
     char wanted[300] = "";
     rg_solver *s = r->solver;
+    s->law.activation = onset > 0 ? RG_ACTIVATION_CONSERVING : RG_ACTIVATION_CONTINUOUS;
     s->law.onset = onset;
     s->law.beta = beta;
     r->input->time.safety = safety;

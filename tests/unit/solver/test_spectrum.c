@@ -72,11 +72,10 @@ static void set_faces(twin *w, int state, double stiffest) {
                            .opening = 1,
                            .separation = 1,
                            .beta = was.beta,
-                           .contact_below = INFINITY,
-                           .intrinsic = was.intrinsic,
+                           .contact = RG_CONTACT_LINEAR,
+                           .form = was.form,
                            .slope = was.slope * stiffest,
-                           .friction = was.friction,
-                           .stick = true};
+                           .sliding = was.sliding == RG_SLIDING_FREE ? RG_SLIDING_FREE : RG_SLIDING_STUCK};
     rg_real *scale = w->scale;
     w->scale = NULL;
     rg_free(scale);
@@ -276,8 +275,8 @@ static bool at_rest(const rg_solver *s, const rg_cohesive *law, size_t stride) {
         rest = rest && s->u[i] == 0 && s->velocity[i] == 0 && s->step_velocity[i] == 0;
     for (size_t i = 0; i < s->domain->iblocks * RG_LANES; i++)
         rest = rest && s->broken[i] == s->unlinked[i] &&
-               s->broken[i] == (law->intrinsic ? (1 << RG_POINTS) - 1 : 0) &&
-               s->active[i / RG_LANES] == law->intrinsic;
+               s->broken[i] == (law->form == RG_FORM_INTRINSIC ? (1 << RG_POINTS) - 1 : 0) &&
+               s->active[i / RG_LANES] == (law->form == RG_FORM_INTRINSIC);
     for (int m = 0; m < s->materials; m++)
         rest = rest && s->material[m].model == RG_MATERIAL_LINEAR_ELASTIC;
     return rest;

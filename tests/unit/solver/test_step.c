@@ -135,16 +135,18 @@ static void compare_places(record *r, const rg_solver *s, const twin *w) {
 /* Where value k of point q lies in a block of crack state: its kind, with what its law remembers and friction
  * behind the state proper. */
 static size_t crack_row(const twin *w, size_t lane, int q, int k) {
-    size_t memory = (w->crack_stride - RG_CRACK_BLOCK - (w->law.friction > 0 ? RG_FRICTION_BLOCK : 0)) /
-                    (RG_POINTS * RG_LANES);
+    size_t memory =
+        (w->crack_stride - RG_CRACK_BLOCK - (w->law.sliding == RG_SLIDING_COULOMB ? RG_FRICTION_BLOCK : 0)) /
+        (RG_POINTS * RG_LANES);
     if (k < RG_CRACK)
         return rg_crack_index(lane, q, k);
     if (k < RG_CRACK + RG_LAW_MEMORY)
         return (size_t)(k - RG_CRACK) < memory
                    ? RG_CRACK_BLOCK + ((size_t)q * memory + (size_t)(k - RG_CRACK)) * RG_LANES + lane
                    : SIZE_MAX;
-    return w->law.friction > 0 ? rg_friction_index(lane, q, k - RG_CRACK - RG_LAW_MEMORY, w->crack_stride)
-                               : SIZE_MAX;
+    return w->law.sliding == RG_SLIDING_COULOMB
+               ? rg_friction_index(lane, q, k - RG_CRACK - RG_LAW_MEMORY, w->crack_stride)
+               : SIZE_MAX;
 }
 
 /* Whether a broken point is pressed together; the normal of the body at rest will do. */

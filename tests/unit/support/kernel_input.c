@@ -225,7 +225,8 @@ static void fill_interface_traction(input *in, size_t i) {
     force *= isfinite(in->law.strength) ? in->law.strength : 4e8;
     const double *level = pull[input_pull_of(in, i)];
     /* the first opening of a compressed point has no normal part: closed or not would be rounding's choice */
-    bool undecided = in->law.flux && !in->law.total && level[0] < 0;
+    bool undecided =
+        in->law.contact == RG_CONTACT_FLUX && in->law.activation != RG_ACTIVATION_TOTAL && level[0] < 0;
     for (int k = 0; k < RG_FCORNERS * 3; k++)
         for (int side = 0; side < 2; side++) {
             double t = level[0] * (undecided ? -1 : 1) * n[k % 3] + beta * level[1] * m[k % 3];
@@ -276,7 +277,7 @@ void input_break(input *in, double probability) {
                 continue;
             input_crack regime = input_crack_of(in, i, q);
             input_break_point(in, i, q, w[regime], largest[regime]);
-            if (in->law.flux && chance % 3 == 0)
+            if (in->law.contact == RG_CONTACT_FLUX && chance % 3 == 0)
                 in->unlinked[in->slot[i]] &= (uint8_t) ~(1 << q);
         }
     input_flags(in);
@@ -392,7 +393,7 @@ void input_free(input *in) {
 rg_bulk_args input_bulk_args(const input *in, rg_real *force, rg_real *traction, rg_real *stiffening) {
     return (rg_bulk_args){
         .material = in->material,
-        .lift = true,
+        .gradient = RG_GRADIENT_LIFTED,
         .u = in->u,
         .geom = in->geom,
         .neighbour = in->neighbour,
@@ -430,14 +431,14 @@ rg_interface_args input_interface_args(const input *in, uint8_t *broken, uint8_t
 const rg_cohesive input_laws[INPUT_LAWS] = {
     {LINEAR, .beta = 1},
     {LINEAR, .beta = 0},
-    {LINEAR, .beta = 2, .total = true},
-    {LINEAR, .beta = 0.5, .flux = true},
-    {LINEAR, .beta = 0, .total = true, .flux = true},
-    {LINEAR, .beta = 2, .total = true, .flux = true},
-    {LINEAR, .beta = 1.5, .flux = true},
-    {LINEAR, .beta = 1, .contact_below = INFINITY},
-    {LINEAR, .beta = 1, .potential = true},
-    {LINEAR, .beta = 0, .potential = true},
+    {LINEAR, .beta = 2, .activation = RG_ACTIVATION_TOTAL},
+    {LINEAR, .beta = 0.5, .contact = RG_CONTACT_FLUX},
+    {LINEAR, .beta = 0, .activation = RG_ACTIVATION_TOTAL, .contact = RG_CONTACT_FLUX},
+    {LINEAR, .beta = 2, .activation = RG_ACTIVATION_TOTAL, .contact = RG_CONTACT_FLUX},
+    {LINEAR, .beta = 1.5, .contact = RG_CONTACT_FLUX},
+    {LINEAR, .beta = 1, .contact = RG_CONTACT_LINEAR},
+    {LINEAR, .beta = 1, .contact = RG_CONTACT_POTENTIAL},
+    {LINEAR, .beta = 0, .contact = RG_CONTACT_POTENTIAL},
 };
 
 void input_for_each_case(void (*test)(const rg_kernels *set, input_kind kind, rg_cohesive law)) {

@@ -165,7 +165,7 @@ static void draw_interface(rg_solver *s, size_t i, rg_gid face, uint64_t seed) {
                 (rg_real)(1e-8 * drawn(seed, DRAW_ORIGIN, face, 3 * q + c));
         }
         *rg_crack_value(s, i, q, RG_CRACK_TIME) = (rg_real)drawn_time(seed, face, q);
-        for (int k = 0; k < RG_FRICTION && s->law.friction > 0; k++) {
+        for (int k = 0; k < RG_FRICTION && s->law.sliding == RG_SLIDING_COULOMB; k++) {
             *rg_friction_value(s, i, q, k) = (rg_real)drawn_friction(seed, face, q, k);
         }
     }

@@ -182,7 +182,7 @@ static void kick_body(const twin *w, const rg_body_input *in, twin_body *b) {
 
 static rg_bulk_args bulk_args(const twin *w, int m, bool advance) {
     return (rg_bulk_args){.material = w->material[m],
-                          .lift = w->lift,
+                          .gradient = w->gradient,
                           .u = w->u,
                           .geom = w->geom,
                           .neighbour = w->neighbour,
@@ -236,12 +236,13 @@ static void accelerate(twin *w) {
     memset(w->acceleration, 0, w->blocks * RG_NODE_BLOCK * sizeof(rg_real));
     for (int m = 0; m <= w->input->others; m++) {
         rg_kick_args args = {.density = w->material[m].density,
-                             .lumped = w->lumped,
+                             .mass = w->input->mass,
                              .dt = 1,
                              .geom = w->geom,
                              .force = w->force,
                              .iforce = w->iforce,
-                             .turn = w->law.potential ? w->turn : NULL,
+                             .contact = w->law.contact,
+                             .turn = w->turn,
                              .broken = w->broken,
                              .interface = w->interface,
                              .velocity = w->acceleration};
@@ -335,7 +336,7 @@ static void add_released(const twin *w, size_t e, rg_energy *sum) {
 static void add_elements(const twin *w, rg_energy *sum) {
     double *bulk = RG_NEW(double, w->blocks *RG_LANES), *kinetic = RG_NEW(double, w->blocks *RG_LANES);
     twin_bulk_energies(w, bulk);
-    rg_kinetic_args args = {1, w->lumped, w->geom, w->step_velocity, kinetic};
+    rg_kinetic_args args = {1, w->input->mass, w->geom, w->step_velocity, kinetic};
     rg_reference_kinetic(&args, 0, w->blocks);
     for (size_t e = 0; e < w->elements; e++) {
         sum->bulk += bulk[w->slot[e]];
@@ -382,9 +383,9 @@ static void add_cracks(const twin *w, rg_energy *sum) {
                                           rg_crack_index(i % RG_LANES, q, RG_CRACK_OPENING)];
                 bool broken = (w->broken[i] >> q & 1) != 0, failed = broken && largest >= parts;
                 double here = rg_reference_face_point(q, l) * size;
-                sum->broken_area += (w->law.intrinsic ? failed : broken) ? here : 0;
+                sum->broken_area += (w->law.form == RG_FORM_INTRINSIC ? failed : broken) ? here : 0;
                 sum->failed_area += failed ? here : 0;
-                if (broken && w->law.friction > 0)
+                if (broken && w->law.sliding == RG_SLIDING_COULOMB)
                     sum->friction += w->crack[rg_friction_index(i, q, RG_FRICTION_HEAT, w->crack_stride)];
             }
         }
@@ -399,7 +400,7 @@ double twin_first_fracture(const twin *w) {
         double parts = w->law.separation;
         parts *= w->scale == NULL ? 1 : w->scale[(i / RG_LANES * 2 + 1) * RG_LANES + i % RG_LANES];
         bool broken = (w->broken[i] >> q & 1) != 0;
-        if (w->law.intrinsic)
+        if (w->law.form == RG_FORM_INTRINSIC)
             broken = w->crack[block + rg_crack_index(i % RG_LANES, q, RG_CRACK_OPENING)] >= parts;
         if (broken)
             first = fmin(first, w->crack[block + rg_crack_index(i % RG_LANES, q, RG_CRACK_TIME)]);

@@ -25,7 +25,8 @@ typedef struct {
     const rg_case *input;
     const rg_mesh *mesh;
     rg_cohesive law;
-    bool lift, lumped, joined;       /* joined: elements share nodes */
+    rg_gradient gradient;
+    bool joined;                     /* joined: elements share nodes */
     double mass[RG_NODES][RG_NODES]; /* mass matrix of an element over its mass */
     rg_material material[RG_MAX_MATERIALS];
     size_t begin[RG_MAX_MATERIALS + 1]; /* blocks of each material */

@@ -76,15 +76,15 @@ static void set_law(twin *w) {
         .strength = c->interface.strength,
         .opening = opening,
         .beta = facts.forms & RG_NORMAL_MEASURE ? 0 : c->interface.beta,
-        .total = c->interface.activation == RG_ACTIVATION_TOTAL,
-        .onset = c->interface.activation == RG_ACTIVATION_CONSERVING ? c->interface.onset : 0,
+        .activation = c->interface.activation,
+        .onset = c->interface.onset,
         .beta_s = c->interface.beta_s,
-        .flux = c->interface.contact == RG_CONTACT_FLUX,
-        .potential = c->interface.contact == RG_CONTACT_POTENTIAL,
-        .intrinsic = c->interface.form == RG_FORM_INTRINSIC,
+        .contact = c->interface.contact,
+        .form = c->interface.form,
         .separation = facts.separation * opening,
         .slope =
             c->interface.form == RG_FORM_INTRINSIC ? facts.slope[0] * c->interface.strength / opening : 0,
+        .sliding = c->interface.friction > 0 ? RG_SLIDING_COULOMB : RG_SLIDING_FREE,
         .friction = c->interface.friction,
     };
     memcpy(w->law.shape, c->interface.shape[w->law.law], sizeof w->law.shape);
@@ -213,10 +213,10 @@ static void find_held(twin *w) {
 }
 
 /* Mass matrix over the mass, from that of the reference kernel: twice the energy of nodes that move. */
-static void mass_matrix(bool lumped, double m[RG_NODES][RG_NODES]) {
+static void mass_matrix(rg_mass mass, double m[RG_NODES][RG_NODES]) {
     _Alignas(64) rg_real v[RG_NODE_BLOCK], geom[RG_GEOM_BLOCK];
     double energy[RG_LANES], own[RG_NODES];
-    rg_kinetic_args args = {1, lumped, geom, v, energy};
+    rg_kinetic_args args = {1, mass, geom, v, energy};
     for (int l = 0; l < RG_GEOM_BLOCK; l++)
         geom[l] = 1;
     for (int pass = 0; pass < 2; pass++)
@@ -253,19 +253,21 @@ static void make_bodies(twin *w) {
 
 twin *twin_make(const rg_case *c, const rg_mesh *mesh) {
     twin *w = RG_NEW(twin, 1);
-    *w = (twin){.input = c,
-                .mesh = mesh,
-                .lift = c->interface.form == RG_FORM_VARIATIONAL || c->interface.form == RG_FORM_CONTINUOUS,
-                .lumped = c->mass == RG_MASS_LUMPED,
-                .joined = c->interface.form == RG_FORM_CONTINUOUS,
-                .elements = (size_t)mesh->elements};
+    *w =
+        (twin){.input = c,
+               .mesh = mesh,
+               .gradient = c->interface.form == RG_FORM_VARIATIONAL || c->interface.form == RG_FORM_CONTINUOUS
+                               ? RG_GRADIENT_LIFTED
+                               : RG_GRADIENT_OWN,
+               .joined = c->interface.form == RG_FORM_CONTINUOUS,
+               .elements = (size_t)mesh->elements};
     w->of = RG_NEW(int, w->elements);
     w->slot = RG_NEW(size_t, w->elements);
     w->face = RG_NEW(int32_t, 4 * w->elements);
     w->node = RG_NEW(size_t, RG_NODES * w->elements);
     w->held = RG_NEW(int16_t, 3 * RG_NODES * w->elements);
     w->hold = RG_NEW(twin_hold, 3 * w->elements);
-    mass_matrix(w->lumped, w->mass);
+    mass_matrix(c->mass, w->mass);
     place_elements(w);
     int values = 0;
     for (int m = 0; m <= c->others; m++) {
@@ -276,7 +278,7 @@ twin *twin_make(const rg_case *c, const rg_mesh *mesh) {
     set_law(w);
     count_interfaces(w);
     bool memory = c->interface.law != RG_LAW_NONE;
-    w->crack_stride = RG_CRACK_BLOCK + (w->law.friction > 0 ? RG_FRICTION_BLOCK : 0);
+    w->crack_stride = RG_CRACK_BLOCK + (w->law.sliding == RG_SLIDING_COULOMB ? RG_FRICTION_BLOCK : 0);
     if (memory) {
         w->crack_stride +=
             (size_t)rg_law_facts_of(w->law.law, w->law.shape, w->law.beta).memory * RG_POINTS * RG_LANES;
@@ -313,7 +315,7 @@ twin *twin_make(const rg_case *c, const rg_mesh *mesh) {
     name_nodes(w);
     find_held(w);
     make_bodies(w);
-    if (w->law.intrinsic) {
+    if (w->law.form == RG_FORM_INTRINSIC) {
         memset(w->broken, (1 << RG_POINTS) - 1, islots);
         memset(w->unlinked, (1 << RG_POINTS) - 1, islots);
     }

@@ -1,0 +1,99 @@
+/* Step 1 at the points of a face: the fracture criterion (5.3, 5.17), and with what opening a point that
+ * breaks starts, the activation (section 6 of kernels/README.md). */
+#ifndef RG_INTERFACE_CRITERION_H
+#define RG_INTERFACE_CRITERION_H
+
+#include "cohesive/conserving.h"
+#include "element/interface_crack.h"
+
+/* The Piola traction below which a point is not tested: half the strength, as an area-weighted square. */
+RG_INLINE rg_vec test_bound(const interface *s) {
+    double beta = s->args->law.beta, strength = s->args->law.strength;
+    double reach = beta > 0 && beta < 1 ? 1 / (beta * beta) : 1;
+    rg_vec bound = rg_splat(0.25 * strength * strength / reach) * s->area_square;
+    if (s->args->scale != NULL) {
+        bound *= scale(s, 0) * scale(s, 0);
+    }
+    return bound;
+}
+
+RG_INLINE bool any_to_test(const interface *s) {
+    rg_vec bound = test_bound(s), largest = {0};
+    for (int q = 0; q < RG_POINTS; q++) {
+        largest = rg_max(rg_dot(s->mean[q], s->mean[q]), largest);
+    }
+    return rg_any(largest > bound);
+}
+
+/* Cauchy traction t of a point: its shear tau, its tension <t_n>, and what of both meets the strength. */
+typedef struct {
+    vec3 tau;
+    rg_vec tension, shear; /* shear: weight of tau, 1/beta^2 (beta = 0: 0) */
+    rg_vec effective;      /* sqrt(<t_n>^2 + |tau|^2/beta^2) */
+} cauchy;
+
+RG_INLINE void cauchy_traction(const interface *s, int q, const vec3 n, rg_vec area, cauchy *t) {
+    const rg_cohesive *law = &s->args->law;
+    vec3 all;
+    for (int c = 0; c < 3; c++) {
+        all[c] = s->mean[q][c] / rg_max(area, rg_splat(RG_NO_AREA));
+    }
+    t->shear = rg_splat(law->beta > 0 ? 1 / (law->beta * law->beta) : 0);
+    rg_vec tn = rg_dot(all, n);
+    t->tension = rg_max(tn, rg_splat(0.0));
+    for (int c = 0; c < 3; c++) {
+        t->tau[c] = all[c] - tn * n[c];
+    }
+    t->effective = rg_sqrt(t->tension * t->tension + t->shear * rg_dot(t->tau, t->tau));
+}
+
+/* Criterion (5.3), (5.17): which of the intact points break now. Padding has no area. */
+RG_INLINE rg_mask breaking(const interface *s, int q, const cauchy *t, rg_mask intact) {
+    rg_mask tested = (s->area_square > 0.0) & (rg_dot(s->mean[q], s->mean[q]) > test_bound(s));
+    return intact & tested & (t->effective > s->strength);
+}
+
+/* Opening eps from which a point that breaks starts (m); 0 where the law takes the total jump. */
+RG_INLINE rg_vec onset(const interface *s, rg_activation activation) {
+    const rg_cohesive *law = &s->args->law;
+    double share = activation == RG_ACTIVATION_TOTAL        ? 0.0
+                   : activation == RG_ACTIVATION_CONSERVING ? law->onset
+                                                            : RG_ONSET;
+    return rg_splat(share * law->strength) * s->strong_area / normal_penalty(s);
+}
+
+/* g of cohesive/conserving.h: what lift and penalty held at a point that breaks, over its strength (m). */
+RG_INLINE rg_vec given_back(const interface *s, int q, const vec3 n, const cauchy *t) {
+    const rg_cohesive *law = &s->args->law;
+    rg_vec slid = rg_splat(law->beta > 0 ? 1.0 : 0.0) * rg_dot(t->tau, s->jump[q]);
+    rg_vec along = rg_dot(s->normal, s->jump[q]);
+    rg_vec penalty = s->pen_iso * rg_dot(s->jump[q], s->jump[q]) + s->pen_norm * along * along;
+    double kept = law->beta_s > RG_LIFT ? 0.5 * (1 - RG_LIFT / law->beta_s) : 0;
+    return (slid + t->tension * rg_dot(n, s->jump[q])) / t->effective +
+           rg_splat(kept) * penalty / (s->area * s->strength);
+}
+
+/* Activation of the points that break now: their first state.
+ *   total       the opening is [u]
+ *   continuous  [u] - ([u]_s - eps d), d = (tau/beta^2 + <t_n> n)/sigma_s along the traction: so that the
+ *               cohesive traction continues the one at the switch in direction and size (Papoulia et al.)
+ *   conserving  [u] - ([u]_s - delta_0 d), of which d_0 is damage already (cohesive/conserving.h) */
+RG_INLINE void activate(const interface *s, int q, const vec3 n, const cauchy *t, rg_mask now,
+                        rg_activation activation) {
+    rg_vec start = onset(s, activation), first = start;
+    if (activation == RG_ACTIVATION_CONSERVING) {
+        rg_vec given = given_back(s, q, n, t);
+        first = rg_conserving_first(given, s->opening);
+        start = rg_conserving_start(given, first, start);
+    }
+    bool total = s->args->law.activation == RG_ACTIVATION_TOTAL;
+    for (int c = 0; c < 3; c++) {
+        rg_vec d = (t->shear * t->tau[c] + t->tension * n[c]) / t->effective;
+        rg_vec origin = total ? rg_splat(0.0) : s->jump[q][c] - start * d;
+        store_where(crack_state(s, q, RG_CRACK_ORIGIN + c), now, origin);
+    }
+    store_where(crack_state(s, q, RG_CRACK_OPENING), now, first);
+    store_where(crack_state(s, q, RG_CRACK_TIME), now, rg_splat(s->args->time));
+}
+
+#endif
