@@ -14,8 +14,14 @@
 #include "support/instruction_count.h"
 #include "support/kernel_input.h"
 
-#define FLOP_TOLERANCE 0.05 /* compilers fuse and share in their own way */
-#define BYTE_TOLERANCE 0.03
+/* Percent beyond what was found. Compilers fuse and share operations in their own way: of one that was not
+ * counted, more is let pass. */
+#if defined __clang__ && __clang_major__ == 14 || !defined __clang__ && defined __GNUC__ && __GNUC__ == 12
+#define FLOP_TOLERANCE 0.1
+#else
+#define FLOP_TOLERANCE 3.0
+#endif
+#define BYTE_TOLERANCE 0.5
 
 enum { MAX_SETS = 4, LINE = 64 };
 
@@ -241,41 +247,58 @@ static const struct {
     const char *name;
     rg_cost_kernel kernel;
     rg_cost_variant variant;
+    double off[2]; /* percent by which the model lies over the operations counted: least and most of the
+                      instruction sets with GCC 12 and Clang 14 */
 } cases[] = {
-    {"bulk", RG_COST_BULK, {.gradient = RG_GRADIENT_OWN}},
-    {"bulk lifted", RG_COST_BULK, {.gradient = RG_GRADIENT_LIFTED}},
-    {"bulk lifted, broken", RG_COST_BULK, {.gradient = RG_GRADIENT_LIFTED, .unlinked = 4}},
-    {"linear", RG_COST_BULK, {.model = LINEAR}},
-    {"linear state, energy", RG_COST_BULK_STATE, {.model = LINEAR}},
-    {"linear state, stress", RG_COST_BULK_STATE, {.model = LINEAR, .cauchy = true}},
-    {"St. Venant-Kirchhoff", RG_COST_BULK, {.model = KIRCHHOFF}},
-    {"St. Venant-Kirchhoff lifted", RG_COST_BULK, {.gradient = RG_GRADIENT_LIFTED, .model = KIRCHHOFF}},
-    {"St. Venant-Kirchhoff state, energy", RG_COST_BULK_STATE, {.model = KIRCHHOFF}},
-    {"St. Venant-Kirchhoff state, stress", RG_COST_BULK_STATE, {.model = KIRCHHOFF, .cauchy = true}},
-    {"ceramic at rest", RG_COST_BULK, {.gradient = RG_GRADIENT_LIFTED, .model = CERAMIC}},
-    {"ceramic quiet", RG_COST_BULK, {.model = CERAMIC, .advance = true}},
-    {"ceramic cracking", RG_COST_BULK, {.model = CERAMIC, .advance = true, .growing = 1, .panels = 1}},
-    {"ceramic flowing", RG_COST_BULK, {.model = CERAMIC, .advance = true, .flowing = 1, .newton = 1}},
-    {"ceramic state, energy", RG_COST_BULK_STATE, {.gradient = RG_GRADIENT_LIFTED, .model = CERAMIC}},
-    {"ceramic state, stress", RG_COST_BULK_STATE, {.model = CERAMIC, .cauchy = true}},
-    {"J2 at rest", RG_COST_BULK, {.gradient = RG_GRADIENT_LIFTED, .model = J2}},
-    {"J2 elastic", RG_COST_BULK, {.model = J2, .advance = true}},
-    {"J2 flowing", RG_COST_BULK, {.model = J2, .advance = true, .flowing = 1}},
-    {"J2 saturating", RG_COST_BULK, {.model = J2, .advance = true, .flowing = 1, .newton = 3}},
-    {"J2 state, energy", RG_COST_BULK_STATE, {.gradient = RG_GRADIENT_LIFTED, .model = J2}},
-    {"J2 state, stress", RG_COST_BULK_STATE, {.model = J2, .cauchy = true}},
-    {"bulk state, energy", RG_COST_BULK_STATE, {.gradient = RG_GRADIENT_LIFTED}},
-    {"bulk state, stress", RG_COST_BULK_STATE, {.cauchy = true}},
-    {"interface", RG_COST_INTERFACE, {.damaged = 0}},
-    {"interface, broken", RG_COST_INTERFACE, {.damaged = 1, .points = 6}},
-    {"interface state", RG_COST_INTERFACE_STATE, {.damaged = 0}},
-    {"interface state, broken", RG_COST_INTERFACE_STATE, {.damaged = 1}},
-    {"viscosity", RG_COST_VISCOSITY, {.gradient = RG_GRADIENT_OWN}},
-    {"kick consistent", RG_COST_KICK, {.mass = RG_MASS_CONSISTENT}},
-    {"kick lumped", RG_COST_KICK, {.mass = RG_MASS_LUMPED}},
-    {"drift", RG_COST_DRIFT, {.mass = RG_MASS_CONSISTENT}},
-    {"kinetic", RG_COST_KINETIC, {.mass = RG_MASS_CONSISTENT}},
-    {"kinetic lumped", RG_COST_KINETIC, {.mass = RG_MASS_LUMPED}},
+    {"bulk", RG_COST_BULK, {.gradient = RG_GRADIENT_OWN}, {0.1, 2.1}},
+    {"bulk lifted", RG_COST_BULK, {.gradient = RG_GRADIENT_LIFTED}, {0.1, 1.5}},
+    {"bulk lifted, broken", RG_COST_BULK, {.gradient = RG_GRADIENT_LIFTED, .unlinked = 4}, {0.9, 4.1}},
+    {"linear", RG_COST_BULK, {.model = LINEAR}, {-1.0, 2.4}},
+    {"linear state, energy", RG_COST_BULK_STATE, {.model = LINEAR}, {-0.6, 0.3}},
+    {"linear state, stress", RG_COST_BULK_STATE, {.model = LINEAR, .cauchy = true}, {1.2, 2.9}},
+    {"St. Venant-Kirchhoff", RG_COST_BULK, {.model = KIRCHHOFF}, {-1.0, 1.7}},
+    {"St. Venant-Kirchhoff lifted",
+     RG_COST_BULK,
+     {.gradient = RG_GRADIENT_LIFTED, .model = KIRCHHOFF},
+     {-0.8, 1.1}},
+    {"St. Venant-Kirchhoff state, energy", RG_COST_BULK_STATE, {.model = KIRCHHOFF}, {0.9, 2.0}},
+    {"St. Venant-Kirchhoff state, stress",
+     RG_COST_BULK_STATE,
+     {.model = KIRCHHOFF, .cauchy = true},
+     {-0.3, 1.1}},
+    {"ceramic at rest", RG_COST_BULK, {.gradient = RG_GRADIENT_LIFTED, .model = CERAMIC}, {-1.6, -0.5}},
+    {"ceramic quiet", RG_COST_BULK, {.model = CERAMIC, .advance = true}, {-0.8, 0.6}},
+    {"ceramic cracking",
+     RG_COST_BULK,
+     {.model = CERAMIC, .advance = true, .growing = 1, .panels = 1},
+     {-0.4, 0.7}},
+    {"ceramic flowing",
+     RG_COST_BULK,
+     {.model = CERAMIC, .advance = true, .flowing = 1, .newton = 1},
+     {0.0, 1.3}},
+    {"ceramic state, energy",
+     RG_COST_BULK_STATE,
+     {.gradient = RG_GRADIENT_LIFTED, .model = CERAMIC},
+     {1.3, 3.3}},
+    {"ceramic state, stress", RG_COST_BULK_STATE, {.model = CERAMIC, .cauchy = true}, {-1.2, 0.4}},
+    {"J2 at rest", RG_COST_BULK, {.gradient = RG_GRADIENT_LIFTED, .model = J2}, {-0.6, 0.7}},
+    {"J2 elastic", RG_COST_BULK, {.model = J2, .advance = true}, {-0.8, 0.9}},
+    {"J2 flowing", RG_COST_BULK, {.model = J2, .advance = true, .flowing = 1}, {0.1, 1.7}},
+    {"J2 saturating", RG_COST_BULK, {.model = J2, .advance = true, .flowing = 1, .newton = 3}, {0.4, 1.8}},
+    {"J2 state, energy", RG_COST_BULK_STATE, {.gradient = RG_GRADIENT_LIFTED, .model = J2}, {3.2, 3.8}},
+    {"J2 state, stress", RG_COST_BULK_STATE, {.model = J2, .cauchy = true}, {-0.4, 0.8}},
+    {"bulk state, energy", RG_COST_BULK_STATE, {.gradient = RG_GRADIENT_LIFTED}, {-0.3, -0.1}},
+    {"bulk state, stress", RG_COST_BULK_STATE, {.cauchy = true}, {-0.3, 0.5}},
+    {"interface", RG_COST_INTERFACE, {.damaged = 0}, {-2.8, -0.1}},
+    {"interface, broken", RG_COST_INTERFACE, {.damaged = 1, .points = 6}, {-0.3, 2.7}},
+    {"interface state", RG_COST_INTERFACE_STATE, {.damaged = 0}, {0.1, 0.4}},
+    {"interface state, broken", RG_COST_INTERFACE_STATE, {.damaged = 1}, {0.0, 2.9}},
+    {"viscosity", RG_COST_VISCOSITY, {.gradient = RG_GRADIENT_OWN}, {-0.1, 0.3}},
+    {"kick consistent", RG_COST_KICK, {.mass = RG_MASS_CONSISTENT}, {-1.5, 1.1}},
+    {"kick lumped", RG_COST_KICK, {.mass = RG_MASS_LUMPED}, {-0.4, -0.4}},
+    {"drift", RG_COST_DRIFT, {.mass = RG_MASS_CONSISTENT}, {0.0, 0.0}},
+    {"kinetic", RG_COST_KINETIC, {.mass = RG_MASS_CONSISTENT}, {1.1, 1.2}},
+    {"kinetic lumped", RG_COST_KINETIC, {.mass = RG_MASS_LUMPED}, {-0.5, -0.1}},
 };
 enum { CASES = sizeof cases / sizeof *cases };
 
@@ -297,10 +320,12 @@ static double unlinked_faces(const call *c, size_t lanes) {
     return (double)(faces * lanes) / RG_LANES;
 }
 
-static void check(const call *c, const char *what, double counted, double model, double tolerance) {
-    if (!(fabs(model - counted) <= tolerance * counted))
-        fail_msg("%s, %s: the model says %.1f %s per block, counted are %.1f", c->set->name, c->name, model,
-                 what, counted);
+/* least, most: percent by which the model may lie over what is counted. */
+static void check(const call *c, const char *what, double counted, double model, double least, double most) {
+    double off = 100 * (model / counted - 1);
+    if (!(off >= least && off <= most))
+        fail_msg("%s, %s: the model says %.1f %s per block, counted are %.1f: %.2f %%, not %.2f to %.2f",
+                 c->set->name, c->name, model, what, counted, off, least, most);
 }
 
 /* ---- Operations ---- */
@@ -341,7 +366,7 @@ static void test_flops(void **state) {
             if (c->variant.unlinked > 0)
                 c->variant.unlinked = unlinked_faces(c, (size_t)counted.width / sizeof *c->in->u);
             check(c, "operations", counted.flops, rg_cost_block(c->kernel, &c->variant).flops,
-                  FLOP_TOLERANCE);
+                  cases[k].off[0] - FLOP_TOLERANCE, cases[k].off[1] + FLOP_TOLERANCE);
             free_call(c);
         }
 }
@@ -470,8 +495,10 @@ static void test_bytes(void **state) {
         bytes_seen seen = count_bytes(c);
         rg_cost model = rg_cost_block(c->kernel, &c->variant);
         double shared = c->kernel == RG_COST_INTERFACE ? shared_lines(c) / blocks : 0;
-        check(c, "bytes in and out", seen.values / blocks - shared, model.minimal, BYTE_TOLERANCE);
-        check(c, "bytes of traffic", seen.traffic / blocks - shared, model.actual, BYTE_TOLERANCE);
+        check(c, "bytes in and out", seen.values / blocks - shared, model.minimal, -BYTE_TOLERANCE,
+              BYTE_TOLERANCE);
+        check(c, "bytes of traffic", seen.traffic / blocks - shared, model.actual, -BYTE_TOLERANCE,
+              BYTE_TOLERANCE);
         free_call(c);
     }
 }
@@ -483,9 +510,15 @@ static void test_bytes(void **state) {
  */
 static void test_step(void **state) {
     (void)state;
+<<<<<<< HEAD
     const rg_cost_variant v = {.gradient = RG_GRADIENT_LIFTED, .interfaces = 2, .fill = 1};
     rg_cost_variant split = v;
+=======
+    const rg_cost_variant v = {.gradient = RG_GRADIENT_LIFTED, .interfaces = 2, .fill = 1};
+    rg_cost_variant split = v, cracked = v;
+>>>>>>> 21e99b3 (Hold the cost model against what each compiler makes of it)
     split.tile_faces = 1;
+    cracked.damaged = 1;
     rg_cost bulk = rg_cost_block(RG_COST_BULK, &v), kick = rg_cost_block(RG_COST_KICK, &v),
             interface = rg_cost_block(RG_COST_INTERFACE, &v), drift = rg_cost_block(RG_COST_DRIFT, &v);
     rg_cost one = rg_cost_step(&v), tiled = rg_cost_step(&split);
@@ -497,6 +530,12 @@ static void test_step(void **state) {
     assert_true(tiled.minimal == one.minimal && one.minimal < one.actual);
     /* 30 displacements and velocities in and out, 10 numbers for an element, 16 for its two faces */
     assert_true(one.minimal / RG_LANES == (120 + 10 + 16) * 8);
+    /* a sweep: displacements in and velocities in and out, 10 numbers for an element; the other: both in and
+     * out, and a volume; the numbers of faces; 4 links three times, 2 sides and a flag of each face */
+    assert_true(one.actual == (90 + 10 + 120 + 1 + 16) * 64 + 3 * 4 * 32 + 2 * (2 * 32 + 1));
+    /* of 6 points of both faces: largest opening, and the origin of three components */
+    assert_true(rg_cost_step(&cracked).actual - one.actual == 2 * 6 * (1 + 3) * 64);
+    assert_true(tiled.flops - one.flops == kick.flops); /* once more, without the faces that come later */
 }
 
 int main(void) {
