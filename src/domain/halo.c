@@ -80,9 +80,7 @@ void rg_halo_start(rg_halo *h) {
 
 void rg_halo_poll(rg_halo *h) {
     int done;
-    if (h->partners > 0) {
-        MPI_Testall(2 * h->partners, h->request, &done, MPI_STATUSES_IGNORE);
-    }
+    MPI_Testall(2 * h->partners, h->request, &done, MPI_STATUSES_IGNORE);
 }
 
 void rg_halo_finish(rg_halo *h) {

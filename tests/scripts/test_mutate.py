@@ -50,10 +50,22 @@ def test_bounds_are_relaxed_between_whole_numbers_alone():
 
 @pytest.mark.parametrize("line", [
     "    /* a = b + 1; */", "    // a = b + 1;", '    f("a = b + 1");', "#define A (b + 1)", "    rg_free(a + 1);", "    int a;",
-    "    double a[N + 1];", "    static const char b[2 * N];", "    char c[N / 2][3] = {0};"])
+    "    double a[N + 1];", "    _Alignas(64) double a[2 * N];", "    static const char b[2 * N];", "    char c[N / 2][3] = {0};"])
 def test_left_alone(line):
     faults = faults_of("a.c", f"{{\n{line}\n}}")
     assert not [f for kind in KINDS if kind not in ("dropped line", "exchanged index") for f in faults[kind]]
+
+
+def test_what_a_block_has_to_spare_is_left_alone():
+    line = "    a = RG_NEW(double, 3 * (size_t)f(n, 2 * m) + 1);"
+    assert changed("off by one", line) == changed("sign", line) == [] and changed("factor", line) == [
+        line.replace("3 *", "3 /"), line.replace("2 *", "2 /")]
+
+
+def test_hints_are_left_alone():
+    text = "RG_INLINE void prefetch_cracks(int n) {\n    if (n > 0) {\n        n = n + 1;\n    }\n}\n\nvoid f(int n) {\n    g(n + 1);\n"
+    faults = [fault for found in faults_of("a.c", text + "    prefetch_cracks(n + 1);\n}\n").values() for fault in found]
+    assert faults and {fault.line for fault in faults} == {"    g(n + 1);"}
 
 
 def test_what_gives_back_goes_on_doing_so():

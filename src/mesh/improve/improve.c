@@ -20,10 +20,8 @@ typedef struct {
 
 static int flattest_first(const void *a, const void *b) {
     const flat_one *p = a, *q = b;
-    if (p->height < q->height || p->height > q->height) {
-        return p->height < q->height ? -1 : 1;
-    }
-    return (p->tet > q->tet) - (p->tet < q->tet);
+    int order = (p->height > q->height) - (p->height < q->height);
+    return order != 0 ? order : (p->tet > q->tet) - (p->tet < q->tet);
 }
 
 static bool alive(const rg_tets *t, rg_gid tet) {

@@ -83,7 +83,8 @@ static void test_flat_elements_grow(void **state) {
     rg_improvement done = improve(m);
     assert_close(done.before, before, 1e-12 * before);
     assert_close(done.after, smallest_height(m), 1e-12 * before);
-    assert_true(done.after > 1.8 * before);
+    /* as far as with the constants that were found best: what changes one gets elsewhere */
+    assert_close(done.after / before, 3.5346, 1e-3);
     assert_true(done.moves > 0 && done.edges > 0);
     rg_mesh_free(m);
 }
@@ -197,6 +198,24 @@ static void test_same_every_time(void **state) {
     assert_int_equal(a->elements, b->elements);
     assert_memory_equal(a->x, b->x, 3 * (size_t)a->vertices * sizeof *a->x);
     assert_memory_equal(a->corner, b->corner, 4 * (size_t)a->elements * sizeof *a->corner);
+    rg_mesh_free(a);
+    rg_mesh_free(b);
+}
+
+/* Nothing in it has a length of its own. */
+static void test_same_at_any_size(void **state) {
+    (void)state;
+    rg_mesh *a = jittered(), *b = jittered();
+    for (rg_gid i = 0; i < 3 * b->vertices; i++) {
+        b->x[i] *= 0x1p-10;
+    }
+    improve(a);
+    improve(b);
+    assert_int_equal(a->elements, b->elements);
+    assert_memory_equal(a->corner, b->corner, 4 * (size_t)a->elements * sizeof *a->corner);
+    for (rg_gid i = 0; i < 3 * b->vertices; i++) {
+        assert_true(b->x[i] == 0x1p-10 * a->x[i]);
+    }
     rg_mesh_free(a);
     rg_mesh_free(b);
 }
@@ -349,13 +368,18 @@ static void test_fans(void **state) {
     /* 0 and 1 and the ends 2 and 4 in the plane y = 0; 3 beside it */
     static const double x[15] = {0, 0, 0, 0, 0, 1, 0.3, 0, 0.45, 0.05, 0.6, 0.5, -0.35, 0, 0.55};
     static const rg_gid corner[8] = {0, 1, 2, 3, 0, 1, 3, 4};
-    for (int what = 0; what < 6; what++) {
+    for (int n = 0; n < 12; n++) {
+        int what = n / 2;
+        double length = n % 2 == 0 ? 1 : 1e-3;
         rg_mesh *m = small(5, x, 2, corner);
         /* faces 0 1 2 of the first and 0 1 4 of the second */
         m->set[3] = 7;
         m->set[4 + 2] = what == 1 ? 8 : 7;
         /* out of the plane: volume 0.3/6 of this, of which 1e-9 of the edge cubed is flat */
         m->x[13] = what == 2 ? -2.2e-8 : what == 3 ? -1.8e-8 : 0;
+        for (int i = 0; i < 15; i++) {
+            m->x[i] *= length;
+        }
         m->set[0] = 3;                      /* 1 2 3: stays */
         m->set[4 + 1] = what == 4 ? 2 : -1; /* 0 3 4: stays */
         double volume = total_volume(m, 0);
@@ -371,7 +395,7 @@ static void test_fans(void **state) {
         rg_mesh_connect(m);
         rg_mesh_check(m, "fan");
         assert_close(total_volume(m, 0) + (what == 5 ? total_volume(m, 1) : 0), volume,
-                     what == 3 ? 1e-9 : 1e-15);
+                     (what == 3 ? 1e-9 : 1e-15) * length * length * length);
         int count[10] = {0};
         for (int s = 0; s < 8; s++) {
             count[m->set[s] + 1] += m->neighbour[s] < 0;
@@ -620,6 +644,7 @@ int main(void) {
         cmocka_unit_test(test_volume_sets_stay),
         cmocka_unit_test(test_inner_faces_stay),
         cmocka_unit_test(test_same_every_time),
+        cmocka_unit_test(test_same_at_any_size),
         cmocka_unit_test(test_vertex_goes_to_the_best_place),
         cmocka_unit_test(test_edge_and_face_are_replaced),
         cmocka_unit_test(test_rings),
