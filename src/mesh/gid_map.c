@@ -16,9 +16,10 @@ rg_gid_map rg_gid_map_make(size_t count) {
 }
 
 static size_t find(const rg_gid_map *map, rg_gid key) {
-    size_t i = rg_mix((uint64_t)key + 1) & map->mask;
+    size_t i = rg_mix((uint64_t)key) & map->mask;
     while (map->key[i] != -1 && map->key[i] != key) {
-        i = (i + 1) & map->mask;
+        i++;
+        i &= map->mask;
     }
     return i;
 }

@@ -288,6 +288,9 @@ static void test_edge_and_face_are_replaced(void **state) {
         }
         rg_tets_finish(&t);
         assert_int_equal(m->elements, flat ? 3 : 2);
+        for (rg_gid e = 0; flat && e < 3; e++) {
+            assert_int_equal(m->original[e], 0); /* the one that was in the way */
+        }
         rg_mesh_connect(m);
         rg_mesh_check(m, "replaced");
         assert_close(total_volume(m, 0), volume, 1e-14);

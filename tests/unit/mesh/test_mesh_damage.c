@@ -289,8 +289,29 @@ static void test_element_values(void **state) {
         {"region", 201, 1, ""},
         {"region", 201, -1, ""},
         {"original", 201, 5, ""},
+        /* the first value and the last one */
+        {"corner", 0, 96, "corner: value 96 of element 1000 is not between 0 and 95\n"},
+        {"corner", 1079, 96, "corner: value 96 of element 1263 is not between 0 and 95\n"},
+        {"set", 0, 6, "set: value 6 of element 1000 is not between -1 and 5\n"},
+        {"set", 1079, 6, "set: value 6 of element 1263 is not between -1 and 5\n"},
+        {"region", 269, 2, "region: value 2 of element 1263 is not between -1 and 1\n"},
     };
     try_values(read_whole, cases, sizeof cases / sizeof *cases);
+    /* of two in a tile, that of the earlier element comes first */
+    static const case_of_value pairs[2][2] = {
+        {{"corner", 806, 96, "corner: value 96 of element 1057 is not between 0 and 95\n"},
+         {"region", 202, 2, "region: value 2 of element 1064 is not between -1 and 1\n"}},
+        {{"set", 806, 6, "set: value 6 of element 1057 is not between -1 and 5\n"},
+         {"region", 202, 2, "region: value 2 of element 1064 is not between -1 and 1\n"}}};
+    for (int k = 0; k < 2; k++) {
+        char words[200];
+        hid_t file = open_copy();
+        change_integer(file, pairs[k][0].name, pairs[k][0].at, pairs[k][0].value);
+        change_integer(file, pairs[k][1].name, pairs[k][1].at, pairs[k][1].value);
+        H5Fclose(file);
+        snprintf(words, sizeof words, "%s%s", pairs[k][0].said, pairs[k][1].said);
+        expect_fault(read_whole, words);
+    }
     /* a face of the surface that has a neighbour's face, and one between elements that has none */
     for (int inside = 0; inside < 2; inside++) {
         char words[200];
@@ -486,6 +507,13 @@ static void test_checksums(void **state) {
     }
     double x = 9;
     hid_t file = open_copy();
+    H5Ldelete(file, "checksum/partition_2", H5P_DEFAULT);
+    H5Fclose(file);
+    char said[1000];
+    assert_int_equal(run_child(read_partition, said, sizeof said), RG_USAGE);
+    snprintf(words, sizeof words, "rhegma: bad.h5: partition_2: its checksum cannot be read: ");
+    assert_memory_equal(said, words, strlen(words));
+    file = open_copy();
     change_value(file, "x", 3 * vertex_start[3], &x, false);
     H5Fclose(file);
     expect_fault(read_whole, "x: the checksum of tile 3 is wrong; the file is damaged\n");
