@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "base/mem.h"
 #include "base/first_bad.h"
+#include "base/vector.h"
 #include "layout.h"
 #include "mesh/gid_map.h"
 
@@ -15,18 +16,17 @@
  * same corners in the same order. */
 static bool selected(const rg_expr *faces, const rg_element *e, int f, rg_first_bad *bad) {
     const double *x[RG_FCORNERS];
-    double middle[3], normal[3], square = 0;
+    double middle[3], u[3], v[3], normal[3];
     for (int k = 0; k < RG_FCORNERS; k++) {
         x[k] = e->x[rg_face_node[f][k]];
     }
+    rg_vector_subtract(x[1], x[0], u);
+    rg_vector_subtract(x[2], x[0], v);
+    rg_vector_cross(u, v, normal);
+    double length = sqrt(rg_vector_dot(normal, normal));
     for (int k = 0; k < 3; k++) {
-        int a = (k + 1) % 3, b = (k + 2) % 3;
         middle[k] = (x[0][k] + x[1][k] + x[2][k]) / 3;
-        normal[k] = (x[1][a] - x[0][a]) * (x[2][b] - x[0][b]) - (x[1][b] - x[0][b]) * (x[2][a] - x[0][a]);
-        square += normal[k] * normal[k];
-    }
-    for (int k = 0; k < 3; k++) {
-        normal[k] /= sqrt(square);
+        normal[k] /= length;
     }
     double here = rg_expr_face_value(faces, middle, normal);
     if (!isfinite(here)) {

@@ -4,21 +4,19 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "base/vector.h"
 #include "domain/interfaces.h"
 #include "layout.h"
 
 /* grad l_k from the corners: rows of the inverse of the matrix with columns x_k - x_3. */
 static void gradients(const double x[4][3], double grad[3][3]) {
-    double e[3][3];
+    double e[3][3], n[3];
     for (int k = 0; k < 3; k++) {
-        for (int c = 0; c < 3; c++) {
-            e[k][c] = x[k][c] - x[3][c];
-        }
+        rg_vector_subtract(x[k], x[3], e[k]);
     }
     for (int k = 0; k < 3; k++) {
-        const double *a = e[(k + 1) % 3], *b = e[(k + 2) % 3];
-        double n[3] = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-        double det = n[0] * e[k][0] + n[1] * e[k][1] + n[2] * e[k][2];
+        rg_vector_cross(e[(k + 1) % 3], e[(k + 2) % 3], n);
+        double det = rg_vector_dot(n, e[k]);
         for (int c = 0; c < 3; c++) {
             grad[k][c] = n[c] / det;
         }

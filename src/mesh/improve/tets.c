@@ -6,6 +6,7 @@
 
 #include "base/mem.h"
 #include "base/tet.h"
+#include "base/vector.h"
 #include "layout.h"
 
 enum { MOST_LABELS = 64 };
@@ -13,13 +14,11 @@ enum { MOST_LABELS = 64 };
 /* ---- geometry ---- */
 
 static double twice_area(const double a[3], const double b[3], const double c[3]) {
-    double n = 0;
-    for (int i = 0; i < 3; i++) {
-        int j = (i + 1) % 3, k = (i + 2) % 3;
-        double part = (b[j] - a[j]) * (c[k] - a[k]) - (b[k] - a[k]) * (c[j] - a[j]);
-        n += part * part;
-    }
-    return sqrt(n);
+    double u[3], v[3], n[3];
+    rg_vector_subtract(b, a, u);
+    rg_vector_subtract(c, a, v);
+    rg_vector_cross(u, v, n);
+    return sqrt(rg_vector_dot(n, n));
 }
 
 double rg_tets_height(const rg_tets *t, const rg_gid corner[4]) {
