@@ -7,17 +7,6 @@
 
 #include "base/error.h"
 
-#if defined __has_feature
-#if __has_feature(address_sanitizer)
-#define __SANITIZE_ADDRESS__ 1 /* as GCC says it */
-#endif
-#endif
-#ifdef __SANITIZE_ADDRESS__
-#include <sanitizer/asan_interface.h>
-#else
-#define ASAN_POISON_MEMORY_REGION(begin, bytes) ((void)(begin), (void)(bytes))
-#endif
-
 enum { ALIGN = 64 };
 
 /* Blocks from this size on ask the system for huge pages: a thousand times fewer page faults when they are
@@ -61,10 +50,7 @@ void *rg_alloc_sparse(size_t count, size_t size) {
     if (raw == NULL) {
         exhausted(count, size);
     }
-    char *block = place(raw, (header){raw, bytes, 0});
-    /* what alignment leaves behind the block is not the caller's: sanitizers shall see who goes there */
-    ASAN_POISON_MEMORY_REGION(block + bytes, (size_t)(raw + bytes + 2 * ALIGN - (block + bytes)));
-    return block;
+    return place(raw, (header){raw, bytes, 0});
 }
 
 void *rg_alloc(size_t count, size_t size) {

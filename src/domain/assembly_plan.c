@@ -191,10 +191,7 @@ typedef struct {
 } records;
 
 static void add(records *list, record r) {
-    if (list->count == list->room) {
-        list->room = 2 * list->room + 256;
-        list->row = rg_realloc(list->row, list->room, sizeof *list->row);
-    }
+    list->row = rg_grow(list->row, &list->room, list->count, sizeof *list->row);
     list->row[list->count++] = r;
 }
 
@@ -316,10 +313,7 @@ static records answer(const builder *b, records *reported) {
             bool first = i == begin || reported->row[i].rank != reported->row[i - 1].rank;
             for (size_t k = begin; first && k < end; k++) {
                 if (reported->row[k].rank != reported->row[i].rank) {
-                    if (out.count == room) {
-                        room = 2 * room + 256;
-                        to = rg_realloc(to, room, sizeof *to);
-                    }
+                    to = rg_grow(to, &room, out.count, sizeof *to);
                     to[out.count] = reported->row[i].rank;
                     add(&out, reported->row[k]);
                 }

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "base/mem.h"
+#include "base/vector.h"
 #include "layout.h"
 #include "mesh/gid_map.h"
 
@@ -39,19 +40,13 @@ static bool is_minus(const rg_element *e, int f, double edge[2][3], double *area
             x[n++] = e->x[k];
         }
     }
-    double cross[3], square = 0, away = 0;
-    for (int c = 0; c < 3; c++) {
-        edge[0][c] = x[1][c] - x[0][c];
-        edge[1][c] = x[2][c] - x[0][c];
-    }
-    for (int c = 0; c < 3; c++) {
-        int a = (c + 1) % 3, b = (c + 2) % 3;
-        cross[c] = edge[0][a] * edge[1][b] - edge[0][b] * edge[1][a];
-        square += cross[c] * cross[c];
-        away -= cross[c] * (e->x[f][c] - x[0][c]);
-    }
-    *area = 0.5 * sqrt(square);
-    return away > 0;
+    double cross[3], opposite[3];
+    rg_vector_subtract(x[1], x[0], edge[0]);
+    rg_vector_subtract(x[2], x[0], edge[1]);
+    rg_vector_subtract(e->x[f], x[0], opposite);
+    rg_vector_cross(edge[0], edge[1], cross);
+    *area = 0.5 * sqrt(rg_vector_dot(cross, cross));
+    return rg_vector_dot(cross, opposite) < 0;
 }
 
 /* Edges and penalties of interface i, from the corners of an element at its face f: both sides see the same

@@ -32,10 +32,7 @@ static void append(text *t, const char *format, ...) {
     va_start(args, format);
     va_copy(again, args);
     size_t need = (size_t)vsnprintf(NULL, 0, format, args) + 1;
-    if (t->length + need > t->capacity) {
-        t->capacity = 2 * t->capacity + need;
-        t->bytes = rg_realloc(t->bytes, t->capacity, 1);
-    }
+    t->bytes = rg_grow(t->bytes, &t->capacity, t->length + need, 1);
     vsnprintf(t->bytes + t->length, need, format, again);
     t->length += need - 1;
     va_end(again);

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "base/vector.h"
 #include "mesh/gid_map.h"
 
 enum {
@@ -29,14 +30,12 @@ typedef struct {
 } candidates;
 
 static double face_area_squared(const rg_element *e, int f) {
-    const double *a = e->x[f == 0], *b = e->x[f < 2 ? 2 : 1], *c = e->x[f == 3 ? 2 : 3];
-    double square = 0;
-    for (int i = 0; i < 3; i++) {
-        int j = (i + 1) % 3, k = (i + 2) % 3;
-        double n = (b[j] - a[j]) * (c[k] - a[k]) - (b[k] - a[k]) * (c[j] - a[j]);
-        square += 0.25 * n * n;
-    }
-    return square;
+    const double *a = e->x[f == 0];
+    double u[3], v[3], n[3];
+    rg_vector_subtract(e->x[f < 2 ? 2 : 1], a, u);
+    rg_vector_subtract(e->x[f == 3 ? 2 : 3], a, v);
+    rg_vector_cross(u, v, n);
+    return 0.25 * rg_vector_dot(n, n);
 }
 
 /* Modulus and density of material `m` over those of the first one: exactly 1 where there is but one. */

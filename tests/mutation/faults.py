@@ -197,8 +197,8 @@ def relaxed_bound(code, after, integers, python):
 # The size of an array where it is declared: one that is too large changes nothing, one too small is for sanitizers.
 ARRAY = re.compile(r"\s*(?:static |const |unsigned |struct |_Alignas\(\w+\) )*[A-Za-z_]\w* \w+((?:\[[^\[\]]*\])+)(?= =|[;,])")
 
-# The same of a block of memory: in the count of RG_NEW no factor is raised and no spare item left out. (What one item less
-# would let overflow lies in the gap that alignment leaves, which sanitizers alone see: src/base/mem.c closes it to them.)
+# The same of a block of memory: in the count of RG_NEW no factor is raised and no spare item left out. (One item less is
+# made up for by the gap that alignment leaves behind every block.)
 BLOCK = re.compile(r"RG_NEW\([\w ]+\*?, ((?:[^(),]|\([^()]*(?:\([^()]*\)[^()]*)*\))*)\)")
 
 # What lets something begin early, and nothing else: memory on its way to the cache, messages on theirs. Whoever needs either waits for it.

@@ -13,6 +13,7 @@
 #include "base/hash.h"
 #include "base/mem.h"
 #include "case/expr.h"
+#include "support/fatal.h"
 #include "support/tap.h"
 
 enum { TILE = 32, CELLS = 4 };
@@ -230,6 +231,27 @@ static void check(const subject *s, const rg_mesh *mesh) {
     free_share(&one);
 }
 
+/* A selection that is no number somewhere ends the run with the lowest such place. (On one rank: others
+ * would wait for its end.) */
+static void check_not_finite(const rg_mesh *mesh) {
+    char *message = NULL;
+    rg_case c = {.path = "test"};
+    c.interface.form = RG_FORM_CONTINUOUS;
+    c.interface.faces = rg_expr_new("1/(z - 2)", &message);
+    rg_part *part = rg_part_distribute(mesh, TILE, MPI_COMM_SELF);
+    expect_fatal = true;
+    if (setjmp(escape) == 0) {
+        rg_joined_faces(&c, part, MPI_COMM_SELF);
+        fatal_status = RG_OK;
+    }
+    expect_fatal = false;
+    report(fatal_status == RG_USAGE &&
+               strcmp(said, "test: interface.faces: 1/(z - 2) is not finite at (0.333333, 0.666667, 2)") == 0,
+           "a selection", "must be finite");
+    rg_part_free(part);
+    rg_expr_free(c.interface.faces);
+}
+
 int main(int argc, char **argv) {
     const int64_t cells[3] = {CELLS, CELLS, CELLS};
     const double origin[3] = {0, 0, 0}, size[3] = {CELLS, CELLS, CELLS};
@@ -238,6 +260,9 @@ int main(int argc, char **argv) {
     for (size_t i = 0; i < sizeof subjects / sizeof *subjects; i++) {
         rg_mesh *mesh = rg_mesh_box(cells, origin, size, subjects[i].jitter, 3); /* on every rank */
         check(&subjects[i], mesh);
+        if (i == 1) {
+            check_not_finite(mesh);
+        }
         rg_mesh_free(mesh);
     }
     return finish();

@@ -23,17 +23,19 @@ static const double origin[3] = {-1e-3, 0, 2e-3}, size[3] = {4e-3, 6e-3, 2e-3};
 static const int tile_sizes[] = {1, 5, 8, 24, 64, 100, 256, 360, 1000};
 enum { TILE_SIZES = sizeof tile_sizes / sizeof tile_sizes[0] };
 
-static const rg_material matter[] = {
-    {.lambda = 1.2e11, .mu = 0.8e11}, {.lambda = 0.3e11, .mu = 0.1e11}, {.lambda = 2e11, .mu = 3e11}};
+enum { LAST = RG_MAX_MATERIALS - 1 };
+static const rg_material matter[] = {[0] = {.lambda = 1.2e11, .mu = 0.8e11},
+                                     [1] = {.lambda = 0.3e11, .mu = 0.1e11},
+                                     [LAST] = {.lambda = 2e11, .mu = 3e11}};
 
-/* One material; three, in turn among the elements, the second one rarely. */
+/* One material; three, the last of all among them, in turn among the elements, the second one rarely. */
 static const rg_interface_material materials[] = {{1, matter, 4, RG_PENALTY_ELASTIC},
                                                   {1, matter, 4, RG_PENALTY_ISOTROPIC},
-                                                  {3, matter, 4, RG_PENALTY_ELASTIC}};
+                                                  {RG_MAX_MATERIALS, matter, 4, RG_PENALTY_ELASTIC}};
 enum { MATERIALS = sizeof materials / sizeof *materials };
 
 static int material_of(const rg_interface_material *m, rg_gid e) {
-    return m->materials == 1 ? 0 : e % 19 == 3 ? 1 : e % 2 == 0 ? 2 : 0;
+    return m->materials == 1 ? 0 : e % 19 == 3 ? 1 : e % 2 == 0 ? LAST : 0;
 }
 
 /* A domain with the mesh and the part that it was built from. */
@@ -301,7 +303,11 @@ static void check_interface(const setup *s, rg_gid e, int f, rg_gid other, size_
     double out[3], normal[3], volume[2], sign = interface_link(d, e, f) & 1 ? -1 : 1;
     outward(s->mesh, e, f, out);
     double area = rg_interface_area(d, i, normal);
+    const double *x[3] = {corner(s->mesh, e, rg_face_node[f][0]), corner(s->mesh, e, rg_face_node[f][1]),
+                          corner(s->mesh, e, rg_face_node[f][2])};
     for (int c = 0; c < 3; c++) {
+        assert_true(d->igeom[rg_igeom_index(i, RG_IGEOM_EDGE + c)] == x[1][c] - x[0][c]);
+        assert_true(d->igeom[rg_igeom_index(i, RG_IGEOM_EDGE + 3 + c)] == x[2][c] - x[0][c]);
         assert_true(fabs(sign * normal[c] - out[c]) < 1e-14 * area);
     }
     assert_true(fabs(area - sqrt(out[0] * out[0] + out[1] * out[1] + out[2] * out[2])) < 1e-14 * area);
