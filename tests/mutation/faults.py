@@ -85,7 +85,8 @@ def sign(code):
 
 def factor(code):
     for m in re.finditer(LITERAL, code):
-        if float(m[0]) != 0 and not re.fullmatch(r"1e-\d\d+", m[0]):
+        small = re.fullmatch(r"1e-\d\d+", m[0]) or re.search(r"[<>]=? $", code[: m.start()]) and re.fullmatch(r"1e-\d+", m[0])
+        if float(m[0]) != 0 and not small:  # twice a tolerance is as good a one; 10,000 times it is `relaxed_bound`
             yield m.start(), m.end(), repr(2 * float(m[0]))
     for m in re.finditer(r"(?<=[\w\)\]] )[*/](?= [\w(-])", code):
         yield m.start(), m.end(), "/" if m[0] == "*" else "*"

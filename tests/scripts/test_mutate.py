@@ -22,6 +22,7 @@ def changed(kind, line, path="a.c", before=""):
     ("sign", "    a -= -b;", ["    a += -b;", "    a -= b;"]),
     ("factor", "    a = 0.5 * b;", ["    a = 1.0 * b;", "    a = 0.5 / b;"]),
     ("factor", "    a = 3 * b / c;", ["    a = 3 / b / c;", "    a = 3 * b * c;", "    a = 4 * b / c;"]),
+    ("factor", "    a = b < 1e-6 * c;", ["    a = b < 1e-6 / c;"]),
     ("off by one", "    for (int i = 0; i < n; i++) {", ["    for (int i = 1; i < n; i++) {", "    for (int i = 0; i < n - 1; i++) {"]),
     ("off by one", "    a = b[i + 1];", ["    a = b[i];"]),
     ("exchanged index", "    a = b[i][j];", ["    a = b[j][i];", "    a = b[0][j];", "    a = b[i][0];"]),
