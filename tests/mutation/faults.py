@@ -90,7 +90,7 @@ def factor(code):
             yield m.start(), m.end(), repr(2 * float(m[0]))
     for m in re.finditer(r"(?<=[\w\)\]] )[*/](?= [\w(-])", code):
         yield m.start(), m.end(), "/" if m[0] == "*" else "*"
-    for m in re.finditer(r"(?<![\w.])[2-9](?= \* )|(?<=\* )[2-9](?![\w.])", code):
+    for m in re.finditer(r"(?<![\w.])(?<!\de-)[2-9](?= \* )|(?<=\* )[2-9](?![\w.])", code):
         yield m.start(), m.end(), str(int(m[0]) + 1)
 
 
