@@ -38,7 +38,7 @@ static void exchange(void *context, int calls) {
 
 static bench_row *add_row(bench *b, const rg_solver *s, const char *name, int threads) {
     const rg_domain *d = s->domain;
-    const rg_cost_variant flags = {.gradient = s->gradient, .mass = s->input->mass};
+    const rg_cost_variant flags = {.gradient = s->model->gradient, .mass = s->input->mass};
     rg_cost_variant v = bench_mesh_state(d, s->active, s->unlinked, flags, false);
     rg_cost c = rg_cost_step(&v);
     double blocks = (double)d->blocks;

@@ -85,7 +85,7 @@ static void add_element(rg_exact_sum sum[SUMS], const rg_solver *s, double m[RG_
     load_nodes(s, slot, label->anchor, x, v);
     mass_times(m, x, mx);
     mass_times(m, v, mv);
-    element_integrals(rg_element_mass(s->domain, s->material, slot), x, v, mx, mv, out);
+    element_integrals(rg_element_mass(s->domain, s->model->material, slot), x, v, mx, mv, out);
     out[VOLUME] = volume;
     for (int k = 0; k < SUMS; k++) {
         rg_exact_add(&sum[k], out[k]);

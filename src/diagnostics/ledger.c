@@ -33,7 +33,7 @@ enum { ROW = 24 }; /* values of a row, but for the parts of the materials */
 enum { PART_KINETIC, PART_BULK, PART_DISSIPATED, PART };
 
 static size_t sums(const rg_solver *s) {
-    return PARTS + (size_t)(PART * s->materials);
+    return PARTS + (size_t)(PART * s->model->materials);
 }
 
 static void add_all(rg_exact_sum *sum, const double *x, size_t count) {
@@ -46,7 +46,8 @@ static void add_all(rg_exact_sum *sum, const double *x, size_t count) {
  * nodes. */
 static void add_momentum(rg_exact_sum *sum, const rg_solver *s, size_t slot) {
     double mv[RG_NODES][3], p[3] = {0, 0, 0}, l[3] = {0, 0, 0};
-    rg_mass_times(s->input->mass, rg_element_mass(s->domain, s->material, slot), s->step_velocity, slot, mv);
+    rg_mass_times(s->input->mass, rg_element_mass(s->domain, s->model->material, slot), s->step_velocity,
+                  slot, mv);
     for (int n = 0; n < RG_NODES; n++) {
         double x[3];
         rg_node_position(s->domain->corner + 12 * slot, n, x);
@@ -95,7 +96,7 @@ static void kinetic_energies(const rg_solver *s, const rg_tile *t, double *energ
 static void add_elements(rg_exact_sum *sum, const rg_solver *s, const rg_tile *t, const double *energy,
                          int all, int part) {
     add_all(&sum[all], energy, rg_tile_eblocks(t) * RG_LANES);
-    for (size_t b = 0; s->materials > 1 && b < rg_tile_eblocks(t); b++) {
+    for (size_t b = 0; s->model->materials > 1 && b < rg_tile_eblocks(t); b++) {
         add_all(&parts_of(sum, s, t->begin + b)[part], energy + b * RG_LANES, RG_LANES);
     }
 }
@@ -140,7 +141,7 @@ static void share_out(rg_exact_sum *sum, const rg_solver *s, size_t i, double di
 }
 
 static void add_friction(rg_exact_sum *sum, const rg_solver *s, size_t i) {
-    for (int q = 0; q < RG_POINTS && s->law.sliding == RG_SLIDING_COULOMB; q++) {
+    for (int q = 0; q < RG_POINTS && s->model->law.sliding == RG_SLIDING_COULOMB; q++) {
         if (s->broken[i] >> q & 1) {
             double heat = *rg_friction_value(s, i, q, RG_FRICTION_HEAT);
             rg_exact_add(&sum[FRICTION], heat);
@@ -241,8 +242,8 @@ static rg_energy energy_of(const rg_solver *s, const double *v) {
 /* What rounding of F makes of the energy of a body at rest (J). */
 static double rounding(const rg_solver *s, double volume) {
     double mu = 0;
-    for (int m = 0; m < s->materials; m++) {
-        mu = fmax(mu, s->material[m].mu);
+    for (int m = 0; m < s->model->materials; m++) {
+        mu = fmax(mu, s->model->material[m].mu);
     }
     return 1e3 * DBL_EPSILON * mu * volume;
 }
@@ -257,7 +258,7 @@ const rg_energy *rg_ledger_take(rg_ledger *l, rg_solver *s) {
     if (!l->begun) {
         *l = (rg_ledger){.begun = true, .start = e->total, .last = *e};
     }
-    for (int m = 0; m < s->materials; m++) {
+    for (int m = 0; m < s->model->materials; m++) {
         const double *part = v + PARTS + PART * m;
         l->material[m] = (rg_energy_part){part[PART_KINETIC], part[PART_BULK], part[PART_DISSIPATED]};
     }
@@ -318,7 +319,7 @@ void rg_energy_header(rg_csv *t, const rg_solver *s) {
           "external_work,total,error_rel,error_dissipated,broken_area,failed_area,momentum_x,momentum_y,"
           "momentum_z,angular_x,angular_y,angular_z",
           f);
-    for (int m = 0; s->materials > 1 && m < s->materials; m++) {
+    for (int m = 0; s->model->materials > 1 && m < s->model->materials; m++) {
         for (int k = 0; k < PART; k++) {
             fprintf(f, ",%s_%s", parts[k], rg_case_material_name(s->input, m));
         }
@@ -355,7 +356,7 @@ void rg_energy_row(rg_csv *t, const rg_ledger *l, const rg_solver *s) {
                                                  e->angular_momentum[1],
                                                  e->angular_momentum[2]};
     size_t values = ROW;
-    for (int m = 0; s->materials > 1 && m < s->materials; m++) {
+    for (int m = 0; s->model->materials > 1 && m < s->model->materials; m++) {
         row[values++] = l->material[m].kinetic;
         row[values++] = l->material[m].bulk;
         row[values++] = l->material[m].dissipated;

@@ -25,7 +25,7 @@ static uint64_t interface_hash(const rg_solver *s, const rg_tile *t, size_t i) {
     uint64_t h = rg_hash(2, (uint64_t)(RG_FACES * element + link % RG_FACES));
     for (int q = 0; q < RG_POINTS; q++) {
         h = rg_hash_double(h, rg_damage(s, i, q));
-        for (int k = 0; k < RG_FRICTION && s->law.sliding == RG_SLIDING_COULOMB; k++) {
+        for (int k = 0; k < RG_FRICTION && s->model->law.sliding == RG_SLIDING_COULOMB; k++) {
             h = rg_hash_double(h, *rg_friction_value(s, i, q, k));
         }
     }

@@ -23,8 +23,8 @@ static double cohesive_zone(const rg_case *c, const rg_solver *s) {
         return INFINITY;
     }
     double modulus = INFINITY; /* E/(1 - nu^2) of the softest material, in which it is shortest */
-    for (int i = 0; i < s->materials; i++) {
-        const rg_material *m = &s->material[i];
+    for (int i = 0; i < s->model->materials; i++) {
+        const rg_material *m = &s->model->material[i];
         modulus = fmin(modulus, 4 * m->mu * (m->lambda + m->mu) / (m->lambda + 2 * m->mu));
     }
     return 9 * 3.14159265358979324 / 32 * modulus * c->interface.energy /
@@ -74,7 +74,7 @@ static void print_seconds(double seconds, FILE *out) {
 
 /* Of the fields, or at most: with cracks everywhere and the buffers of field output. */
 static double bytes_per_element(const rg_solver *s, bool at_most) {
-    double crack = (double)s->domain->iblocks * (double)s->crack_stride * sizeof *s->crack;
+    double crack = (double)s->domain->iblocks * (double)s->model->crack_stride * sizeof *s->crack;
     double now = (double)rg_alloc_total(), elements = (double)s->domain->elements;
     double output = (double)rg_snapshots_bytes(s->input, s->domain->elements);
     double sum[2] = {now + (at_most ? output : -crack), elements};
@@ -151,10 +151,10 @@ void rg_estimate_warn(const rg_case *c, const rg_estimate *e) {
 }
 
 static void print_material(const rg_solver *s, const rg_estimate *e, int i, FILE *out) {
-    const rg_material *m = &s->material[i];
+    const rg_material *m = &s->model->material[i];
     double limit, speed;
     char name[160] = "";
-    if (s->materials > 1) {
+    if (s->model->materials > 1) {
         snprintf(name, sizeof name, "%s: %" PRId64 " elements, ", rg_case_material_name(s->input, i),
                  e->of_material[i]);
     }
@@ -184,7 +184,7 @@ void rg_estimate_print(const rg_solver *s, const rg_estimate *e, FILE *out) {
         fprintf(out, "partition      ");
         rg_quality_print(&s->part->quality, s->part->interfaces, out);
     }
-    for (int i = 0; i < s->materials; i++) {
+    for (int i = 0; i < s->model->materials; i++) {
         print_material(s, e, i, out);
     }
     fprintf(out,
@@ -214,12 +214,13 @@ void rg_estimate_print(const rg_solver *s, const rg_estimate *e, FILE *out) {
     if (e->seconds > 30.0 * DAY) {
         fprintf(out, "warning: it would run for months: is time.end in seconds, and the mesh in metres?\n");
     }
-    if (s->law.activation == RG_ACTIVATION_CONSERVING && c->time.safety > steady_safety(&s->law)) {
+    if (s->model->law.activation == RG_ACTIVATION_CONSERVING &&
+        c->time.safety > steady_safety(&s->model->law)) {
         fprintf(out,
                 "warning: with interface.onset %.3g no step of time.safety above %.2g follows points that "
                 "have just "
                 "switched; the energy will show it\n",
-                s->law.onset, steady_safety(&s->law));
+                s->model->law.onset, steady_safety(&s->model->law));
     }
     if (isfinite(e->cohesive_zone) && e->largest_edge > 0) {
         double ratio = e->cohesive_zone / e->largest_edge;

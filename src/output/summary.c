@@ -29,12 +29,12 @@ static void write_bodies(FILE *f, const rg_bodies *b) {
 
 static void write_materials(FILE *f, const rg_solver *s, const rg_estimate *e) {
     fputs("  \"materials\": [\n", f);
-    for (int i = 0; i < s->materials; i++) {
+    for (int i = 0; i < s->model->materials; i++) {
         fputs("  {\n", f);
         rg_json_text(f, "name", rg_case_material_name(s->input, i));
         rg_json_integer(f, "elements", e->of_material[i]);
         fprintf(f, "  \"model\": \"%s\"}%s\n", rg_material_word(rg_case_material(s->input, i)->model),
-                i + 1 < s->materials ? "," : "],");
+                i + 1 < s->model->materials ? "," : "],");
     }
 }
 

@@ -23,16 +23,16 @@
     X(broken, BYTE, FACE, 1, true, "broken")                                                                 \
     X(unlinked, BYTE, FACE, 1, true, "unlinked")                                                             \
     /* state of all broken points, and the memory of their law */                                            \
-    X(crack, REAL, SPARSE_FACE, s->crack_stride / RG_LANES, true, "crack")                                   \
+    X(crack, REAL, SPARSE_FACE, s->model->crack_stride / RG_LANES, true, "crack")                            \
     /* of the materials */                                                                                   \
-    X(history, REAL, ELEMENT, s->history_stride / RG_LANES, s->history_stride > 0, "history")                \
+    X(history, REAL, ELEMENT, s->model->history_stride / RG_LANES, s->model->history_stride > 0, "history")  \
     /* dissipated by bulk viscosity (J) */                                                                   \
     X(heat, DOUBLE, ELEMENT, 1, is_viscous(s->input), "heat")                                                \
     /* tangent over the undeformed one, at most (1): of elements, of tiles */                                \
     X(stiffening, REAL, ELEMENT, 1, true, NULL)                                                              \
     X(tile_stiffening, REAL, TILE, 1, true, NULL)                                                            \
     /* largest of a tile's points (1/s), where the law asks for steps (solver/step_limiter.h) */             \
-    X(tile_opening_rate, DOUBLE, TILE, 1, rg_law_steps(&s->law) > 0, NULL)                                   \
+    X(tile_opening_rate, DOUBLE, TILE, 1, rg_law_steps(&s->model->law) > 0, NULL)                            \
     /* element blocks beside a broken point; interface blocks with one */                                    \
     X(cracked, BYTE, BLOCK, 1, true, NULL)                                                                   \
     X(active, BYTE, FACE_BLOCK, 1, true, NULL)                                                               \

@@ -60,7 +60,7 @@ size_t rg_crack_stride(const rg_cohesive *law) {
 }
 
 void rg_law_start(rg_solver *s) {
-    if (s->law.form != RG_FORM_INTRINSIC) {
+    if (s->model->law.form != RG_FORM_INTRINSIC) {
         return;
     }
     const rg_domain *d = s->domain;

@@ -21,10 +21,18 @@ static void allocate_rows(rg_solver *s) {
     s->stepper->rows[0] = RG_NEW(rg_real, rows * RG_TRACE_ROW);
     s->stepper->rows[1] = RG_NEW(rg_real, rows * RG_TRACE_ROW);
     s->stepper->tractions = RG_NEW(rg_real, rows * RG_TILE_FACE_ROW);
+    s->stepper->material = RG_NEW(rg_material, (size_t)s->model->materials);
+    memcpy(s->stepper->material, s->model->material,
+           (size_t)s->model->materials * sizeof *s->stepper->material);
     s->work = RG_NEW(rg_workspace, (size_t)s->threads);
 }
 
-static void place_tile(rg_solver *s, const rg_tile *t) {
+static void make_workspaces(rg_solver *s) {
+#pragma omp parallel
+    s->work[omp_get_thread_num()] = rg_workspace_make(s->domain);
+}
+
+static void touch_tile(rg_solver *s, const rg_tile *t) {
     size_t rows = rg_tile_face_blocks(t) * RG_LANES;
     rg_fields_touch(s, t);
     memset(s->stepper->tractions + t->row * RG_TILE_FACE_ROW, 0, rows * sizeof(rg_real[RG_TILE_FACE_ROW]));
@@ -33,20 +41,18 @@ static void place_tile(rg_solver *s, const rg_tile *t) {
     }
 }
 
-/* First touch: the pages go to the thread that will sweep the tile, in the loops of `evaluate`; the
- * workspaces to their threads. */
-static void place_fields(rg_solver *s) {
+/* In the loops of `evaluate`. */
+void rg_solver_touch(rg_solver *s) {
     const rg_domain *d = s->domain;
 #pragma omp parallel
     {
-        s->work[omp_get_thread_num()] = rg_workspace_make(d);
 #pragma omp for schedule(static)
         for (size_t t = 0; t < d->boundary_tiles; t++) {
-            place_tile(s, &d->tile[t]);
+            touch_tile(s, &d->tile[t]);
         }
 #pragma omp for schedule(static)
         for (size_t t = d->boundary_tiles; t < d->tiles; t++) {
-            place_tile(s, &d->tile[t]);
+            touch_tile(s, &d->tile[t]);
         }
     }
 }
@@ -66,55 +72,73 @@ static void build_domain(rg_solver *s, const rg_interface_material *m) {
     s->domain = rg_domain_build(s->part, joined, s->rank, m);
     if (joined != NULL) {
         s->conforming_faces = rg_conforming_faces_make(s->domain, s->part, joined, s->rank);
-        s->assembly = rg_assembly_make(s->domain, s->conforming_faces, s->material, s->comm);
+        s->assembly = rg_assembly_make(s->domain, s->conforming_faces, s->model->material, s->comm);
     }
     rg_free(joined);
     rg_free(s->part->element);
     s->part->element = NULL;
 }
 
-/* Without faces form continuous has no jumps to lift. */
-static rg_gradient gradient_of(const rg_case *c) {
-    bool lifts = c->interface.form == RG_FORM_VARIATIONAL || c->interface.faces != NULL;
-    return lifts ? RG_GRADIENT_LIFTED : RG_GRADIENT_OWN;
+/* Fields at rest, which nobody has touched yet, and what they are stepped with. */
+static void allocate(rg_solver *s) {
+    rg_fields_allocate(s);
+    allocate_rows(s);
+    make_workspaces(s);
+    for (int k = 0; k < 2; k++) {
+        s->stepper->halo_u[k] = rg_halo_make(s->domain, RG_TRACE_ROW, s->stepper->rows[k], 1 + k, s->comm);
+    }
+    s->stepper->halo_t = rg_halo_make(s->domain, RG_TILE_FACE_ROW, s->stepper->tractions, 3, s->comm);
 }
 
-rg_solver *rg_solver_make_from_part(const rg_case *input, rg_part *part, MPI_Comm comm) {
+static rg_solver *make(const rg_case *input, rg_part *part, MPI_Comm comm) {
+    rg_model *model = rg_model_make(input);
     rg_solver *s = RG_NEW(rg_solver, 1);
     *s = (rg_solver){.input = input,
+                     .model = model,
                      .comm = comm,
                      .threads = omp_get_max_threads(),
                      .part = part,
-                     .limiting = -1,
-                     .stiffest = 1,
-                     .materials = 1 + input->others,
-                     .material = rg_materials_of_case(input),
-                     .law = rg_law_make(input),
-                     .gradient = gradient_of(input)};
+                     .limiting = -1};
     MPI_Comm_rank(comm, &s->rank);
     MPI_Comm_size(comm, &s->ranks);
     select_kernels(s);
-    for (int m = 0; m < s->materials; m++) {
-        size_t block = rg_history_block(rg_material_history(s->material[m].model));
-        s->history_stride = block > s->history_stride ? block : s->history_stride;
-    }
-    rg_interface_material m = {s->materials, s->material, input->interface.beta_s, input->interface.penalty};
+    rg_interface_material m = {model->materials, model->material, input->interface.beta_s,
+                               input->interface.penalty};
     build_domain(s, &m);
-    s->constraints = rg_constraints_make(input, s->domain, s->part, s->material, s->assembly);
-    s->bodies = rg_bodies_make(input, s->domain, s->part, s->material, s->threads, comm);
-    s->crack_stride = rg_crack_stride(&s->law);
-    rg_fields_allocate(s);
-    allocate_rows(s);
-    place_fields(s);
-    rg_law_start(s);
     if (part->original == NULL) { /* a patch has no need of them */
-        rg_strength_make(s);
+        rg_strength_make(s, model);
     }
-    for (int k = 0; k < 2; k++) {
-        s->stepper->halo_u[k] = rg_halo_make(s->domain, RG_TRACE_ROW, s->stepper->rows[k], 1 + k, comm);
-    }
-    s->stepper->halo_t = rg_halo_make(s->domain, RG_TILE_FACE_ROW, s->stepper->tractions, 3, comm);
+    s->constraints = rg_constraints_make(input, s->domain, s->part, model->material, s->assembly);
+    s->bodies = rg_bodies_make(input, s->domain, s->part, model->material, s->threads, comm);
+    allocate(s);
+    rg_law_start(s);
     return s;
+}
+
+rg_solver *rg_solver_make_from_part(const rg_case *input, rg_part *part, MPI_Comm comm) {
+    rg_solver *s = make(input, part, comm);
+    rg_solver_touch(s);
+    return s;
+}
+
+rg_solver *rg_solver_beside(const rg_solver *s, const rg_model *model) {
+    rg_solver *b = RG_NEW(rg_solver, 1);
+    *b = (rg_solver){.input = s->input,
+                     .model = model,
+                     .comm = s->comm,
+                     .rank = s->rank,
+                     .ranks = s->ranks,
+                     .threads = s->threads,
+                     .kernels = s->kernels,
+                     .part = s->part,
+                     .domain = s->domain,
+                     .conforming_faces = s->conforming_faces,
+                     .assembly = s->assembly,
+                     .beside = true,
+                     .limiting = -1};
+    allocate(b);
+    rg_solver_touch(b);
+    return b;
 }
 
 rg_solver *rg_solver_make(const rg_case *input, MPI_Comm comm) {
@@ -123,36 +147,44 @@ rg_solver *rg_solver_make(const rg_case *input, MPI_Comm comm) {
     rg_material *material = rg_materials_of_case(input);
     rg_part *patch = shared ? NULL : rg_patch_gather(part, material, comm);
     rg_free(material);
-    rg_solver *s = rg_solver_make_from_part(input, part, comm);
+    rg_solver *s = make(input, part, comm);
     s->patch = patch;
+    if (!shared) {
+        rg_solver_touch(s);
+    }
     return s;
+}
+
+static void free_stepper(rg_solver *s) {
+    rg_stepper *m = s->stepper;
+    rg_halo_free(m->halo_u[0]);
+    rg_halo_free(m->halo_u[1]);
+    rg_halo_free(m->halo_t);
+    for (int t = 0; t < s->threads; t++) {
+        rg_workspace_free(&s->work[t]);
+    }
+    void *blocks[] = {m->rows[0], m->rows[1], m->tractions, m->material, m, s->work};
+    for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) {
+        rg_free(blocks[i]);
+    }
 }
 
 void rg_solver_free(rg_solver *s) {
     if (s == NULL) {
         return;
     }
-    for (int t = 0; t < s->threads; t++) {
-        rg_workspace_free(&s->work[t]);
-    }
     rg_fields_free(s);
-    rg_stepper *m = s->stepper;
-    void *blocks[] = {m->rows[0], m->rows[1], m->tractions, m, s->work};
-    rg_free(s->material);
-    rg_free(s->scale);
+    free_stepper(s);
     rg_free(s->tile_seconds);
-    rg_constraints_free(s->constraints);
-    rg_bodies_free(s->bodies);
-    rg_halo_free(m->halo_u[0]);
-    rg_halo_free(m->halo_u[1]);
-    rg_halo_free(m->halo_t);
-    rg_assembly_free(s->assembly);
-    rg_conforming_faces_free(s->conforming_faces);
-    for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) {
-        rg_free(blocks[i]);
+    if (!s->beside) {
+        rg_constraints_free(s->constraints);
+        rg_bodies_free(s->bodies);
+        rg_assembly_free(s->assembly);
+        rg_conforming_faces_free((rg_conforming_faces *)s->conforming_faces);
+        rg_domain_free((rg_domain *)s->domain);
+        rg_part_free(s->part);
+        rg_part_free(s->patch);
+        rg_model_free((rg_model *)s->model);
     }
-    rg_domain_free(s->domain);
-    rg_part_free(s->part);
-    rg_part_free(s->patch);
     rg_free(s);
 }

@@ -22,6 +22,7 @@
 #include "solver/body.h"
 #include "solver/constraint.h"
 #include "solver/field_list.h"
+#include "solver/model.h"
 #include "solver/phases.h"
 
 /* What one thread needs to work on a tile. */
@@ -37,28 +38,24 @@ typedef struct rg_stepper rg_stepper;
 typedef void rg_watcher(void *context, rg_solver *s, size_t tile, const rg_workspace *work);
 
 struct rg_solver {
-    /* ---- the model: const once it is set up (solver/setup.c), but for what the spectrum finds ---- */
+    /* ---- what is solved, and where: set up once (solver/setup.c) ---- */
     const rg_case *input;
+    const rg_model *model;
     MPI_Comm comm;
     int rank, ranks, threads;
     const rg_kernels *kernels;
     rg_part *part;  /* sets and totals; its element list is gone once the domain stands */
     rg_part *patch; /* rank 0, until rg_spectrum: the elements that limit the time step (partition/patch.h);
                        not in form continuous */
-    rg_domain *domain;
-    rg_conforming_faces *conforming_faces; /* of form continuous; NULL in others */
-    rg_assembly *assembly;                 /* likewise */
-    int materials;
-    rg_material *material; /* [materials] */
-    rg_cohesive law;
-    rg_real *scale;  /* layout as in rg_interface_args; NULL: all faces alike */
-    double stiffest; /* largest ratio of strength to critical opening, over that of the law; 1: all alike */
-    rg_gradient gradient;
-    size_t crack_stride,
-        history_stride; /* values of a block of crack and history: as many as the longest needs */
-    double damping;     /* by viscosity.linear 1, of the stiffest mode */
-    double omega2;      /* largest squared frequency, faces intact or closed, bodies in contact (1/s^2) */
-    rg_gid limiting;    /* element that sets it */
+    const rg_domain *domain;
+    const rg_conforming_faces *conforming_faces; /* of form continuous; NULL in others */
+    rg_assembly *assembly;                       /* likewise */
+    bool beside;                                 /* all of this is another solver's (rg_solver_beside) */
+
+    /* ---- the critical step, once rg_spectrum has found it ---- */
+    double damping;  /* by viscosity.linear 1, of the stiffest mode */
+    double omega2;   /* largest squared frequency, faces intact or closed, bodies in contact (1/s^2) */
+    rg_gid limiting; /* element that sets it */
     const char *limiting_state;
 
     /* ---- the state: with the fields, what a checkpoint holds (solver/fields.c) ---- */

@@ -278,31 +278,39 @@ static rg_gid limiting_element(const linear_operator *op, const lanczos *known, 
 typedef enum { INTACT, CLOSED, COHESIVE, STATES } state;
 static const char *const state_name[] = {"intact", "broken and closed", "cohesive and closed"};
 
-/* Puts the faces into a state, or (INTACT) back as they were in the DG forms. `sliding` is the stiffness of
- * sliding of the intrinsic form; `shared` is one block of crack state for all. */
-static void set_state(rg_solver *s, state which, double sliding, rg_real *shared) {
+/* The linear model of a state of the faces: all materials neo-Hookean of the same elastic constants, linear
+ * at rest; faces alike, as the stiffest ones. One block of crack state serves all. */
+static rg_model linear_model(const rg_model *of, double stiffest, state which, rg_material *material) {
+    rg_model m = *of;
+    double slope[2];
+    rg_law_stiffness(&of->law, slope);
+    for (int i = 0; i < m.materials; i++) {
+        material[i] = of->material[i];
+        material[i].model = RG_MATERIAL_NEO_HOOKEAN;
+    }
+    m.material = material;
+    m.scale = NULL;
+    m.history_stride = m.crack_stride = 0;
+    m.law.slope *= stiffest;
+    m.law.opening = 1;
+    m.law.strength = 1e300;            /* never reached */
+    m.law.contact = RG_CONTACT_LINEAR; /* that of a potential too where nothing has slid */
+    m.law.sliding = m.law.sliding == RG_SLIDING_FREE ? RG_SLIDING_FREE : RG_SLIDING_STUCK;
+    m.law.law = RG_LAW_LINEAR; /* failed, so contact alone acts; and without memory */
+    if (which == COHESIVE) { /* contact, no softer than the law, both ways; the law's own slope in sliding */
+        m.law.law = RG_LAW_FREE;
+        memcpy(m.law.shape, (double[RG_LAW_SHAPE]){0, slope[1] * stiffest}, sizeof m.law.shape);
+    }
+    return m;
+}
+
+/* Puts the faces into a state. */
+static void set_faces(rg_solver *s, state which) {
     const rg_domain *d = s->domain;
     memset(s->broken, which != INTACT ? (1 << RG_POINTS) - 1 : 0, d->iblocks * RG_LANES);
     memset(s->unlinked, which != INTACT ? (1 << RG_POINTS) - 1 : 0, d->iblocks * RG_LANES);
     memset(s->active, which != INTACT, d->iblocks);
     memset(s->cracked, which != INTACT, d->blocks);
-    for (size_t q = 0; q < RG_POINTS; q++) {
-        for (size_t l = 0; l < RG_LANES; l++) {
-            shared[(q * RG_CRACK + RG_CRACK_OPENING) * RG_LANES + l] = 2;
-        }
-    }
-    s->crack = shared;
-    s->crack_stride = 0;
-    s->law.opening = 1;
-    s->law.strength = 1e300;            /* never reached */
-    s->law.contact = RG_CONTACT_LINEAR; /* that of a potential too where nothing has slid */
-    s->law.sliding = s->law.sliding == RG_SLIDING_FREE ? RG_SLIDING_FREE : RG_SLIDING_STUCK;
-    s->law.law =
-        RG_LAW_LINEAR; /* failed, so contact alone acts; and without memory, which `shared` has no room for */
-    if (which == COHESIVE) { /* contact, no softer than the law, both ways; the law's own slope in sliding */
-        s->law.law = RG_LAW_FREE;
-        memcpy(s->law.shape, (double[RG_LAW_SHAPE]){0, sliding}, sizeof s->law.shape);
-    }
 }
 
 /* Smallest height of the elements of each material. */
@@ -331,8 +339,8 @@ static linear_operator make_operator(rg_solver *s) {
     linear_operator op = {.s = s};
     double h[RG_MAX_MATERIALS], shortest = INFINITY;
     smallest_heights(s, h);
-    for (int i = 0; i < s->materials; i++) {
-        const rg_material *m = &s->material[i];
+    for (int i = 0; i < s->model->materials; i++) {
+        const rg_material *m = &s->model->material[i];
         double time = h[i] / rg_material_dilatational(m);
         if (time < shortest) {
             shortest = time;
@@ -344,104 +352,108 @@ static linear_operator make_operator(rg_solver *s) {
     return op;
 }
 
-/* All materials become neo-Hookean of the same elastic constants, linear at rest: fills `model` with what
- * they were. Or (`back`) they become that again. */
-static void linearize(rg_solver *s, rg_material_model model[RG_MAX_MATERIALS], bool back) {
-    for (int m = 0; m < s->materials; m++) {
-        rg_material_model now = s->material[m].model;
-        s->material[m].model = back ? model[m] : RG_MATERIAL_NEO_HOOKEAN;
-        model[m] = now;
+/* A linear solver beside another one, with one block of crack state for all faces: failed ones. */
+static rg_solver *linear_solver(const rg_solver *s, const rg_model *model) {
+    rg_solver *l = rg_solver_beside(s, model);
+    rg_free(l->crack);
+    l->crack = RG_NEW(rg_real, RG_CRACK_BLOCK);
+    for (size_t q = 0; q < RG_POINTS; q++) {
+        for (size_t lane = 0; lane < RG_LANES; lane++) {
+            l->crack[(q * RG_CRACK + RG_CRACK_OPENING) * RG_LANES + lane] = 2;
+        }
     }
+    return l;
 }
 
-static void rest(rg_solver *s) {
-    memset(s->velocity, 0, values(s) * sizeof *s->u);
-    memset(s->step_velocity, 0, values(s) * sizeof *s->u);
-    memset(s->u, 0, values(s) * sizeof *s->u);
-}
+/* What is found: members of rg_solver. */
+typedef struct {
+    double omega2, damping;
+    rg_gid limiting;
+    state state;
+} limit;
 
-void rg_spectrum_whole(rg_solver *s) {
-    rg_cohesive law = s->law;
-    rg_real *crack = s->crack;
-    rg_material_model model[RG_MAX_MATERIALS];
-    linearize(s, model, false);
-    linear_operator op = make_operator(s);
-    rg_real *shared = RG_NEW(rg_real, RG_CRACK_BLOCK);
-    double worst = 0;
+/* Of the whole mesh of a solver, with faces that are `stiffest` times as stiff as the law. */
+static limit find(const rg_solver *s, double stiffest) {
+    bool intrinsic = s->model->law.form == RG_FORM_INTRINSIC;
     bool closes = s->input->interface.law != RG_LAW_NONE && s->input->interface.contact != RG_CONTACT_FLUX;
-    bool intrinsic = law.form == RG_FORM_INTRINSIC;
     state first = intrinsic ? COHESIVE : INTACT, last = intrinsic ? COHESIVE : closes ? CLOSED : INTACT;
+    rg_material material[RG_MAX_MATERIALS];
+    rg_model model[STATES];
+    for (state which = INTACT; which < STATES; which++) {
+        model[which] = linear_model(s->model, stiffest, which, material);
+    }
+    rg_solver *l = linear_solver(s, &model[first]);
+    linear_operator op = make_operator(l);
     lanczos run[STATES] = {{0}};
-    state limiting = first;
-    double slope[2];
-    rg_law_stiffness(&law, slope);
-    rg_real *scale = s->scale;
-    s->scale = NULL;
-    s->law.slope *= s->stiffest;
+    double worst = 0;
+    limit found = {.state = first};
     for (state which = first; which <= last; which++) {
-        set_state(s, which, slope[1] * s->stiffest, shared);
+        l->model = &model[which];
+        set_faces(l, which);
         bool symmetric = s->input->interface.form != RG_FORM_INCOMPLETE || which != INTACT;
         double theta = symmetric ? lanczos_eigenvalue(&op, &run[which]) : power_eigenvalue(&op);
         if (theta > worst) {
             worst = theta;
-            limiting = which;
+            found.state = which;
         }
     }
-    s->omega2 = worst * op.scale * (1 + MARGIN);
-    s->damping = 0.5 * sqrt(s->omega2) * op.height / rg_material_dilatational(op.material);
-    s->limiting_state = state_name[limiting];
-    set_state(s, limiting, slope[1] * s->stiffest, shared);
-    s->limiting = limiting_element(&op, &run[limiting], worst);
-    set_state(s, INTACT, 0, shared);
-    s->law = law;
-    s->scale = scale;
-    s->crack = crack;
-    linearize(s, model, true);
-    s->crack_stride = rg_crack_stride(&law);
-    rg_law_start(s);
-    rest(s);
-    rg_free(shared);
+    found.omega2 = worst * op.scale * (1 + MARGIN);
+    found.damping = 0.5 * sqrt(found.omega2) * op.height / rg_material_dilatational(op.material);
+    l->model = &model[found.state];
+    set_faces(l, found.state);
+    found.limiting = limiting_element(&op, &run[found.state], worst);
+    rg_solver_free(l);
+    return found;
+}
+
+static void keep(rg_solver *s, const limit *found) {
+    s->omega2 = found->omega2;
+    s->damping = found->damping;
+    s->limiting = found->limiting;
+    s->limiting_state = state_name[found->state];
+}
+
+void rg_spectrum_whole(rg_solver *s) {
+    limit found = find(s, s->model->stiffest);
+    keep(s, &found);
 }
 
 /* ---- On the patch ---- */
 
 /* Rank 0 finds the spectrum of the patch on its own: the patch is too small to share among ranks. */
-static void patch_spectrum(rg_solver *s) {
+static limit find_on_patch(rg_solver *s) {
     rg_case input = *s->input;
     input.boundaries = 0; /* their sets are not on the patch, and the operator is that of a free body */
     input.bodies = 0;     /* what they add to it is known */
     rg_solver *local = rg_solver_make_from_part(&input, s->patch, MPI_COMM_SELF);
     s->patch = NULL;
-    local->stiffest = s->stiffest;
-    rg_spectrum_whole(local);
-    s->omega2 = local->omega2;
-    s->damping = local->damping;
-    s->limiting = local->part->original[local->limiting];
-    s->limiting_state = local->limiting_state;
+    limit found = find(local, s->model->stiffest);
+    found.limiting = local->part->original[found.limiting];
     rg_solver_free(local);
+    return found;
 }
 
 /* What rank 0 found there, to all. */
-static void share(rg_solver *s) {
-    int which = INTACT;
-    while (s->rank == 0 && s->limiting_state != state_name[which]) {
-        which++;
-    }
-    MPI_Bcast(&s->omega2, 1, MPI_DOUBLE, 0, s->comm);
-    MPI_Bcast(&s->damping, 1, MPI_DOUBLE, 0, s->comm);
-    MPI_Bcast(&s->limiting, 1, MPI_INT64_T, 0, s->comm);
-    MPI_Bcast(&which, 1, MPI_INT, 0, s->comm);
-    s->limiting_state = state_name[which];
+static void share(limit *found, MPI_Comm comm) {
+    int which = (int)found->state;
+    MPI_Bcast(&found->omega2, 1, MPI_DOUBLE, 0, comm);
+    MPI_Bcast(&found->damping, 1, MPI_DOUBLE, 0, comm);
+    MPI_Bcast(&found->limiting, 1, MPI_INT64_T, 0, comm);
+    MPI_Bcast(&which, 1, MPI_INT, 0, comm);
+    found->state = (state)which;
 }
 
 void rg_spectrum(rg_solver *s) {
     if (s->assembly != NULL) {
         rg_spectrum_whole(s);
+        rg_solver_touch(s);
     } else {
+        limit found = {0};
         if (s->rank == 0) {
-            patch_spectrum(s);
+            found = find_on_patch(s);
         }
-        share(s);
+        share(&found, s->comm);
+        keep(s, &found);
     }
     s->omega2 += s->bodies->omega2;
 }

@@ -7,7 +7,7 @@
 /* Stiffening up to this costs no time step: the margin and any sensible safety cover it. */
 #define RG_STIFFENING_FREE 1.05
 
-/* Fills omega2, limiting and limiting_state of a solver at rest, and leaves its fields at rest.
+/* Fills omega2, damping, limiting and limiting_state of a solver at rest.
  * Rank 0 applies rg_spectrum_whole to the patch alone: the vector of the largest frequency
  * decays within a few elements, so that a patch around the worst elements has it too. The patch's frequency
  * is a lower bound of the whole mesh's, below it by less than the margin (figures in solver/spectrum.c). In

@@ -24,6 +24,7 @@ typedef struct {
     bool observe;   /* `step_velocity` is wanted everywhere */
     bool constrain; /* prescribed motions and bodies act */
     bool advance;   /* the history of the material goes on by the step that led here: once for each state */
+    bool hold;      /* no face breaks */
     bool apart;     /* velocity is that of elements that do not know yet that they share nodes */
 } impulse;
 
@@ -49,7 +50,7 @@ static void kick(rg_solver *s, size_t tile, const rg_workspace *w, const impulse
     rg_real *now = now_of(s, tile, p);
     rg_kick_args args = {.mass = s->input->mass,
                          .sweep = sweep,
-                         .contact = s->law.contact,
+                         .contact = s->model->law.contact,
                          .dt = p->dt,
                          .geom = s->domain->geom + t->begin * RG_GEOM_BLOCK,
                          .force = w->force,
@@ -99,13 +100,20 @@ static void dampen(rg_solver *s, const rg_tile *t, const rg_bulk_args *bulk, siz
     s->kernels->viscosity(&args, begin, end);
 }
 
+static rg_interface_args interfaces_of(const rg_solver *s, const rg_tile *t, const rg_workspace *w,
+                                       const impulse *p) {
+    rg_interface_args args = rg_tile_interfaces(s, t, w);
+    args.law.strength = p->hold ? INFINITY : args.law.strength;
+    return args;
+}
+
 /* Elements and the interfaces inside: what they compute stays in the cache. */
 static void inside(rg_solver *s, size_t tile, const rg_workspace *w, const impulse *p) {
     const rg_tile *t = &s->domain->tile[tile];
     size_t blocks = rg_tile_eblocks(t);
     rg_bulk_args bulk = rg_tile_bulk(s, t, w, 0);
     bulk.advance = p->advance;
-    rg_interface_args interface = rg_tile_interfaces(s, t, w);
+    rg_interface_args interface = interfaces_of(s, t, w, p);
     rg_trace_args traces = rg_tile_traces(s, t, w, false);
     if (p->apart) {
         memset(p->velocity + t->begin * RG_NODE_BLOCK, 0, blocks * RG_NODE_BLOCK * sizeof *p->velocity);
@@ -113,7 +121,7 @@ static void inside(rg_solver *s, size_t tile, const rg_workspace *w, const impul
     s->kernels->receive(&traces, 0, rg_tile_face_blocks(t));
     for (size_t begin = 0, end; begin < blocks; begin = end) {
         end = rg_run_end(s->domain, t, begin);
-        bulk.material = *rg_block_material(s, t, begin);
+        bulk.material = *rg_block_ready(s, t, begin);
         s->kernels->bulk(&bulk, begin, end);
         if (s->heat != NULL && p->constrain) {
             dampen(s, t, &bulk, begin, end);
@@ -155,7 +163,7 @@ static void settle(rg_solver *s, size_t tile, const rg_workspace *w, const impul
 /* Tile-boundary faces, once the tractions of all tiles are known. */
 static void across(rg_solver *s, size_t tile, const rg_workspace *w, const impulse *p) {
     const rg_tile *t = &s->domain->tile[tile];
-    rg_interface_args interface = rg_tile_interfaces(s, t, w);
+    rg_interface_args interface = interfaces_of(s, t, w, p);
     rg_tile_receive(s, t, w);
     s->kernels->interface(&interface, rg_tile_inner_blocks(t), rg_tile_iblocks(t));
     mark_cracked(s, t, t->sbegin, t->iend);
@@ -397,12 +405,11 @@ static void set_initial(rg_solver *s) {
 
 /* The stiffening of the initial state, with faces that cannot break yet. */
 static void measure(rg_solver *s) {
-    rg_cohesive law = s->law;
-    s->law.strength = law.form == RG_FORM_INTRINSIC ? law.strength : INFINITY;
+    bool hold = s->model->law.form != RG_FORM_INTRINSIC;
     double begin = MPI_Wtime();
-    rg_solver_impulse(s, s->step_velocity, 0);
+    publish(s);
+    evaluate(s, &(impulse){.velocity = s->step_velocity, .dt = 0, .hold = hold});
     s->pass_seconds = MPI_Wtime() - begin;
-    s->law = law;
 }
 
 void rg_solver_start(rg_solver *s) {
@@ -427,8 +434,8 @@ void rg_solver_resume(rg_solver *s) {
 /* What a kick with a step `dt` ahead of it does. */
 static impulse prepare(rg_solver *s, double dt) {
     s->dt_next = dt;
-    for (int m = 0; s->dt > 0 && m < s->materials; m++) {
-        rg_material_prepare(&s->material[m], s->dt);
+    for (int m = 0; s->dt > 0 && m < s->model->materials; m++) {
+        rg_material_prepare(&s->stepper->material[m], s->dt);
     }
     rg_constraints_set(s->constraints, s->time, dt, s->step > 0);
     return (impulse){

@@ -6,7 +6,7 @@
 
 double rg_tile_opening_rate(const rg_solver *s, const rg_tile *t) {
     rg_real most = 0;
-    size_t values = s->crack_stride / RG_LANES, memory = RG_POINTS * RG_CRACK;
+    size_t values = s->model->crack_stride / RG_LANES, memory = RG_POINTS * RG_CRACK;
     for (size_t b = t->ibegin; b < t->iend; b++) {
         const rg_real *rows = s->crack + b * values * RG_LANES;
         for (size_t q = 0; q < RG_POINTS; q++) {
@@ -30,7 +30,7 @@ void rg_step_limiter_agree(rg_solver *s) {
 
 /* max(xi N) for a step dt. */
 static double wanted(const rg_solver *s, double dt) {
-    return dt * s->opening_rate * rg_law_steps(&s->law);
+    return dt * s->opening_rate * rg_law_steps(&s->model->law);
 }
 
 double rg_limited_step(const rg_solver *s, double dt) {

@@ -6,6 +6,7 @@
 #include "solver/solver.h"
 
 struct rg_stepper {
+    rg_material *material;          /* [materials], readied for the step that led here */
     rg_real *rows[2], *tractions;   /* trace rows, of the current state and of the next; traction rows */
     int current;                    /* which of `rows` */
     rg_halo *halo_u[2], *halo_t;    /* of `rows` and `tractions` */

@@ -76,7 +76,7 @@ static bool has(search *f, int number, size_t i, const double middle[3], const d
 static void apply_sets(search *look, size_t face, const double *x[RG_FCORNERS], const double normal[3],
                        factors *f) {
     const rg_case *c = look->s->input;
-    const rg_cohesive *law = &look->s->law;
+    const rg_cohesive *law = &look->s->model->law;
     double middle[3];
     for (int k = 0; k < 3; k++) {
         middle[k] = (x[0][k] + x[1][k] + x[2][k]) / 3;
@@ -119,26 +119,26 @@ static factors factors_of(search *look, const rg_tile *t, size_t i) {
     return f;
 }
 
-void rg_strength_make(rg_solver *s) {
+void rg_strength_make(const rg_solver *s, rg_model *m) {
     const rg_case *c = s->input;
     const rg_domain *d = s->domain;
-    s->stiffest = 1;
     if (c->interface.law == RG_LAW_NONE || (c->interface.sets == 0 && !(c->interface.weibull.modulus > 0))) {
         return;
     }
     double stiffest = 0;
     search look = {.s = s,
-                   .work = rg_law_facts_of(s->law.law, s->law.shape, s->law.beta).work,
+                   .work = rg_law_facts_of(m->law.law, m->law.shape, m->law.beta).work,
                    .between = rg_alloc((size_t)c->interface.sets + 1, sizeof *look.between),
                    .bad = {.which = RG_NOWHERE}};
     const rg_first_bad *bad = &look.bad;
     find_materials(&look);
-    s->scale = RG_NEW(rg_real, d->iblocks * 2 * RG_LANES);
+    rg_real *scale = RG_NEW(rg_real, d->iblocks * 2 * RG_LANES);
+    m->scale = scale;
     for (size_t t = 0; t < d->tiles; t++) { /* expressions are not for threads */
         for (size_t i = d->tile[t].ibegin * RG_LANES; i < d->tile[t].iend * RG_LANES; i++) {
             factors f = factors_of(&look, &d->tile[t], i);
-            s->scale[i / RG_LANES * 2 * RG_LANES + i % RG_LANES] = (rg_real)f.strength;
-            s->scale[(i / RG_LANES * 2 + 1) * RG_LANES + i % RG_LANES] = (rg_real)f.opening;
+            scale[i / RG_LANES * 2 * RG_LANES + i % RG_LANES] = (rg_real)f.strength;
+            scale[(i / RG_LANES * 2 + 1) * RG_LANES + i % RG_LANES] = (rg_real)f.opening;
             stiffest = fmax(stiffest, f.strength / f.opening);
         }
     }
@@ -149,5 +149,5 @@ void rg_strength_make(rg_solver *s) {
                  (int)bad->which, rg_expr_text(c->interface.set[bad->which].where), bad->x[0], bad->x[1],
                  bad->x[2]);
     }
-    MPI_Allreduce(&stiffest, &s->stiffest, 1, MPI_DOUBLE, MPI_MAX, s->comm);
+    MPI_Allreduce(&stiffest, &m->stiffest, 1, MPI_DOUBLE, MPI_MAX, s->comm);
 }

@@ -5,9 +5,9 @@
 
 #include "solver/solver.h"
 
-/* Fills s->scale (NULL where all faces are alike) and s->stiffest. A face's random number comes from the seed
- * and the positions of its corners alone: it is the same on any partition and with any numbering. Ends the
- * run if an expression is not finite. Collective. */
-void rg_strength_make(rg_solver *s);
+/* Fills scale (NULL where all faces are alike) and stiffest of a model, of a solver whose domain is known. A
+ * face's random number comes from the seed and the positions of its corners alone: it is the same on any
+ * partition and with any numbering. Ends the run if an expression is not finite. Collective. */
+void rg_strength_make(const rg_solver *s, rg_model *m);
 
 #endif

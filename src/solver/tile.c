@@ -20,13 +20,17 @@ rg_trace_args rg_tile_traces(const rg_solver *s, const rg_tile *t, const rg_work
 }
 
 static rg_real *history_of(const rg_solver *s, const rg_tile *t) {
-    return s->history == NULL ? NULL : s->history + t->begin * s->history_stride;
+    return s->history == NULL ? NULL : s->history + t->begin * s->model->history_stride;
+}
+
+const rg_material *rg_block_ready(const rg_solver *s, const rg_tile *t, size_t block) {
+    return &s->stepper->material[s->domain->material[t->begin + block]];
 }
 
 rg_bulk_args rg_tile_bulk(const rg_solver *s, const rg_tile *t, const rg_workspace *w, size_t block) {
     const rg_domain *d = s->domain;
-    return (rg_bulk_args){.material = *rg_block_material(s, t, block),
-                          .gradient = s->gradient,
+    return (rg_bulk_args){.material = *rg_block_ready(s, t, block),
+                          .gradient = s->model->gradient,
                           .u = s->u + t->begin * RG_NODE_BLOCK,
                           .ghost = w->ghost,
                           .geom = d->geom + t->begin * RG_GEOM_BLOCK,
@@ -35,7 +39,7 @@ rg_bulk_args rg_tile_bulk(const rg_solver *s, const rg_tile *t, const rg_workspa
                           .cracked = s->cracked + t->begin,
                           .unlinked = s->unlinked + t->ibegin * RG_LANES,
                           .history = history_of(s, t),
-                          .history_stride = s->history_stride,
+                          .history_stride = s->model->history_stride,
                           .force = w->force,
                           .traction = w->traction,
                           .stiffening = s->stiffening + t->begin * RG_LANES};
@@ -47,7 +51,7 @@ void rg_tile_state(const rg_solver *s, const rg_tile *t, const rg_workspace *w, 
     rg_bulk_args bulk = rg_tile_bulk(s, t, w, 0);
     for (size_t begin = 0, end; begin < rg_tile_eblocks(t); begin = end) {
         end = rg_run_end(s->domain, t, begin);
-        bulk.material = *rg_block_material(s, t, begin);
+        bulk.material = *rg_block_ready(s, t, begin);
         rg_bulk_state_args args = {.bulk = &bulk,
                                    .energy = energy == NULL ? NULL : energy + begin * RG_LANES,
                                    .cauchy = cauchy == NULL ? NULL : cauchy + begin * points * 6,
@@ -63,7 +67,7 @@ void rg_tile_state(const rg_solver *s, const rg_tile *t, const rg_workspace *w, 
 rg_interface_args rg_tile_interfaces(const rg_solver *s, const rg_tile *t, const rg_workspace *w) {
     const rg_domain *d = s->domain;
     size_t first = t->ibegin * RG_LANES;
-    return (rg_interface_args){.law = s->law,
+    return (rg_interface_args){.law = s->model->law,
                                .time = s->time,
                                .step = s->dt,
                                .u = s->u + t->begin * RG_NODE_BLOCK,
@@ -74,24 +78,26 @@ rg_interface_args rg_tile_interfaces(const rg_solver *s, const rg_tile *t, const
                                .tractions = s->stepper->tractions,
                                .side = {d->side[0] + first, d->side[1] + first},
                                .geom = d->igeom + t->ibegin * RG_IGEOM_BLOCK,
-                               .scale = s->scale == NULL ? NULL : s->scale + t->ibegin * 2 * RG_LANES,
+                               .scale = s->model->scale == NULL ? NULL
+                                                                : s->model->scale + t->ibegin * 2 * RG_LANES,
                                .broken = s->broken + first,
                                .unlinked = s->unlinked + first,
                                .active = s->active + t->ibegin,
-                               .crack = s->crack + t->ibegin * s->crack_stride,
-                               .crack_stride = s->crack_stride,
+                               .crack = s->crack + t->ibegin * s->model->crack_stride,
+                               .crack_stride = s->model->crack_stride,
                                .force = w->iforce,
                                .turn = w->turn};
 }
 
 double rg_separation(const rg_solver *s, size_t i) {
-    const rg_real *scale = s->scale == NULL ? NULL : s->scale + (i / RG_LANES * 2 + 1) * RG_LANES;
-    return s->law.separation * (scale == NULL ? 1 : scale[i % RG_LANES]);
+    const rg_real *scale =
+        s->model->scale == NULL ? NULL : s->model->scale + (i / RG_LANES * 2 + 1) * RG_LANES;
+    return s->model->law.separation * (scale == NULL ? 1 : scale[i % RG_LANES]);
 }
 
 bool rg_point_is_broken(const rg_solver *s, size_t i, int q) {
     bool cohesive = s->broken[i] >> q & 1;
-    return cohesive && (s->law.form != RG_FORM_INTRINSIC ||
+    return cohesive && (s->model->law.form != RG_FORM_INTRINSIC ||
                         *rg_crack_value(s, i, q, RG_CRACK_OPENING) >= rg_separation(s, i));
 }
 

@@ -24,7 +24,9 @@ static inline size_t rg_tile_face_blocks(const rg_tile *t) {
 /* Trace rows go out to the current ones, or to those of the next state. */
 rg_trace_args rg_tile_traces(const rg_solver *s, const rg_tile *t, const rg_workspace *w, bool next);
 
-/* For blocks of the material of block `block`, counted from the tile's first one. */
+/* For blocks of the material of block `block`, counted from the tile's first one; that material, readied for
+ * the step. */
+const rg_material *rg_block_ready(const rg_solver *s, const rg_tile *t, size_t block);
 rg_bulk_args rg_tile_bulk(const rg_solver *s, const rg_tile *t, const rg_workspace *w, size_t block);
 rg_interface_args rg_tile_interfaces(const rg_solver *s, const rg_tile *t, const rg_workspace *w);
 
@@ -33,28 +35,28 @@ rg_interface_args rg_tile_interfaces(const rg_solver *s, const rg_tile *t, const
 void rg_tile_state(const rg_solver *s, const rg_tile *t, const rg_workspace *w, double *energy,
                    double *cauchy, double *internal);
 
-/* Material of a block of a tile, counted from its first one, and of an element. */
+/* Material, at rest, of a block of a tile, counted from its first one, and of an element. */
 static inline const rg_material *rg_block_material(const rg_solver *s, const rg_tile *t, size_t block) {
-    return &s->material[s->domain->material[t->begin + block]];
+    return &s->model->material[s->domain->material[t->begin + block]];
 }
 
 static inline const rg_material *rg_material_of(const rg_solver *s, size_t slot) {
-    return &s->material[s->domain->material[slot / RG_LANES]];
+    return &s->model->material[s->domain->material[slot / RG_LANES]];
 }
 
 /* Value `row` (layout.h) of the history of an element, whose material has one. */
 static inline rg_real rg_history_value(const rg_solver *s, size_t slot, size_t row) {
-    return s->history[rg_history_index(slot, s->history_stride, row)];
+    return s->history[rg_history_index(slot, s->model->history_stride, row)];
 }
 
 /* Value k (RG_CRACK_OPENING...) of the crack state of point q of interface i. */
 static inline rg_real *rg_crack_value(const rg_solver *s, size_t i, int q, int k) {
-    return s->crack + i / RG_LANES * s->crack_stride + rg_crack_index(i % RG_LANES, q, k);
+    return s->crack + i / RG_LANES * s->model->crack_stride + rg_crack_index(i % RG_LANES, q, k);
 }
 
 /* Value k (RG_FRICTION_ANCHOR...) of friction there; only where the law has some. */
 static inline rg_real *rg_friction_value(const rg_solver *s, size_t i, int q, int k) {
-    return s->crack + rg_friction_index(i, q, k, s->crack_stride);
+    return s->crack + rg_friction_index(i, q, k, s->model->crack_stride);
 }
 
 /* Whether point q of interface i is broken: it has switched to its law, or in the intrinsic form, where all

@@ -504,7 +504,8 @@ static void test_energy_table(void **state) {
     (void)state;
     rg_other_material steel = {.is = {.name = (char[]){"steel"}}};
     rg_case input = {.material = {.name = (char[]){"glass"}}, .other = &steel, .others = 1};
-    rg_solver solver = {.input = &input, .materials = 1};
+    rg_model model = {.materials = 1};
+    const rg_solver solver = {.input = &input, .model = &model};
     const rg_ledger l = {.last = {.step = 41,
                                   .time = 1,
                                   .kinetic = 2,
@@ -535,7 +536,7 @@ static void test_energy_table(void **state) {
     char wanted[1000];
     for (int two = 0; two < 2; two++) {
         rg_csv *t = rg_csv_open(".", "e.csv", 0);
-        solver.materials = 1 + two;
+        model.materials = 1 + two;
         rg_energy_header(t, &solver);
         rg_energy_row(t, &l, &solver);
         rg_csv_close(t);

@@ -68,7 +68,8 @@ static void cut(rg_solver *s, int axis, double place, double damage) {
             }
             for (int q = 0; q < RG_POINTS && on; q++) {
                 s->broken[i] |= (uint8_t)(1 << q);
-                s->crack[rg_crack_index(i, q, RG_CRACK_OPENING)] = (rg_real)(1.001 * damage * s->law.opening);
+                s->crack[rg_crack_index(i, q, RG_CRACK_OPENING)] =
+                    (rg_real)(1.001 * damage * s->model->law.opening);
             }
         }
     }

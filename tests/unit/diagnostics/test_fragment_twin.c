@@ -163,7 +163,7 @@ static double mass_point(rg_mass mass, int k, double l[4]) {
 }
 
 static void integrate(const random_state *r, uint64_t seed, rg_gid e, const double from[3], integrals *sum) {
-    double x[4][3], density = r->solver->material[mesh_material(r, e)].density;
+    double x[4][3], density = r->solver->model->material[mesh_material(r, e)].density;
     mesh_corners(r->mesh, e, x);
     double volume = volume_of(x);
     sum->elements++;

@@ -70,7 +70,7 @@ static double volume_of(double x[4][3]) {
 }
 
 static void integrate(const random_state *r, rg_gid id, integrals *sum) {
-    double x[4][3], density = r->solver->material[mesh_material(r, id)].density;
+    double x[4][3], density = r->solver->model->material[mesh_material(r, id)].density;
     mesh_corners(r->mesh, id, x);
     double volume = volume_of(x);
     sum->volume += volume;
@@ -483,7 +483,7 @@ static void check_lumped(void) {
     for (rg_gid id = 0; id < r.mesh->elements; id++) {
         double x[4][3];
         mesh_corners(r.mesh, id, x);
-        double mass = volume_of(x) * r.solver->material[mesh_material(&r, id)].density;
+        double mass = volume_of(x) * r.solver->model->material[mesh_material(&r, id)].density;
         for (int k = 0; k < 3 * RG_NODES; k++) {
             double m = mass * (k / 3 < 4 ? 1. / 36 : 4. / 27), v = drawn_now(SEED, id, k / 3, k % 3);
             kinetic += 0.5 * m * v * v;
@@ -600,7 +600,7 @@ static void check_element_hash(random_state *r) {
         good = noticed(s, &s->step_velocity[rg_node_index(at, k / 3, k % 3)], here) && good;
     }
     for (size_t row = 0; row < rg_history_rows(RG_J2_HISTORY); row++) {
-        good = noticed(s, &s->history[rg_history_index(at, s->history_stride, row)], here) && good;
+        good = noticed(s, &s->history[rg_history_index(at, s->model->history_stride, row)], here) && good;
     }
     good = noticed(s, &s->heat[at], here) && good;
     report(good, "hash", "every value of an element");

@@ -87,7 +87,7 @@ static void check_counts(void) {
     s->damping = 0.7;
     s->pass_seconds = 0.02;
     double sum[2] = {(double)rg_alloc_total(),
-                     (double)s->domain->iblocks * (double)s->crack_stride * sizeof(rg_real)};
+                     (double)s->domain->iblocks * (double)s->model->crack_stride * sizeof(rg_real)};
     double output = (double)rg_snapshots_bytes(s->input, s->domain->elements);
     rg_estimate e = rg_estimate_run(s);
     int64_t steel = 0, faces = 0;
@@ -250,12 +250,22 @@ static bool words_are(const rg_solver *s, const rg_estimate *e, const char *want
     return good;
 }
 
+/* The model of a solver and its first material, to change them. */
+static rg_model *model_of(rg_solver *s) {
+    return (rg_model *)s->model;
+}
+
+static rg_material *material_of(rg_solver *s) {
+    return (rg_material *)s->model->material;
+}
+
 static bool check_onset(random_state *r, double onset, double beta, double safety, const char *limit) {
     char wanted[300] = "";
     rg_solver *s = r->solver;
-    s->law.activation = onset > 0 ? RG_ACTIVATION_CONSERVING : RG_ACTIVATION_CONTINUOUS;
-    s->law.onset = onset;
-    s->law.beta = beta;
+    rg_cohesive *law = &model_of(s)->law;
+    law->activation = onset > 0 ? RG_ACTIVATION_CONSERVING : RG_ACTIVATION_CONTINUOUS;
+    law->onset = onset;
+    law->beta = beta;
     r->input->time.safety = safety;
     if (limit != NULL) {
         snprintf(wanted, sizeof wanted,
@@ -347,9 +357,9 @@ static bool check_words(void) {
                      "") &&
            good;
     s->ranks = 1;
-    s->materials = 1;
+    model_of(s)->materials = 1;
     good = words_are(s, &plain, BODY "material       neo-hookean\n" GLASS STEP STEPS LAST, "") && good;
-    s->material[0].model = RG_MATERIAL_LINEAR_ELASTIC;
+    material_of(s)->model = RG_MATERIAL_LINEAR_ELASTIC;
     good = words_are(
                s, &plain,
                BODY
@@ -367,7 +377,7 @@ static bool check_units(void) {
     rg_solver *s = r.solver;
     s->limiting_state = "closed";
     s->omega2 = 1;
-    s->materials = 1;
+    model_of(s)->materials = 1;
     static const struct {
         double speed;
         const char *warned;
@@ -377,8 +387,8 @@ static bool check_units(void) {
         char wanted[200], *found = NULL;
         size_t size = 0;
         FILE *out = open_memstream(&found, &size);
-        double stiffness = s->material[0].lambda + 2 * s->material[0].mu;
-        s->material[0].density = stiffness / (cases[k].speed * cases[k].speed);
+        double stiffness = s->model->material[0].lambda + 2 * s->model->material[0].mu;
+        material_of(s)->density = stiffness / (cases[k].speed * cases[k].speed);
         rg_estimate_print(s, &plain, out);
         fclose(out);
         snprintf(

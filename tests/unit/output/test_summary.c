@@ -72,6 +72,7 @@ static rg_bodies bodies;
 static rg_case input;
 static rg_part part;
 static rg_kernels kernels = {.name = "x86-64-v9"};
+static rg_model model;
 static rg_solver solver;
 static rg_ledger ledger;
 static rg_summary summary;
@@ -100,6 +101,7 @@ static int fresh(void **state) {
     body[0] = (rg_body){.input = &ball, .seen = {{1, 2, 3}, {4, 5, 6}, {7, 8, 9}, 0}};
     body[1] = (rg_body){.input = &wall, .seen = {{11, 12, 13}, {14, 15, 16}, {17, INFINITY, 19}, 0}};
     bodies = (rg_bodies){.count = 2, .body = body};
+    model = (rg_model){.materials = 2};
     solver = (rg_solver){.input = &input,
                          .ranks = 3,
                          .threads = 5,
@@ -107,7 +109,7 @@ static int fresh(void **state) {
                          .part = &part,
                          .stepper = &stepper,
                          .bodies = &bodies,
-                         .materials = 2,
+                         .model = &model,
                          .limiting = 77,
                          .limiting_state = "closed",
                          .exchange_seconds = 0.0625,
@@ -208,7 +210,7 @@ static void other_runs(void **state) {
     (void)state;
     solver.assembly = (rg_assembly *)(uintptr_t)128;
     bodies.count = 0;
-    solver.materials = 1;
+    model.materials = 1;
     solver.step = 20; /* none was done */
     summary.failure = "it \"broke\"";
     first_fracture = INFINITY;

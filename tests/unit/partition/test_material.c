@@ -138,16 +138,18 @@ static void compare_element(const path *p, const rg_solver *s, size_t slot, cons
     for (int k = 0; k < 3; k++)
         J *= 1 + s->time * p->rate[k];
     for (size_t k = 0; k < rows; k++)
-        raise_figure(&history, s->history[rg_history_index(slot, s->history_stride, k)],
+        raise_figure(&history, s->history[rg_history_index(slot, s->model->history_stride, k)],
                      t->history[k % RG_DE_HISTORY], k % RG_DE_HISTORY == RG_DE_GROWTH ? 3 : 1);
     for (size_t k = 0; k < 6 * RG_GAUSS; k++) {
         double sigma = rg_reference_dot(t->P[row[k % 6]], t->F[column[k % 6]]) / J;
         raise_figure(&stress, cauchy[k * RG_LANES + slot % RG_LANES], sigma, 146e9);
     }
     raise_figure(&stored, energy, volume * t->result.energy, 1e9 * volume);
-    raise_figure(&released, s->history[rg_history_index(slot, s->history_stride, rows + RG_RELEASED_PLASTIC)],
+    raise_figure(&released,
+                 s->history[rg_history_index(slot, s->model->history_stride, rows + RG_RELEASED_PLASTIC)],
                  volume * t->plastic, 1e9 * volume);
-    raise_figure(&released, s->history[rg_history_index(slot, s->history_stride, rows + RG_RELEASED_DAMAGE)],
+    raise_figure(&released,
+                 s->history[rg_history_index(slot, s->model->history_stride, rows + RG_RELEASED_DAMAGE)],
                  volume * t->damage, 1e9 * volume);
 }
 

@@ -113,10 +113,10 @@ static bool same_place(uint64_t a, uint64_t b) {
 static bool is_padding(const rg_solver *s, const char *at) {
     const char *crack = (const char *)s->crack;
     double normal[3];
-    if (at < crack || at >= crack + s->domain->iblocks * s->crack_stride * sizeof *s->crack)
+    if (at < crack || at >= crack + s->domain->iblocks * s->model->crack_stride * sizeof *s->crack)
         return false;
     size_t value = (size_t)(at - crack) / sizeof *s->crack;
-    size_t i = value / s->crack_stride * RG_LANES + value % RG_LANES;
+    size_t i = value / s->model->crack_stride * RG_LANES + value % RG_LANES;
     return rg_interface_area(s->domain, i, normal) <= 0;
 }
 

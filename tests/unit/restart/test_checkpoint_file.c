@@ -144,11 +144,11 @@ static bool same_elements(const rg_solver *a, const rg_solver *b) {
 
 static bool same_faces(const rg_solver *a, const rg_solver *b) {
     bool same = true;
-    size_t lane_values = a->crack_stride / RG_LANES;
+    size_t lane_values = a->model->crack_stride / RG_LANES;
     for (size_t i = 0; i < a->domain->iblocks * RG_LANES; i++) {
         same = same && a->broken[i] == b->broken[i] && a->unlinked[i] == b->unlinked[i];
         for (size_t k = 0; k < lane_values && a->broken[i] != 0; k++) {
-            size_t at = i / RG_LANES * a->crack_stride + k * RG_LANES + i % RG_LANES;
+            size_t at = i / RG_LANES * a->model->crack_stride + k * RG_LANES + i % RG_LANES;
             same = same && a->crack[at] == b->crack[at];
         }
     }
@@ -282,7 +282,7 @@ static bool faces_good(hid_t file, const run *x, uint64_t seed, int64_t copies) 
     int64_t *key = load(file, "face/key", H5T_NATIVE_INT64, &n, 1);
     uint8_t *rows = load(file, "face/rows", H5T_NATIVE_UINT8, &elements, 1);
     uint8_t *broken = load(file, "face/broken", H5T_NATIVE_UINT8, &n, 1);
-    int columns = (int)(x->r.solver->crack_stride / RG_LANES);
+    int columns = (int)(x->r.solver->model->crack_stride / RG_LANES);
     double *crack = load(file, "face/crack", H5T_NATIVE_DOUBLE, &n, columns);
     bool good = key != NULL && rows != NULL && broken != NULL && crack != NULL && n == copies;
     for (int64_t i = 0; good && i < n; i++) {
@@ -538,7 +538,7 @@ static bool check_none(run *x) {
 
 /* Each corner and set of an element changes the hash of the mesh; padding does not. */
 static bool check_mesh_hash(run *x) {
-    rg_domain *d = x->r.solver->domain;
+    const rg_domain *d = x->r.solver->domain;
     size_t slot = 0;
     while (d->id[slot] != 77) {
         slot++;

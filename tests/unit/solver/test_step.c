@@ -189,7 +189,7 @@ static void compare_interface(record *r, const rg_solver *s, const twin *w, cons
         for (int k = 0; k < RG_CRACK + RG_LAW_MEMORY + RG_FRICTION && (s->broken[i] >> q & 1); k++) {
             size_t row = crack_row(w, j % RG_LANES, q, k), own = crack_row(w, i % RG_LANES, q, k);
             if (row != SIZE_MAX)
-                note(r, CRACK + k, s->crack[i / RG_LANES * s->crack_stride + own],
+                note(r, CRACK + k, s->crack[i / RG_LANES * s->model->crack_stride + own],
                      w->crack[j / RG_LANES * w->crack_stride + row]);
         }
         count_point(r, s, t, i, q);
@@ -392,10 +392,10 @@ static bool same_bits(const rg_solver *s, const lone *one) {
             good = good && same(&s->u[i], &o->u[j], sizeof *s->u);
             good = good && same(&s->velocity[i], &o->velocity[j], sizeof *s->u);
         }
-        for (size_t k = 0; k < s->history_stride / RG_LANES && id >= 0; k++)
-            good = good &&
-                   same(&s->history[rg_history_index(slot, s->history_stride, k)],
-                        &o->history[rg_history_index(one->slot[id], s->history_stride, k)], sizeof *s->u);
+        for (size_t k = 0; k < s->model->history_stride / RG_LANES && id >= 0; k++)
+            good = good && same(&s->history[rg_history_index(slot, s->model->history_stride, k)],
+                                &o->history[rg_history_index(one->slot[id], s->model->history_stride, k)],
+                                sizeof *s->u);
         good = good &&
                (id < 0 || s->heat == NULL || same(&s->heat[slot], &o->heat[one->slot[id]], sizeof *s->heat));
     }
@@ -404,12 +404,14 @@ static bool same_bits(const rg_solver *s, const lone *one) {
             double normal[3];
             if (rg_interface_area(s->domain, i, normal) <= 0) /* padding */
                 continue;
-            size_t j = one->interface[rg_face_number(s->domain, t, i)], values = s->crack_stride / RG_LANES;
+            size_t j = one->interface[rg_face_number(s->domain, t, i)],
+                   values = s->model->crack_stride / RG_LANES;
             good = good && s->broken[i] == o->broken[j] && s->unlinked[i] == o->unlinked[j];
             for (size_t k = 0; k < values && s->broken[i] != 0; k++)
-                good = good && same(&s->crack[i / RG_LANES * s->crack_stride + k * RG_LANES + i % RG_LANES],
-                                    &o->crack[j / RG_LANES * s->crack_stride + k * RG_LANES + j % RG_LANES],
-                                    sizeof *s->crack);
+                good = good &&
+                       same(&s->crack[i / RG_LANES * s->model->crack_stride + k * RG_LANES + i % RG_LANES],
+                            &o->crack[j / RG_LANES * s->model->crack_stride + k * RG_LANES + j % RG_LANES],
+                            sizeof *s->crack);
         }
     for (int b = 0; b < s->bodies->count; b++)
         good = good && same(s->bodies->body[b].x, o->bodies->body[b].x, 6 * sizeof(double));

@@ -50,7 +50,7 @@ static double opening(const rg_solver *s, const rg_tile *t, size_t i, int q, con
     }
     double area = sqrt(rg_reference_dot(normal, normal)), along = rg_reference_dot(jump, normal) / area;
     double across = fmax(0, rg_reference_dot(jump, jump) - along * along);
-    return sqrt(across + fmax(0, along) * fmax(0, along)) / s->law.opening;
+    return sqrt(across + fmax(0, along) * fmax(0, along)) / s->model->law.opening;
 }
 
 /* max xi/dt of all points by (3.15); `x` holds their openings of the state before and gets those of this one.

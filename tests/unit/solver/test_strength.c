@@ -64,8 +64,8 @@ static face face_of(const rg_solver *s, const rg_tile *t, size_t i) {
         const double *x = corner + 3 * node[k];
         f.corners += rg_hash_double(rg_hash_double(rg_hash_double(SEED, x[0] + 0.0), x[1] + 0.0), x[2] + 0.0);
     }
-    f.strength = s->scale[i / RG_LANES * 2 * RG_LANES + i % RG_LANES];
-    f.opening = s->scale[(i / RG_LANES * 2 + 1) * RG_LANES + i % RG_LANES];
+    f.strength = s->model->scale[i / RG_LANES * 2 * RG_LANES + i % RG_LANES];
+    f.opening = s->model->scale[(i / RG_LANES * 2 + 1) * RG_LANES + i % RG_LANES];
     return f;
 }
 
@@ -88,7 +88,7 @@ static face *list_faces(rg_solver *s, size_t *count) {
     for (size_t i = 0; i < *count; i++) {
         stiffest = fmax(stiffest, list[i].strength / list[i].opening);
     }
-    assert_true(fabs(s->stiffest - stiffest) <= 1e-6 * stiffest); /* also where factors are floats */
+    assert_true(fabs(s->model->stiffest - stiffest) <= 1e-6 * stiffest); /* also where factors are floats */
     rg_solver_free(s);
     qsort(list, *count, sizeof *list, by_place);
     return list;
@@ -314,8 +314,8 @@ static void test_uniform(void **state) {
     (void)state;
     rg_case *c = read_case(0, NULL);
     rg_solver *s = rg_solver_make(c, MPI_COMM_SELF);
-    assert_null(s->scale);
-    assert_true(s->stiffest == 1);
+    assert_null(s->model->scale);
+    assert_true(s->model->stiffest == 1);
     rg_solver_free(s);
     rg_case_free(c);
 }

@@ -146,7 +146,7 @@ static void draw_element(rg_solver *s, size_t slot, uint64_t seed) {
     }
     int values = rg_material_history(rg_material_of(s, slot)->model), rows = (int)rg_history_rows(values);
     for (int row = 0; row < rows; row++) {
-        s->history[rg_history_index(slot, s->history_stride, (size_t)row)] =
+        s->history[rg_history_index(slot, s->model->history_stride, (size_t)row)] =
             (rg_real)drawn_history(seed, id, values, row);
     }
     if (s->heat != NULL) {
@@ -165,7 +165,7 @@ static void draw_interface(rg_solver *s, size_t i, rg_gid face, uint64_t seed) {
                 (rg_real)(1e-8 * drawn(seed, DRAW_ORIGIN, face, 3 * q + c));
         }
         *rg_crack_value(s, i, q, RG_CRACK_TIME) = (rg_real)drawn_time(seed, face, q);
-        for (int k = 0; k < RG_FRICTION && s->law.sliding == RG_SLIDING_COULOMB; k++) {
+        for (int k = 0; k < RG_FRICTION && s->model->law.sliding == RG_SLIDING_COULOMB; k++) {
             *rg_friction_value(s, i, q, k) = (rg_real)drawn_friction(seed, face, q, k);
         }
     }
