@@ -180,7 +180,7 @@ void rg_mesh_finish(rg_mesh *mesh, const rg_mesh_arguments *a) {
     }
     rg_mesh_file_write(a->output, mesh, 0, NULL);
     tell(mesh, a->output);
-    printf(", %d surface sets, %d volume sets\n", mesh->sets, mesh->regions);
+    printf(", %d surface sets, %d volume sets\n", mesh->surface.count, mesh->volume.count);
 }
 
 static bool ends_with(const char *text, const char *end) {
@@ -206,7 +206,7 @@ static int from_case(const rg_mesh_arguments *a) {
 }
 
 static int from_inp(const rg_mesh_arguments *a) {
-    rg_mesh *mesh = rg_inp_read(a->input, a->scale);
+    rg_mesh *mesh = rg_inp_read(a->input, a->scale, stdout);
     rg_mesh_finish(mesh, a);
     rg_mesh_free(mesh);
     return RG_OK;

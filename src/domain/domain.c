@@ -51,7 +51,7 @@ static void allocate_elements(rg_domain *d) {
     size_t slots = d->blocks * RG_LANES;
     d->id = RG_NEW(rg_gid, slots);
     d->corner = RG_NEW(double, 12 * slots);
-    d->set = RG_NEW(int8_t, 4 * slots);
+    d->set = RG_NEW(int32_t, 4 * slots);
     d->material = RG_NEW(uint8_t, d->blocks + 1);
     d->geom = RG_NEW(rg_real, d->blocks * RG_GEOM_BLOCK);
     d->neighbour = RG_NEW(int32_t, d->blocks * RG_LINK_BLOCK);

@@ -36,7 +36,7 @@ typedef struct {
     size_t blocks, iblocks;
     rg_gid *id;           /* [slots]: global element number; -1 in padding */
     double *corner;       /* [slots][4][3]: m */
-    int8_t *set;          /* [slots][4]: surface set, -1 for none */
+    int32_t *set;         /* [slots][4]: group of surface sets, -1 for none */
     uint8_t *material;    /* [blocks]: number of its material */
     uint16_t *place;      /* [tiles][tile_elements]: slot in its tile, by number in it; NULL: the number */
     rg_real *geom;        /* kernels/layout.h */

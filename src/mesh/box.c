@@ -59,11 +59,9 @@ static rg_mesh *allocate(const struct grid *g) {
     mesh->corner = RG_NEW(rg_gid, faces);
     mesh->neighbour = RG_NEW(rg_gid, faces);
     mesh->face = RG_NEW(int8_t, faces);
-    mesh->set = RG_NEW(int8_t, faces);
-    mesh->sets = 6;
-    for (int s = 0; s < mesh->sets; s++) {
-        mesh->set_name[s] = RG_NEW(char, strlen(side_name[s]) + 1);
-        strcpy(mesh->set_name[s], side_name[s]);
+    mesh->set = RG_NEW(int32_t, faces);
+    for (int s = 0; s < 6; s++) {
+        rg_sets_add(&mesh->surface, side_name[s]);
     }
     return mesh;
 }
@@ -108,12 +106,12 @@ static void fill_tet(const struct grid *g, rg_mesh *mesh, const int64_t cell[3],
     for (int i = 0; i < 3; i++) {
         corner[i + 1] = corner[i] + g->stride[axis[i]];
     }
-    int8_t *set = mesh->set + 4 * e;
+    int32_t *set = mesh->set + 4 * e;
     int up = axis[0], down = axis[2];
-    set[0] = (int8_t)(cell[up] == g->cells[up] - 1 ? 2 * up + 1 : -1);
+    set[0] = cell[up] == g->cells[up] - 1 ? 2 * up + 1 : -1;
     set[1] = -1;
     set[2] = -1;
-    set[3] = (int8_t)(cell[down] == 0 ? 2 * down : -1);
+    set[3] = cell[down] == 0 ? 2 * down : -1;
 }
 
 static void check_tet(const struct grid *g, const rg_mesh *mesh, const int64_t cell[3], rg_gid e,

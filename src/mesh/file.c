@@ -38,6 +38,7 @@ static const rg_rows *const part[PARTS] = {[CORNER] = &rg_rows_corner,
                                            [X] = &rg_rows_x,
                                            [VERTEX_START] = &rg_rows_vertex_start};
 
+enum { MOST_SETS = 1 << 24 };                /* and rows of their combinations */
 static const rg_gid most = INT64_C(1) << 40; /* elements or vertices: what a sane header says */
 
 /* "path: dataset: what is wrong" */
@@ -198,20 +199,52 @@ static int64_t read_count(const rg_mesh_file *f, const char *name, int64_t low, 
     return value;
 }
 
-static void read_names(rg_mesh_file *f, const rg_rows *r, int count, char *name[]) {
+static void read_names(rg_mesh_file *f, const rg_rows *r, rg_sets *sets) {
+    int64_t count = read_count(f, r->name, 0, MOST_SETS);
+    if (count > 0) {
+        expect_rows(f, r, count); /* before anybody makes room for so many */
+    }
     char *rows = take_whole(f, r, count);
-    for (int i = 0; i < count; i++) {
+    for (int64_t i = 0; i < count; i++) {
         const char *from = rows + (size_t)i * RG_SET_NAME;
         if (memchr(from, '\0', RG_SET_NAME) == NULL) {
-            refuse(f, r->name, "name %d has no end", i);
+            refuse(f, r->name, "name %" PRId64 " has no end", i);
         }
-        name[i] = RG_NEW(char, RG_SET_NAME);
-        strcpy(name[i], from);
+        rg_sets_add(sets, from);
     }
     rg_free(rows);
 }
 
-static void check_format(const rg_mesh_file *f) {
+/* Rows begin .. end - 1 are of one combination. */
+static bool is_combination(const int32_t *row, int64_t begin, int64_t end, const rg_sets *sets) {
+    bool good = end - begin > 1 && row[2 * begin] == sets->combinations;
+    for (int64_t i = begin; i < end; i++) {
+        good = good && row[2 * i + 1] < sets->count && row[2 * i + 1] > (i > begin ? row[2 * i - 1] : -1);
+    }
+    return good;
+}
+
+static void read_combinations(rg_mesh_file *f, const rg_rows *r, rg_sets *sets) {
+    int64_t rows = read_count(f, r->name, 0, MOST_SETS);
+    if (rows > 0) {
+        expect_rows(f, r, rows);
+    }
+    int32_t *row = take_whole(f, r, rows), *set = RG_NEW(int32_t, (size_t)rows + 1);
+    for (int64_t begin = 0, end; begin < rows; begin = end) {
+        for (end = begin; end < rows && row[2 * end] == row[2 * begin]; end++) {
+            set[end - begin] = row[2 * end + 1];
+        }
+        if (!is_combination(row, begin, end, sets)) {
+            refuse(f, r->name, "row %" PRId64 " begins no combination of sets", begin);
+        }
+        rg_sets_combine(sets, (int32_t)(end - begin), set);
+    }
+    rg_free(row);
+    rg_free(set);
+}
+
+/* Returns the version. */
+static int64_t check_format(const rg_mesh_file *f) {
     char format[32] = "";
     hid_t type = H5Tcopy(H5T_C_S1);
     H5Tset_size(type, sizeof format);
@@ -221,9 +254,11 @@ static void check_format(const rg_mesh_file *f) {
         refuse_h5(f, "format");
     }
     int64_t version = read_count(f, "version", 0, INT64_MAX);
-    if (version != RG_MESH_VERSION) {
-        refuse(f, "version", "%" PRId64 ", but this program reads version %d", version, RG_MESH_VERSION);
+    if (version < 1 || version > RG_MESH_VERSION) {
+        refuse(f, "version", "%" PRId64 ", but this program reads versions 1 to %d", version,
+               RG_MESH_VERSION);
     }
+    return version;
 }
 
 /* A dataset that is not there, or has another shape, is told here once and not for each tile. */
@@ -245,20 +280,22 @@ static void check_datasets(const rg_mesh_file *f) {
 
 static void read_header(rg_mesh_file *f) {
     rg_mesh_header *h = &f->head;
-    check_format(f);
+    int64_t version = check_format(f);
     h->elements = read_count(f, "elements", 1, most);
     h->vertices = read_count(f, "vertices", 4, most);
     h->interfaces = read_count(f, "interfaces", 0, 2 * h->elements);
     h->tile_elements = read_count(f, "tile_elements", 1, RG_TILE);
     int64_t tiles = (h->elements + h->tile_elements - 1) / h->tile_elements;
     h->tiles = read_count(f, "tiles", tiles, tiles);
-    h->sets = (int)read_count(f, "surface_sets", 0, RG_MAX_SETS);
-    h->regions = (int)read_count(f, "volume_sets", 0, RG_MAX_SETS);
     if (!read_attribute(f, "box", H5T_NATIVE_DOUBLE, 6, h->box)) {
         refuse_h5(f, "box");
     }
-    read_names(f, &rg_rows_surface_sets, h->sets, h->set_name);
-    read_names(f, &rg_rows_volume_sets, h->regions, h->region_name);
+    read_names(f, &rg_rows_surface_sets, &h->surface);
+    read_names(f, &rg_rows_volume_sets, &h->volume);
+    if (version > 1) {
+        read_combinations(f, &rg_rows_surface_combinations, &h->surface);
+        read_combinations(f, &rg_rows_volume_combinations, &h->volume);
+    }
     check_datasets(f);
 }
 
@@ -315,10 +352,8 @@ const rg_mesh_header *rg_mesh_file_header(const rg_mesh_file *f) {
 void rg_mesh_file_close(rg_mesh_file *f) {
     H5Fclose(f->file);
     rg_h5_deafen();
-    for (int s = 0; s < RG_MAX_SETS; s++) {
-        rg_free(f->head.set_name[s]);
-        rg_free(f->head.region_name[s]);
-    }
+    rg_sets_free(&f->head.surface);
+    rg_sets_free(&f->head.volume);
     rg_free(f->path);
     rg_free(f);
 }
@@ -429,12 +464,24 @@ static void check_range(reading *r, int k, const int64_t *value, int64_t count, 
     }
 }
 
-static void check_bytes(reading *r, int k, const int8_t *value, int64_t count, int columns, int end) {
+static void check_faces(reading *r) {
+    for (int64_t i = 0; i < 4 * r->slab->elements; i++) {
+        if (r->slab->face[i] < -1 || r->slab->face[i] > 3) {
+            complain(r, r->slab->first + i / 4, FACE,
+                     "value %d of element %" PRId64 " is not between -1 and 3", r->slab->face[i],
+                     r->slab->original[i / 4]);
+            return;
+        }
+    }
+}
+
+static void check_groups(reading *r, int k, const int32_t *value, int64_t count, int columns,
+                         const rg_sets *sets) {
     for (int64_t i = 0; i < count; i++) {
-        if (value[i] < -1 || value[i] >= end) {
+        if (value[i] < -1 || value[i] >= rg_sets_groups(sets)) {
             complain(r, r->slab->first + i / columns, k,
-                     "value %d of element %" PRId64 " is not between -1 and %d", value[i],
-                     r->slab->original[i / columns], end - 1);
+                     "value %" PRId32 " of element %" PRId64 " is not between -1 and %" PRId32, value[i],
+                     r->slab->original[i / columns], rg_sets_groups(sets) - 1);
             return;
         }
     }
@@ -446,9 +493,9 @@ static void check_values(reading *r) {
     rg_gid faces = 4 * slab->elements;
     check_range(r, CORNER, slab->corner, faces, 4, 0, h->vertices);
     check_range(r, NEIGHBOUR, slab->neighbour, faces, 4, -1, h->elements);
-    check_bytes(r, FACE, slab->face, faces, 4, 4);
-    check_bytes(r, SET, slab->set, faces, 4, h->sets);
-    check_bytes(r, REGION, slab->region, slab->elements, 1, h->regions);
+    check_faces(r);
+    check_groups(r, SET, slab->set, faces, 4, &h->surface);
+    check_groups(r, REGION, slab->region, slab->elements, 1, &h->volume);
     for (rg_gid slot = 0; slot < faces && r->good; slot++) {
         if ((slab->neighbour[slot] < 0) != (slab->face[slot] < 0)) {
             complain(r, slab->first + slot / 4, FACE,
@@ -677,14 +724,11 @@ static rg_mesh *adopt(rg_mesh_slab *slab, double *x, rg_mesh_header *h) {
                       .neighbour = slab->neighbour,
                       .face = slab->face,
                       .set = slab->set,
-                      .sets = h->sets,
+                      .surface = h->surface,
                       .original = slab->original,
                       .region = slab->region,
-                      .regions = h->regions};
-    memcpy(mesh->set_name, h->set_name, sizeof mesh->set_name);
-    memcpy(mesh->region_name, h->region_name, sizeof mesh->region_name);
-    memset(h->set_name, 0, sizeof h->set_name);
-    memset(h->region_name, 0, sizeof h->region_name);
+                      .volume = h->volume};
+    h->surface = h->volume = (rg_sets){.count = 0};
     rg_free(slab->vertex);
     rg_free(slab->x);
     rg_free(slab->at);

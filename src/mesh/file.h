@@ -4,17 +4,23 @@
  * centroids; a tile is the run of `tile_elements` (256; fewer in a small mesh) consecutive numbers.
  * Integers are signed and as wide as their values need, numbers are 64-bit floats, lengths are in m.
  *
- *   attributes      format = "rhegma mesh", version = 1, program
+ *   attributes      format = "rhegma mesh", version = 1 or 2, program
  *                   vertices, elements, interfaces (interior faces), tile_elements, tiles, surface_sets,
  *                   volume_sets (how many there are); box [2][3]: lower and upper corner
  *   surface_sets    [surface_sets] names, at most 63 bytes each; not there if there are none
  *   volume_sets     [volume_sets] likewise
  *
+ * and only in version 2, which is for sets that overlap,
+ *
+ *   attributes      surface_combinations, volume_combinations: rows of the next two, which are not there if 0
+ *   surface_combinations  [rows][2] number of a combination, from 0 on, and one of the sets that it is of,
+ * both volume_combinations   ascending (mesh/sets.h)
+ *
  *   corner          [elements][4] vertices, ascending; face f of an element is the one opposite corner f
  *   neighbour       [elements][4] element across face f; -1 on the surface
  *   face            [elements][4] which face of the neighbour that is; -1 on the surface
- *   set             [elements][4] surface set of face f; -1 for none
- *   region          [elements] volume set; -1 for none
+ *   set             [elements][4] surface set of face f, or surface_sets + its combination; -1 for none
+ *   region          [elements] volume set, or volume_sets + the combination; -1 for none
  *   original        [elements] number of the element in the input
  *
  *   vertex_start    [tiles + 1] row at which the vertices of each tile begin in the next two
@@ -50,14 +56,14 @@
 #include "mesh/mesh.h"
 #include "mesh/tile_graph.h"
 
-enum { RG_MESH_VERSION = 1 };
+/* A file without overlapping sets is of version 1, as all were before there were such. */
+enum { RG_MESH_VERSION = 2 };
 
 typedef struct {
     rg_gid vertices, elements, interfaces;
     int64_t tile_elements, tiles;
     double box[2][3]; /* m */
-    int sets, regions;
-    char *set_name[RG_MAX_SETS], *region_name[RG_MAX_SETS];
+    rg_sets surface, volume;
 } rg_mesh_header;
 
 typedef struct {
@@ -75,7 +81,8 @@ typedef struct {
     rg_gid *corner;    /* [elements][4] numbers of vertices */
     rg_lid *at;        /* [elements][4] where they stand in `vertex`, among those of the element's tile */
     rg_gid *neighbour; /* [elements][4], and so on as in rg_mesh */
-    int8_t *face, *set, *region;
+    int8_t *face;
+    int32_t *set, *region;
     rg_gid *original;
 } rg_mesh_slab;
 

@@ -20,7 +20,7 @@ typedef struct {
     char *temporary;
     char reason[RG_H5_REASON];
     hid_t file, sums;
-    int64_t tiles;
+    int64_t version, tiles;
     int64_t *element_start; /* [tiles + 1]: rows of the datasets that have one for each element */
     int64_t *vertex_start;  /* [tiles + 1]: of those that have one for each vertex of a tile */
     int64_t *vertex;        /* [vertex_start[tiles]] */
@@ -39,14 +39,18 @@ static void require(const target *w, bool ok, const char *what) {
 
 /* ---- one dataset ---- */
 
-/* Integers are stored in 32 bits where that is enough. */
+/* Integers are stored in 32 bits where that is enough, groups of sets in 8. */
 static hid_t stored_type(const rg_rows *r, hid_t type, const void *data, int64_t count) {
     const int64_t *value = data;
-    bool narrow = r->type == RG_ROWS_INT64;
+    const int32_t *group = data;
+    bool narrow = r->type == RG_ROWS_INT64, byte = r == &rg_rows_set || r == &rg_rows_region;
     for (int64_t i = 0; i < count * r->columns && narrow; i++) {
         narrow = value[i] >= INT32_MIN && value[i] <= INT32_MAX;
     }
-    return narrow ? H5T_NATIVE_INT32 : type;
+    for (int64_t i = 0; i < count * r->columns && byte; i++) {
+        byte = group[i] <= INT8_MAX;
+    }
+    return narrow ? H5T_NATIVE_INT32 : byte ? H5T_NATIVE_INT8 : type;
 }
 
 static hid_t create_dataset(hid_t place, const char *name, hid_t stored, int columns, int64_t rows) {
@@ -113,18 +117,35 @@ static void put_text(const target *w, const char *name, const char *text) {
     H5Tclose(type);
 }
 
-static void put_names(const target *w, const rg_rows *r, int count, char *const name[]) {
-    char *rows = RG_NEW(char, (size_t)count *RG_SET_NAME);
-    for (int i = 0; i < count; i++) {
-        if (strlen(name[i]) >= RG_SET_NAME) {
+static void put_names(const target *w, const rg_rows *r, const rg_sets *sets) {
+    char *rows = RG_NEW(char, (size_t)sets->count *RG_SET_NAME);
+    for (int32_t i = 0; i < sets->count; i++) {
+        if (strlen(sets->name[i]) >= RG_SET_NAME) {
             unlink(w->temporary);
-            rg_fatal(RG_USAGE, "%s: the name of set '%s' is longer than %d bytes", w->path, name[i],
+            rg_fatal(RG_USAGE, "%s: the name of set '%s' is longer than %d bytes", w->path, sets->name[i],
                      RG_SET_NAME - 1);
         }
-        strcpy(rows + (size_t)i * RG_SET_NAME, name[i]);
+        strcpy(rows + (size_t)i * RG_SET_NAME, sets->name[i]);
     }
-    put_whole(w, r, rows, count);
+    put_whole(w, r, rows, sets->count);
     rg_free(rows);
+}
+
+static int64_t combined_rows(const rg_sets *sets) {
+    return sets->combinations > 0 ? sets->start[sets->combinations] : 0;
+}
+
+static void put_combinations(const target *w, const rg_rows *r, const rg_sets *sets) {
+    int64_t rows = combined_rows(sets);
+    int32_t *row = RG_NEW(int32_t, 2 * (size_t)rows + 1);
+    for (int32_t c = 0; c < sets->combinations; c++) {
+        for (int32_t i = sets->start[c]; i < sets->start[c + 1]; i++) {
+            row[2 * i] = c;
+            row[2 * i + 1] = sets->member[i];
+        }
+    }
+    put_whole(w, r, row, rows);
+    rg_free(row);
 }
 
 static void put_header(const target *w, const rg_mesh *mesh) {
@@ -139,20 +160,24 @@ static void put_header(const target *w, const rg_mesh *mesh) {
     const struct {
         const char *name;
         int64_t value;
-    } counts[] = {{"version", RG_MESH_VERSION},
+    } counts[] = {{"version", w->version},
                   {"vertices", mesh->vertices},
                   {"elements", mesh->elements},
                   {"interfaces", sides / 2},
                   {"tile_elements", rg_tile_elements(mesh->elements)},
                   {"tiles", w->tiles},
-                  {"surface_sets", mesh->sets},
-                  {"volume_sets", mesh->regions}};
-    for (size_t i = 0; i < sizeof counts / sizeof *counts; i++) {
+                  {"surface_sets", mesh->surface.count},
+                  {"volume_sets", mesh->volume.count},
+                  {"surface_combinations", combined_rows(&mesh->surface)},
+                  {"volume_combinations", combined_rows(&mesh->volume)}};
+    for (size_t i = 0; i < sizeof counts / sizeof *counts - (w->version == 1 ? 2 : 0); i++) {
         put_attribute(w, counts[i].name, H5T_NATIVE_INT64, 1, &counts[i].value);
     }
     put_attribute(w, "box", H5T_NATIVE_DOUBLE, 6, box);
-    put_names(w, &rg_rows_surface_sets, mesh->sets, mesh->set_name);
-    put_names(w, &rg_rows_volume_sets, mesh->regions, mesh->region_name);
+    put_names(w, &rg_rows_surface_sets, &mesh->surface);
+    put_names(w, &rg_rows_volume_sets, &mesh->volume);
+    put_combinations(w, &rg_rows_surface_combinations, &mesh->surface);
+    put_combinations(w, &rg_rows_volume_combinations, &mesh->volume);
 }
 
 /* ---- elements and vertices ---- */
@@ -162,10 +187,10 @@ static void put_elements(const target *w, const rg_mesh *mesh) {
     put(w, &rg_rows_neighbour, mesh->neighbour, w->tiles, w->element_start);
     put(w, &rg_rows_face, mesh->face, w->tiles, w->element_start);
     put(w, &rg_rows_set, mesh->set, w->tiles, w->element_start);
-    int8_t *region = RG_NEW(int8_t, (size_t)mesh->elements);
+    int32_t *region = RG_NEW(int32_t, (size_t)mesh->elements);
     rg_gid *original = RG_NEW(rg_gid, (size_t)mesh->elements);
     for (rg_gid e = 0; e < mesh->elements; e++) {
-        region[e] = (int8_t)(mesh->region != NULL ? mesh->region[e] : -1);
+        region[e] = mesh->region != NULL ? mesh->region[e] : -1;
         original[e] = rg_mesh_original(mesh, e);
     }
     put(w, &rg_rows_region, region, w->tiles, w->element_start);
@@ -330,7 +355,8 @@ void rg_mesh_file_add_partitions(const char *path, int partitions, const rg_tile
 void rg_mesh_file_write(const char *path, const rg_mesh *mesh, int partitions,
                         const rg_tile_partition *partition) {
     int tile = rg_tile_elements(mesh->elements);
-    target w = {.path = path, .tiles = (mesh->elements + tile - 1) / tile};
+    bool overlapping = mesh->surface.combinations > 0 || mesh->volume.combinations > 0;
+    target w = {.path = path, .version = overlapping ? 2 : 1, .tiles = (mesh->elements + tile - 1) / tile};
     w.element_start = RG_NEW(int64_t, (size_t)w.tiles + 1);
     for (int64_t t = 0; t <= w.tiles; t++) {
         rg_gid end = t * tile;

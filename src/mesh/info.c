@@ -169,24 +169,39 @@ static struct totals measure_all(const rg_mesh *mesh) {
 
 /* ---- words ---- */
 
+/* How many of group[count] are in each set. [sets]; the caller frees it. */
+static rg_gid *count_members(const rg_sets *s, const int32_t *group, rg_gid count) {
+    rg_gid *members = RG_NEW(rg_gid, (size_t)s->count + 1);
+    for (rg_gid i = 0; i < count; i++) {
+        int32_t sets;
+        const int32_t *set = rg_sets_of(s, &group[i], &sets);
+        for (int32_t k = 0; k < sets; k++) {
+            members[set[k]]++;
+        }
+    }
+    return members;
+}
+
 static void print_sets(const rg_mesh *mesh, FILE *out) {
-    rg_gid faces[RG_MAX_SETS + 1] = {0}, elements[RG_MAX_SETS + 1] = {0}, surface = 0;
+    rg_gid free_faces = 0, free_elements = 0;
+    rg_gid *faces = count_members(&mesh->surface, mesh->set, 4 * mesh->elements);
+    rg_gid *elements = count_members(&mesh->volume, mesh->region, mesh->region != NULL ? mesh->elements : 0);
     for (rg_gid slot = 0; slot < 4 * mesh->elements; slot++) {
-        surface += mesh->neighbour[slot] < 0;
-        faces[mesh->set[slot] + 1]++;
+        free_faces += mesh->neighbour[slot] < 0 && mesh->set[slot] < 0;
     }
     for (rg_gid e = 0; e < mesh->elements; e++) {
-        elements[mesh->region != NULL ? mesh->region[e] + 1 : 0]++;
+        free_elements += mesh->region == NULL || mesh->region[e] < 0;
     }
-    for (int s = 0; s < mesh->sets; s++) {
-        fprintf(out, "surface set    %s: %" PRId64 " faces\n", mesh->set_name[s], faces[s + 1]);
-        surface -= faces[s + 1];
+    for (int32_t s = 0; s < mesh->surface.count; s++) {
+        fprintf(out, "surface set    %s: %" PRId64 " faces\n", mesh->surface.name[s], faces[s]);
     }
-    fprintf(out, "               in no surface set: %" PRId64 " faces\n", surface);
-    for (int r = 0; r < mesh->regions; r++) {
-        fprintf(out, "volume set     %s: %" PRId64 " elements\n", mesh->region_name[r], elements[r + 1]);
+    fprintf(out, "               in no surface set: %" PRId64 " faces\n", free_faces);
+    for (int32_t s = 0; s < mesh->volume.count; s++) {
+        fprintf(out, "volume set     %s: %" PRId64 " elements\n", mesh->volume.name[s], elements[s]);
     }
-    fprintf(out, "               in no volume set: %" PRId64 " elements\n", elements[0]);
+    fprintf(out, "               in no volume set: %" PRId64 " elements\n", free_elements);
+    rg_free(faces);
+    rg_free(elements);
 }
 
 static void print_parts(const rg_mesh *mesh, FILE *out) {

@@ -119,12 +119,8 @@ void rg_mesh_free(rg_mesh *mesh) {
     if (mesh == NULL) {
         return;
     }
-    for (int s = 0; s < mesh->sets; s++) {
-        rg_free(mesh->set_name[s]);
-    }
-    for (int r = 0; r < mesh->regions; r++) {
-        rg_free(mesh->region_name[r]);
-    }
+    rg_sets_free(&mesh->surface);
+    rg_sets_free(&mesh->volume);
     rg_free(mesh->original);
     rg_free(mesh->region);
     rg_free(mesh->inner);

@@ -6,10 +6,10 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "mesh/sets.h"
+
 typedef int64_t rg_gid; /* global element or vertex number */
 typedef int32_t rg_lid; /* number local to a rank */
-
-enum { RG_MAX_SETS = 64 };
 
 /* The whole mesh. Held by rank 0 only, during set-up. Elements are numbered along a Hilbert curve through
  * their centroids; a tile is a run of consecutive elements, tile t those from t * tile on. Tiles are what
@@ -21,13 +21,11 @@ typedef struct {
     rg_gid *corner;    /* [elements][4], ascending within an element (see kernels/layout.h) */
     rg_gid *neighbour; /* [elements][4]: element across local face f (opposite corner f); -1 on the surface */
     int8_t *face;      /* [elements][4]: the neighbour's local face number; -1 on the surface */
-    int8_t *set;       /* [elements][4]: named set of a surface face; -1 for none */
-    int sets;
-    char *set_name[RG_MAX_SETS];
-    rg_gid *original; /* [elements]: numbers that the elements had in the input; NULL: as here */
-    int8_t *region;   /* [elements]: named set of volumes; -1 for none; NULL: none at all */
-    int regions;
-    char *region_name[RG_MAX_SETS];
+    int32_t *set;      /* [elements][4]: group of a surface face among `surface`; -1 inside and for none */
+    rg_sets surface;   /* named sets of surface faces */
+    rg_gid *original;  /* [elements]: numbers that the elements had in the input; NULL: as here */
+    int32_t *region;   /* [elements]: group among `volume`; -1 for none; NULL: none at all */
+    rg_sets volume;    /* named sets of elements */
     rg_gid
         *inner; /* [inners][3]: vertices, ascending, of faces inside that the input names: an import only */
     size_t inners;
@@ -74,8 +72,8 @@ typedef struct {
     double other_volume[4]; /* the neighbour's volume (m^3); own volume on the surface */
     int32_t owner[4];       /* rank of the neighbour; -1 on the surface */
     int8_t face[4];         /* the neighbour's local face; -1 on the surface */
-    int8_t set[4];          /* surface set, -1 for none */
-    int8_t region;          /* volume set, -1 for none */
+    int32_t set[4];         /* group of surface sets, -1 for none */
+    int32_t region;         /* group of volume sets, -1 for none */
     uint8_t material;       /* which of the case's, once rg_materials_assign has run; until then 0 */
     uint8_t beside[4];      /* the neighbour's; its own on the surface */
 } rg_element;
@@ -103,10 +101,7 @@ typedef struct {
     rg_element *element;
     rg_gid
         *original; /* [elements]: numbers in the mesh that this one was cut from; NULL if it is the whole */
-    int sets;
-    char *set_name[RG_MAX_SETS];
-    int regions;
-    char *region_name[RG_MAX_SETS];
+    rg_sets surface, volume;      /* sets of the whole mesh */
     rg_partition_quality quality; /* of the partition of the whole mesh */
 } rg_part;
 
@@ -132,10 +127,6 @@ rg_part *rg_part_distribute_weighted(const rg_mesh *mesh, int tile, double *weig
  * box are not those of the elements, or the surface is not closed (partition/part_check.h): with messages
  * that do not depend on the number of ranks (base/input_errors.h). The caller owns the result. */
 rg_part *rg_part_read(const char *path, double *weight, MPI_Comm comm);
-
-/* Number of the surface set or volume set of that name; -1 if the mesh has none. */
-int rg_part_set(const rg_part *part, const char *name);
-int rg_part_region(const rg_part *part, const char *name);
 
 void rg_part_free(rg_part *part);
 

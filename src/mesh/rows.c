@@ -6,11 +6,13 @@
 
 const rg_rows rg_rows_surface_sets = {"surface_sets", RG_ROWS_NAME, 1};
 const rg_rows rg_rows_volume_sets = {"volume_sets", RG_ROWS_NAME, 1};
+const rg_rows rg_rows_surface_combinations = {"surface_combinations", RG_ROWS_INT32, 2};
+const rg_rows rg_rows_volume_combinations = {"volume_combinations", RG_ROWS_INT32, 2};
 const rg_rows rg_rows_corner = {"corner", RG_ROWS_INT64, 4};
 const rg_rows rg_rows_neighbour = {"neighbour", RG_ROWS_INT64, 4};
 const rg_rows rg_rows_face = {"face", RG_ROWS_INT8, 4};
-const rg_rows rg_rows_set = {"set", RG_ROWS_INT8, 4};
-const rg_rows rg_rows_region = {"region", RG_ROWS_INT8, 1};
+const rg_rows rg_rows_set = {"set", RG_ROWS_INT32, 4};
+const rg_rows rg_rows_region = {"region", RG_ROWS_INT32, 1};
 const rg_rows rg_rows_original = {"original", RG_ROWS_INT64, 1};
 const rg_rows rg_rows_vertex_start = {"vertex_start", RG_ROWS_INT64, 1};
 const rg_rows rg_rows_vertex = {"vertex", RG_ROWS_INT64, 1};

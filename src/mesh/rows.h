@@ -31,7 +31,8 @@ hid_t rg_rows_type(const rg_rows *r);
 uint64_t rg_rows_checksum(const rg_rows *r, const void *data, int64_t count);
 
 /* All datasets; their meaning is in mesh/file.h. */
-extern const rg_rows rg_rows_surface_sets, rg_rows_volume_sets;
+extern const rg_rows rg_rows_surface_sets, rg_rows_volume_sets, rg_rows_surface_combinations,
+    rg_rows_volume_combinations;
 extern const rg_rows rg_rows_corner, rg_rows_neighbour, rg_rows_face, rg_rows_set, rg_rows_region,
     rg_rows_original;
 extern const rg_rows rg_rows_vertex_start, rg_rows_vertex, rg_rows_x;

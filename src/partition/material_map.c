@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "base/error.h"
 #include "base/exchange.h"
@@ -25,12 +26,10 @@ typedef struct {
 
 static _Noreturn void refuse_set(const map *m, int i) {
     const rg_part *part = m->part;
-    char all[1024] = "none";
-    const char *names[RG_MAX_SETS + 1] = {NULL};
-    for (size_t r = 0, used = 0; r < (size_t)part->regions && used < sizeof all; r++) {
-        names[r] = part->region_name[r];
-        used += (size_t)snprintf(all + used, sizeof all - used, "%s%s", r > 0 ? ", " : "", names[r]);
-    }
+    char all[1024];
+    const char **names = RG_NEW(const char *, (size_t)part->volume.count + 1);
+    memcpy(names, part->volume.name, (size_t)part->volume.count * sizeof *names);
+    rg_sets_list(&part->volume, all, sizeof all);
     const char *near = rg_nearest(m->c->other[i].set, names);
     rg_speak(m->comm);
     rg_fatal(RG_USAGE, "%s: materials[%d].set: %s: %s has no such volume set; allowed: %s%s%s%s", m->c->path,
@@ -41,7 +40,7 @@ static _Noreturn void refuse_set(const map *m, int i) {
 static void find_regions(map *m) {
     for (int i = 0; i < m->c->others; i++) {
         const char *set = m->c->other[i].set;
-        m->region[i] = set != NULL ? rg_part_region(m->part, set) : -1;
+        m->region[i] = set != NULL ? rg_sets_find(&m->part->volume, set) : -1;
         if (set != NULL && m->region[i] < 0) {
             refuse_set(m, i);
         }
@@ -60,7 +59,8 @@ static void claim(map *m, rg_lid k, rg_expr *const where[], int64_t claimed[], r
     double x[3];
     find_centroid(e, x);
     for (int i = 0; i < m->c->others; i++) {
-        double here = where[i] != NULL ? rg_expr_value(where[i], x, 0) : e->region == m->region[i];
+        double here = where[i] != NULL ? rg_expr_value(where[i], x, 0)
+                                       : rg_sets_hold(&m->part->volume, e->region, m->region[i]);
         if (!isfinite(here)) {
 #pragma omp critical
             rg_first_bad_note(bad, i, x, here);

@@ -1,45 +1,35 @@
 /* The mesh that a case asks for. */
 #include "partition/mesh_case.h"
 
-#include <stdio.h>
+#include <inttypes.h>
 #include <string.h>
 
 #include "base/error.h"
+#include "base/first_bad.h"
+#include "base/mem.h"
 #include "case/problem.h"
 #include "mesh/file.h"
 #include "partition/material_map.h"
 #include "partition/tile_weight.h"
 
-static const char *list_names(const rg_mesh_header *h, char *text, size_t size) {
-    size_t used = 0;
-    text[0] = '\0';
-    for (int s = 0; s < h->sets && used < size; s++) {
-        used += (size_t)snprintf(text + used, size - used, "%s%s", s > 0 ? ", " : "", h->set_name[s]);
-    }
-    return h->sets > 0 ? text : "none";
-}
-
 /* The surface sets that the boundary names must be in the mesh file: the case file could not know. */
 static void check_sets(const rg_case *c) {
     rg_mesh_file *f = rg_mesh_file_open(c->mesh.file);
-    const rg_mesh_header *h = rg_mesh_file_header(f);
-    const char *names[RG_MAX_SETS + 1] = {NULL};
+    const rg_sets *sets = &rg_mesh_file_header(f)->surface;
+    const char **names = RG_NEW(const char *, (size_t)sets->count + 1);
     char all[1024];
-    memcpy(names, h->set_name, (size_t)h->sets * sizeof *names);
+    memcpy(names, sets->name, (size_t)sets->count * sizeof *names);
+    rg_sets_list(sets, all, sizeof all);
     for (int b = 0; b < c->boundaries; b++) {
         const char *set = c->boundary[b].set;
-        bool known = false;
-        for (int s = 0; s < h->sets; s++) {
-            known = known || strcmp(set, names[s]) == 0;
-        }
-        if (!known) {
+        if (rg_sets_find(sets, set) < 0) {
             const char *near = rg_nearest(set, names);
             rg_fatal(RG_USAGE, "%s: boundary[%d].set: %s: %s has no such surface set; allowed: %s%s%s%s",
-                     c->path, b, set, c->mesh.file, list_names(h, all, sizeof all),
-                     near != NULL ? "; did you mean '" : "", near != NULL ? near : "",
-                     near != NULL ? "'?" : "");
+                     c->path, b, set, c->mesh.file, all, near != NULL ? "; did you mean '" : "",
+                     near != NULL ? near : "", near != NULL ? "'?" : "");
         }
     }
+    rg_free(names);
     rg_mesh_file_close(f);
 }
 
@@ -77,12 +67,46 @@ static rg_part *part_of_box(const rg_case *c, double *cost, bool known, int rank
     return part;
 }
 
+/* Faces of the whole mesh that are in both sets; collective. */
+static int64_t count_shared(const rg_part *part, int32_t a, int32_t b, MPI_Comm comm) {
+    int64_t count = 0;
+    for (rg_lid e = 0; e < part->elements; e++) {
+        for (int f = 0; f < 4; f++) {
+            int32_t group = part->element[e].set[f];
+            count += rg_sets_hold(&part->surface, group, a) && rg_sets_hold(&part->surface, group, b);
+        }
+    }
+    MPI_Allreduce(MPI_IN_PLACE, &count, 1, MPI_INT64_T, MPI_SUM, comm);
+    return count;
+}
+
+/* Sets may overlap; what they prescribe to one face must not contradict. */
+static void refuse_contradictions(const rg_case *c, const rg_part *part, MPI_Comm comm) {
+    for (int b = 0; b < c->boundaries && part->surface.combinations > 0; b++) {
+        for (int a = 0; a < b; a++) {
+            const rg_boundary *p = &c->boundary[a], *q = &c->boundary[b];
+            int64_t faces = p->component != q->component
+                                ? 0
+                                : count_shared(part, rg_sets_find(&part->surface, p->set),
+                                               rg_sets_find(&part->surface, q->set), comm);
+            if (faces > 0) {
+                rg_speak(comm);
+                rg_fatal(RG_USAGE,
+                         "%s: boundary[%d] and boundary[%d] both prescribe component %c of %" PRId64
+                         " faces, which are in sets '%s' and '%s'",
+                         c->path, a, b, "xyz"[p->component], faces, p -> set, q -> set);
+            }
+        }
+    }
+}
+
 rg_part *rg_part_of_case(const rg_case *c, double *cost, MPI_Comm comm) {
     int rank, known = cost != NULL;
     MPI_Comm_rank(comm, &rank);
     MPI_Bcast(&known, 1, MPI_INT, 0, comm);
     rg_part *part = c->mesh.file != NULL ? part_of_file(c, cost, known, rank, comm)
                                          : part_of_box(c, cost, known, rank, comm);
+    refuse_contradictions(c, part, comm);
     rg_materials_assign(c, part, comm);
     return part;
 }

@@ -93,18 +93,39 @@ static void pack_own(const struct source *s, rg_part *own) {
     }
 }
 
-/* Names that rank 0 has in `from` to all. */
-static void share_names(char *const from[], int *count, char *name[], int rank, MPI_Comm comm) {
-    MPI_Bcast(count, 1, MPI_INT, 0, comm);
-    for (int s = 0; s < *count; s++) {
-        int length = rank == 0 ? (int)strlen(from[s]) : 0;
+/* The sets that rank 0 has in `from` to all. */
+static rg_sets share_sets(const rg_sets *from, int rank, MPI_Comm comm) {
+    rg_sets own = rank == 0 ? rg_sets_copy(from) : (rg_sets){.count = 0};
+    int32_t count = own.count, combinations = own.combinations;
+    MPI_Bcast(&count, 1, MPI_INT32_T, 0, comm);
+    for (int32_t s = 0; s < count; s++) {
+        int length = rank == 0 ? (int)strlen(own.name[s]) : 0;
         MPI_Bcast(&length, 1, MPI_INT, 0, comm);
-        name[s] = RG_NEW(char, (size_t)length + 1);
+        char *name = RG_NEW(char, (size_t)length + 1);
         if (rank == 0) {
-            memcpy(name[s], from[s], (size_t)length);
+            memcpy(name, own.name[s], (size_t)length);
         }
-        MPI_Bcast(name[s], length, MPI_CHAR, 0, comm);
+        MPI_Bcast(name, length, MPI_CHAR, 0, comm);
+        if (rank > 0) {
+            rg_sets_add(&own, name);
+        }
+        rg_free(name);
     }
+    MPI_Bcast(&combinations, 1, MPI_INT32_T, 0, comm);
+    for (int32_t c = 0; c < combinations; c++) {
+        int32_t members = rank == 0 ? own.start[c + 1] - own.start[c] : 0;
+        MPI_Bcast(&members, 1, MPI_INT32_T, 0, comm);
+        int32_t *set = RG_NEW(int32_t, (size_t)members);
+        if (rank == 0) {
+            memcpy(set, own.member + own.start[c], (size_t)members * sizeof *set);
+        }
+        MPI_Bcast(set, members, MPI_INT32_T, 0, comm);
+        if (rank > 0) {
+            rg_sets_combine(&own, members, set);
+        }
+        rg_free(set);
+    }
+    return own;
 }
 
 /* Rank 0's side: packs and sends what the other ranks wait for, and its own part. */
@@ -133,16 +154,14 @@ rg_part *rg_part_distribute_weighted(const rg_mesh *mesh, int tile, double *weig
     rg_distribution *distribution = NULL;
     if (rank == 0) {
         own->interfaces = count_interfaces(mesh);
-        own->sets = mesh->sets;
-        own->regions = mesh->regions;
         rg_mesh_box_around(mesh, own->box);
         distribution = distribute_mesh(mesh, tile, weight, ranks);
     }
     rg_distribution_share(distribution, own, comm);
     MPI_Bcast(&own->interfaces, 1, MPI_INT64_T, 0, comm);
     MPI_Bcast(own->box, 6, MPI_DOUBLE, 0, comm);
-    share_names(rank == 0 ? mesh->set_name : NULL, &own->sets, own->set_name, rank, comm);
-    share_names(rank == 0 ? mesh->region_name : NULL, &own->regions, own->region_name, rank, comm);
+    own->surface = share_sets(rank == 0 ? &mesh->surface : NULL, rank, comm);
+    own->volume = share_sets(rank == 0 ? &mesh->volume : NULL, rank, comm);
     if (rank == 0) {
         hand_out(mesh, distribution, own, comm);
         rg_distribution_free(distribution);
@@ -156,33 +175,12 @@ rg_part *rg_part_distribute(const rg_mesh *mesh, int tile, MPI_Comm comm) {
     return rg_part_distribute_weighted(mesh, tile, NULL, comm);
 }
 
-static int find_name(char *const list[], int count, const char *name) {
-    for (int i = 0; i < count; i++) {
-        if (strcmp(list[i], name) == 0) {
-            return i;
-        }
-    }
-    return -1;
-}
-
-int rg_part_set(const rg_part *part, const char *name) {
-    return find_name(part->set_name, part->sets, name);
-}
-
-int rg_part_region(const rg_part *part, const char *name) {
-    return find_name(part->region_name, part->regions, name);
-}
-
 void rg_part_free(rg_part *part) {
     if (part == NULL) {
         return;
     }
-    for (int s = 0; s < part->sets; s++) {
-        rg_free(part->set_name[s]);
-    }
-    for (int r = 0; r < part->regions; r++) {
-        rg_free(part->region_name[r]);
-    }
+    rg_sets_free(&part->surface);
+    rg_sets_free(&part->volume);
     rg_free(part->tile_id);
     rg_free(part->original);
     rg_free(part->element);

@@ -83,21 +83,12 @@ static void share_owners(reader *r, const rg_distribution *distribution) {
     }
 }
 
-static void take_names(char *const from[], int count, char *name[]) {
-    for (int s = 0; s < count; s++) {
-        name[s] = RG_NEW(char, strlen(from[s]) + 1);
-        strcpy(name[s], from[s]);
-    }
-}
-
 static void take_header(reader *r) {
     const rg_mesh_header *h = r->head;
     r->own->interfaces = h->interfaces;
     memcpy(r->own->box, h->box, sizeof h->box);
-    r->own->sets = h->sets;
-    r->own->regions = h->regions;
-    take_names(h->set_name, h->sets, r->own->set_name);
-    take_names(h->region_name, h->regions, r->own->region_name);
+    r->own->surface = rg_sets_copy(&h->surface);
+    r->own->volume = rg_sets_copy(&h->volume);
 }
 
 /* ---- elements ---- */

@@ -6,8 +6,8 @@
 #include "mesh/mesh.h"
 
 enum {
-    RG_PATCH_MOST = 5000,      /* elements of a patch */
-    RG_PATCH_CUT = RG_MAX_SETS /* "surface set" of the faces where it is cut out of the mesh */
+    RG_PATCH_MOST = 5000, /* elements of a patch */
+    RG_PATCH_CUT = -2     /* "surface set" of the faces where it is cut out of the mesh */
 };
 
 /* How much an element limits the time step: sum over its inner faces of area^2/min(V, V') (A + A')/2

@@ -87,20 +87,22 @@ static void make_rule(rg_face_rule *rule) {
     }
 }
 
-/* The sets that may touch body i, as bits by set number; all bits, and that of faces in no set, where none is
- * named. */
-static uint64_t touching_sets(const rg_case *c, const rg_part *part, int i, MPI_Comm comm) {
-    uint64_t bits = c->body[i].sets == 0 ? UINT64_MAX : 0;
+/* Which groups of faces may touch body i: [groups]; NULL where no set is named, so that all may. */
+static bool *touching_groups(const rg_case *c, const rg_part *part, int i, MPI_Comm comm) {
+    int32_t groups = rg_sets_groups(&part->surface);
+    bool *touching = c->body[i].sets == 0 ? NULL : RG_NEW(bool, (size_t)groups + 1);
     for (int k = 0; k < c->body[i].sets; k++) {
-        int set = rg_part_set(part, c->body[i].set[k]);
+        int set = rg_sets_find(&part->surface, c->body[i].set[k]);
         if (set < 0) {
             rg_speak(comm);
             rg_fatal(RG_USAGE, "%s: bodies[%d].faces[%d]: the mesh has no set named '%s'", c->path, i, k,
                      c->body[i].set[k]);
         }
-        bits |= UINT64_C(1) << set;
+        for (int32_t g = 0; g < groups; g++) {
+            touching[g] = touching[g] || rg_sets_hold(&part->surface, g, set);
+        }
     }
-    return bits;
+    return touching;
 }
 
 static double face_area(const double *corner, int face) {
@@ -127,13 +129,13 @@ static bool is_outer(const rg_domain *d, size_t slot, int face) {
 
 /* Visits the faces of a tile that may touch a body, in an order that follows from the mesh: counts them and,
  * with room for them, lists them. */
-static size_t list_faces(rg_bodies *b, const uint64_t *sets, size_t tile, rg_contact_face *out) {
+static size_t list_faces(rg_bodies *b, bool *const touching[], size_t tile, rg_contact_face *out) {
     const rg_domain *d = b->domain;
     size_t count = 0;
     for (size_t slot = d->tile[tile].begin * RG_LANES; slot < d->tile[tile].end * RG_LANES; slot++) {
         for (int k = 0; k < RG_FACES * b->count; k++) {
-            int face = k / b->count, body = k % b->count, set = d->set[4 * slot + (size_t)face];
-            bool may = sets[body] == UINT64_MAX || (set >= 0 && (sets[body] >> set & 1) != 0);
+            int face = k / b->count, body = k % b->count, group = d->set[4 * slot + (size_t)face];
+            bool may = touching[body] == NULL || (group >= 0 && touching[body][group]);
             if (!may || !is_outer(d, slot, face)) {
                 continue;
             }
@@ -153,18 +155,21 @@ static size_t list_faces(rg_bodies *b, const uint64_t *sets, size_t tile, rg_con
 }
 
 static void find_faces(rg_bodies *b, const rg_case *c, const rg_part *part) {
-    uint64_t *sets = RG_NEW(uint64_t, (size_t)b->count);
+    bool **touching = RG_NEW(bool *, (size_t)b->count);
     for (int i = 0; i < b->count; i++) {
-        sets[i] = touching_sets(c, part, i, b->comm);
+        touching[i] = touching_groups(c, part, i, b->comm);
     }
     for (size_t t = 0; t < b->domain->tiles; t++) {
-        b->tile_begin[t + 1] = b->tile_begin[t] + list_faces(b, sets, t, NULL);
+        b->tile_begin[t + 1] = b->tile_begin[t] + list_faces(b, touching, t, NULL);
     }
     b->face = RG_NEW(rg_contact_face, b->tile_begin[b->domain->tiles] + 1);
     for (size_t t = 0; t < b->domain->tiles; t++) {
-        list_faces(b, sets, t, b->face + b->tile_begin[t]);
+        list_faces(b, touching, t, b->face + b->tile_begin[t]);
     }
-    rg_free(sets);
+    for (int i = 0; i < b->count; i++) {
+        rg_free(touching[i]);
+    }
+    rg_free(touching);
 }
 
 /* ---- Time step ---- */

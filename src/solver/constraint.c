@@ -117,7 +117,7 @@ static const pattern *pattern_of(rg_constraints *k, unsigned mask) {
 /* ---- Set-up ---- */
 
 static int set_number(const rg_part *part, const char *name) {
-    int set = rg_part_set(part, name);
+    int set = rg_sets_find(&part->surface, name);
     if (set < 0) {
         rg_fatal(RG_USAGE, "boundary: the mesh has no set named '%s'", name);
     }
@@ -125,16 +125,20 @@ static int set_number(const rg_part *part, const char *name) {
 }
 
 /* Bits of the nodes of each element on the set of each boundary: mask[boundaries][slots]. */
-static uint16_t *list_nodes(const rg_constraints *k, const int *set, rg_assembly *nodes) {
+static uint16_t *list_nodes(const rg_constraints *k, const rg_sets *sets, const int *set,
+                            rg_assembly *nodes) {
     size_t slots = k->domain->blocks * RG_LANES;
     uint16_t *mask = RG_NEW(uint16_t, (size_t)k->input->boundaries * slots + 1);
     for (int b = 0; b < k->input->boundaries; b++) {
         uint16_t *of = mask + (size_t)b * slots;
+        bool *in = rg_sets_groups_in(sets, set[b]);
         for (size_t side = 0; side < RG_FACES * slots; side++) {
-            for (int a = 0; k->domain->set[side] == set[b] && a < RG_FNODES; a++) {
+            int32_t group = k->domain->set[side];
+            for (int a = 0; group >= 0 && in[group] && a < RG_FNODES; a++) {
                 of[side / RG_FACES] |= (uint16_t)(1u << rg_face_node[side % RG_FACES][a]);
             }
         }
+        rg_free(in);
         if (nodes != NULL) {
             rg_assembly_spread(nodes, of);
         }
@@ -185,7 +189,7 @@ rg_constraints *rg_constraints_make(const rg_case *c, const rg_domain *d, const 
         set[b] = set_number(part, c->boundary[b].set);
         k->varies = k->varies || boundary_varies(&c->boundary[b]);
     }
-    uint16_t *on_set = list_nodes(k, set, nodes);
+    uint16_t *on_set = list_nodes(k, &part->surface, set, nodes);
     k->tile_begin = RG_NEW(size_t, d->tiles + 1);
     for (size_t t = 0; t < d->tiles; t++) {
         k->tile_begin[t] = k->entries;

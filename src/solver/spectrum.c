@@ -85,7 +85,9 @@ static void combine(rg_solver *s, double a, rg_real *y, double b, const rg_real 
 static void hold_cut(rg_solver *s, rg_real *q) {
 #pragma omp parallel for schedule(static)
     for (size_t slot = 0; slot < s->domain->blocks * RG_LANES; slot++) {
-        if (memchr(s->domain->set + 4 * slot, RG_PATCH_CUT, 4) != NULL) {
+        const int32_t *set = s->domain->set + 4 * slot;
+        if (set[0] == RG_PATCH_CUT || set[1] == RG_PATCH_CUT || set[2] == RG_PATCH_CUT ||
+            set[3] == RG_PATCH_CUT) {
             for (int k = 0; k < 3 * RG_NODES; k++) {
                 q[rg_node_index(slot, k / 3, k % 3)] = 0;
             }

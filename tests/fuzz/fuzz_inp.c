@@ -10,12 +10,12 @@ static void body(const uint8_t *data, size_t size) {
     const char *path = rg_fuzz_scratch();
     FILE *f = fopen(path, "wb");
     rg_fuzz_require(f != NULL && fwrite(data, 1, size, f) == size && fclose(f) == 0, "the scratch file");
-    rg_mesh *mesh = rg_inp_read(path, 1e-3);
+    FILE *nowhere = fopen("/dev/null", "w");
+    rg_mesh *mesh = rg_inp_read(path, 1e-3, nowhere);
     rg_mesh_check_elements(mesh, path);
     rg_mesh_sort(mesh);
     rg_mesh_connect(mesh);
     rg_mesh_check(mesh, path);
-    FILE *nowhere = fopen("/dev/null", "w");
     rg_mesh_info(mesh, 1, nowhere);
     fclose(nowhere);
     rg_mesh_free(mesh);

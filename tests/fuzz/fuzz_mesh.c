@@ -48,9 +48,8 @@ static void write_good(const char *path, const int64_t cells[3]) {
     for (int64_t t = 0; t < tiles; t++) {
         owner[t] = t >= tiles / 2;
     }
-    mesh->region = RG_NEW(int8_t, (size_t)mesh->elements);
-    mesh->region_name[0] = RG_NEW(char, RG_SET_NAME);
-    strcpy(mesh->region_name[mesh->regions++], "all");
+    mesh->region = RG_NEW(int32_t, (size_t)mesh->elements);
+    rg_sets_add(&mesh->volume, "all");
     rg_mesh_file_write(path, mesh, 1, &(rg_tile_partition){2, owner});
     rg_mesh_free(mesh);
     rg_free(owner);

@@ -69,14 +69,65 @@ def test_entities_without_groups(tmp_path):
     assert said == [": 1 faces of surface sets lie between elements, not on the surface: in no set"]
 
 
-@pytest.mark.parametrize("count", [64, 65])
-def test_most_entities_that_can_be_sets(tmp_path, count):
-    faces = [(n, TRI, 0, 100 + n, (1, 2, 100 + n)) for n in range(1, count + 1)]
+def test_many_entities(tmp_path):
+    faces = [(1000 + n, TRI, 0, 100 + n, (1, 2, 100 + n)) for n in range(1, 301)]
     solids = [(number, kind, 0, entity, nodes) for number, kind, _, entity, nodes in SOLIDS]
-    names, _, _, said = convert(tmp_path, faces + solids, points=POINTS | {100 + n: (n, n * n, 0) for n in range(1, count + 1)})
-    assert len(names["surface_sets"]) == (64 if count == 64 else 0)
-    told = ": 65 surfaces without physical groups are more than the 64 that can be sets: in no set"
-    assert (told in said) == (count == 65)
+    names, _, _, _ = convert(tmp_path, faces + solids, points=POINTS | {100 + n: (n, n * n, 0) for n in range(1, 301)})
+    assert names["surface_sets"] == [str(100 + n) for n in range(1, 301)]
+
+
+def test_entities_in_several_groups(tmp_path):
+    """In format 4, where an entity has a list of them."""
+    (tmp_path / "a.msh").write_text("""$MeshFormat
+4.1 0 8
+$EndMeshFormat
+$PhysicalNames
+5
+2 1 "foot"
+2 2 "all"
+3 1 "steel"
+3 2 "half"
+3 3 "whole"
+$EndPhysicalNames
+$Entities
+0 0 2 2
+31 0 0 0 9 9 9 2 1 2 0
+32 0 0 0 9 9 9 1 2 0
+21 0 0 0 9 9 9 2 3 1 0
+22 0 0 0 9 9 9 2 2 3 0
+$EndEntities
+$Nodes
+1 5 1 5
+3 21 0 5
+1\n2\n3\n4\n5
+1 2 3\n5 2 3.5\n1.5 7 3\n1 2.5 9\n6 8 10
+$EndNodes
+$Elements
+4 4 1 72
+2 31 2 1
+1 1 2 3
+2 32 2 1
+2 1 2 4
+3 21 4 1
+71 1 2 3 4
+3 22 4 1
+72 2 3 4 5
+$EndElements
+""")
+    process = launch("mesh", tmp_path / "a.msh", "-o", tmp_path / "a.h5")
+    assert process.returncode == 0 and process.stderr == "", process.stderr
+    with h5py.File(tmp_path / "a.h5") as file:
+        def members(kind, group):
+            names = [n.decode() for n in file[f"{kind}_sets"][:]]
+            combined = [[names[s] for c, s in file[f"{kind}_combinations"][:] if c == group - len(names)]
+                        if f"{kind}_combinations" in file else []]
+            return [] if group < 0 else [names[group]] if group < len(names) else combined[0]
+
+        of = {int(e): members("volume", g) for e, g in zip(file["original"], file["region"])}
+        faces = {(int(file["original"][e]), int(f)): members("surface", file["set"][e, f])
+                 for e, f in np.argwhere(file["set"][:] >= 0)}
+    assert of == {71: ["steel", "whole"], 72: ["half", "whole"]}
+    assert faces == {(71, 3): ["foot", "all"], (71, 2): ["all"]}
 
 
 def test_what_is_in_no_physical_volume(tmp_path):
@@ -116,14 +167,12 @@ def test_other_elements(tmp_path):
     assert len(region) == 2 and said == []
 
 
-def test_names_that_are_too_long_or_too_many(tmp_path):
+def test_names_that_are_too_long(tmp_path):
     face = (1, TRI, 3, 31, (1, 2, 3))
     names, _, marked, _ = convert(tmp_path, [face, *SOLIDS], [(2, 3, 63 * "n")])
     assert names["surface_sets"] == [63 * "n"]
     said = refused(tmp_path, [face, *SOLIDS], [(2, 3, 64 * "n")])
     assert said == f"physical group '{64 * 'n'}': its name is longer than 63 bytes\n"
-    faces = [(n, TRI, 100 + n, 100 + n, (1, 2, 5)) for n in range(1, 66)]
-    assert refused(tmp_path, faces + SOLIDS) == "more than 64 physical groups of dimension 2\n"
 
 
 def test_reasons(tmp_path):

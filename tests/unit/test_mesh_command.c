@@ -136,6 +136,7 @@ static void test_import(void **state) {
     (void)state;
     write_text("pair.inp", pair);
     expect(WORDS("pair.inp", "-o", "pair.h5", "--scale", "2"), RG_OK,
+           "pair.inp: 0 keywords skipped, which say nothing of the mesh\n"
            "pair.h5: 10 x 12 x 14 m, 2 elements, 5 vertices, 1 surface sets, 0 volume sets\n");
     rg_mesh *m = rg_mesh_file_read("pair.h5");
     assert_true(m->x[0] == 2 && m->x[3 * 4 + 2] == 20 && m->elements == 2);
@@ -175,7 +176,9 @@ static void test_parts(void **state) {
         words = WORDS("parts.inp", "-o", "parts.h5");
         assert_int_equal(run_child(run_command, found, sizeof found), RG_OK);
         int used = snprintf(said, sizeof said,
-                            "rhegma: warning: parts.inp: the mesh has %d parts that share no face\n", parts);
+                            "parts.inp: 0 keywords skipped, which say nothing of the mesh\n"
+                            "rhegma: warning: parts.inp: the mesh has %d parts that share no face\n",
+                            parts);
         rg_mesh *m = rg_mesh_file_read("parts.h5");
         bool first = false; /* in the order of the curve; elements 50 and 99 are one part */
         for (int e = 0, p = 0; e <= parts && p < 8; e++) {
@@ -208,6 +211,7 @@ static void test_improve(void **state) {
         "wrong.inp",
         "*NODE\n1, 0, 0, 0\n2, 0, 0, 1\n3, 3, 0, 0.5\n4, 0, 0, 2\n*ELEMENT, TYPE=C3D4\n7, 1, 2, 4, 3\n");
     expect(WORDS("wrong.inp", "-o", "flat.h5", "--improve"), RG_USAGE,
+           "wrong.inp: 0 keywords skipped, which say nothing of the mesh\n"
            "rhegma: wrong.inp: element 7 at (0, 0, 0) m has no volume: 0 m3 with edges of up to 3.3541 m\n");
     assert_int_not_equal(access("flat.h5", F_OK), 0);
     words = WORDS("flat.inp", "-o", "flat.h5", "--improve");
@@ -217,6 +221,7 @@ static void test_improve(void **state) {
     assert_int_equal(run_child(run_command, said, sizeof said), RG_OK);
     /* before: half the distance of the apexes */
     assert_int_equal(sscanf(said,
+                            "flat.inp: 0 keywords skipped, which say nothing of the mesh\n"
                             "improved: smallest height from 0.5 to %99s m, longest edge from 5.248 to %lf m; "
                             "vertices moved %ld times, 0 edges and 1 faces "
                             "replaced, from 2 to 3 elements\n",

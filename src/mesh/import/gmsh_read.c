@@ -36,10 +36,8 @@ void rg_gmsh_require(const char *path, int error) {
 
 /* ---- opening ---- */
 
-static void count_block(void *context, int type, const size_t *tag, size_t count, const size_t *node,
-                        int set) {
-    (void)type, (void)tag, (void)node, (void)set;
-    *(size_t *)context += count;
+static void count_block(void *context, const rg_gmsh_block *b) {
+    *(size_t *)context += b->count;
 }
 
 static bool has_volume_elements(const char *path) {
@@ -85,17 +83,17 @@ static void read_nodes(rg_import *m) {
     gmshFree(parameter);
 }
 
-static _Noreturn void refuse_type(const char *path, int type, size_t count, size_t first) {
+static _Noreturn void refuse_type(const char *path, const rg_gmsh_block *b) {
     char *name = NULL;
     int dim, order, nodes, primary, error;
     double *x = NULL;
     size_t values;
-    gmshModelMeshGetElementProperties(type, &name, &dim, &order, &nodes, &x, &values, &primary, &error);
+    gmshModelMeshGetElementProperties(b->type, &name, &dim, &order, &nodes, &x, &values, &primary, &error);
     rg_fatal(
         RG_USAGE,
         "%s: %zu elements of type '%s', the first of them element %zu; only tetrahedra of first and second "
         "order are possible",
-        path, count, error == 0 ? name : "?", first);
+        path, b->count, error == 0 ? name : "?", b->tag[0]);
 }
 
 struct taking {
@@ -104,32 +102,46 @@ struct taking {
     int64_t left_out;
 };
 
-static void take_elements(void *context, int type, const size_t *tag, size_t count, const size_t *node,
-                          int set) {
+static void take_elements(void *context, const rg_gmsh_block *b) {
     struct taking *t = context;
-    if (set < 0 && t->named_only) {
-        t->left_out += (int64_t)count;
+    if (b->sets == 0 && t->named_only) {
+        t->left_out += (int64_t)b->count;
         return;
     }
-    if (type != TET4 && type != TET10) {
-        refuse_type(t->import->path, type, count, tag[0]);
+    if (b->type != TET4 && b->type != TET10) {
+        refuse_type(t->import->path, b);
     }
-    int each = type == TET4 ? 4 : 10;
-    for (size_t e = 0; e < count; e++) {
-        rg_import_element(t->import, (rg_gid)tag[e], each, node + (size_t)each * e, set);
+    int each = b->type == TET4 ? 4 : 10;
+    for (size_t e = 0; e < b->count; e++) {
+        rg_import_element(t->import, (rg_gid)b->tag[e], each, b->node + (size_t)each * e);
+        for (int32_t s = 0; s < b->sets; s++) {
+            rg_import_put(t->import, t->import->elements - 1, b->set[s]);
+        }
     }
 }
 
-static void take_faces(void *context, int type, const size_t *tag, size_t count, const size_t *node,
-                       int set) {
+static void take_faces(void *context, const rg_gmsh_block *b) {
     rg_import *m = context;
-    bool triangles = type == TRI3 || type == TRI6;
-    if (!triangles && set >= 0) {
-        refuse_type(m->path, type, count, tag[0]);
+    bool triangles = b->type == TRI3 || b->type == TRI6;
+    if (!triangles && b->sets > 0) {
+        refuse_type(m->path, b);
     }
-    for (size_t i = 0; triangles && i < count; i++) {
-        rg_import_add_face(m, (rg_gid)tag[i], node + (type == TRI3 ? 3 : 6) * i,
-                           set >= 0 ? set : RG_IMPORT_UNNAMED);
+    for (size_t i = 0; triangles && i < b->count; i++) {
+        const size_t *node = b->node + (b->type == TRI3 ? 3 : 6) * i;
+        rg_import_face face = {{node[0], node[1], node[2]}, (rg_gid)b->tag[i], RG_IMPORT_UNNAMED, false};
+        for (int32_t s = 0; s < b->sets; s++) {
+            face.set = b->set[s];
+            rg_import_add_face(m, face);
+        }
+        if (b->sets == 0) {
+            rg_import_add_face(m, face);
+        }
+    }
+}
+
+static void take_names(rg_sets *to, const rg_sets *from) {
+    for (int32_t s = 0; s < from->count; s++) {
+        rg_sets_add(to, from->name[s]);
     }
 }
 
@@ -138,19 +150,17 @@ rg_mesh *rg_gmsh_read(const char *path, double scale) {
     open_model(path);
     read_nodes(&m);
     rg_gmsh_sets volumes = rg_gmsh_sets_read(path, 3), surfaces = rg_gmsh_sets_read(path, 2);
-    struct taking t = {&m, volumes.count > 0, 0};
+    struct taking t = {&m, volumes.sets.count > 0, 0};
+    take_names(&m.volume, &volumes.sets);
+    take_names(&m.surface, &surfaces.sets);
     rg_gmsh_each(path, &volumes, take_elements, &t);
     rg_gmsh_each(path, &surfaces, take_faces, &m);
     if (t.left_out > 0) {
         rg_warn("%s: %" PRId64 " elements are in no physical volume and left out", path, t.left_out);
     }
-    rg_mesh *mesh = rg_import_finish(&m, surfaces.name);
-    mesh->regions = volumes.count;
-    memcpy(mesh->region_name, volumes.name, sizeof mesh->region_name);
-    mesh->sets = surfaces.count;
-    memcpy(mesh->set_name, surfaces.name, sizeof mesh->set_name);
     rg_gmsh_sets_free(&volumes);
     rg_gmsh_sets_free(&surfaces);
+    rg_mesh *mesh = rg_import_finish(&m);
     int error;
     gmshFinalize(&error);
     return mesh;

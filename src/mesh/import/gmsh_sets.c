@@ -31,49 +31,20 @@ static char *group_name(const char *path, int dimension, int group) {
 }
 
 /* Two groups of the same name are one set. */
-static int set_of(rg_gmsh_sets *s, const char *path, int group) {
+static int32_t set_of(rg_gmsh_sets *s, const char *path, int group) {
     char *name = group_name(path, s->dimension, group);
-    for (int i = 0; i < s->count; i++) {
-        if (strcmp(s->name[i], name) == 0) {
-            rg_free(name);
-            return i;
-        }
-    }
-    if (s->count == RG_MAX_SETS) {
-        rg_fatal(RG_USAGE, "%s: more than %d physical groups of dimension %d", path, RG_MAX_SETS,
-                 s->dimension);
-    }
-    s->name[s->count] = name;
-    return s->count++;
-}
-
-static void assign(rg_gmsh_sets *s, const char *path, int tag, int set) {
-    size_t i = 0;
-    while (i < s->entities && s->entity[i].tag != tag) {
-        i++;
-    }
-    if (i == s->entities) {
-        return;
-    }
-    if (s->entity[i].set >= 0 && s->entity[i].set != set) {
-        rg_fatal(RG_USAGE, "%s: %s %d is in two physical groups, '%s' and '%s'; it can be in one set only",
-                 path, s->dimension == 2 ? "surface" : "volume", tag, s->name[s->entity[i].set],
-                 s->name[set]);
-    }
-    s->entity[i].set = set;
+    int32_t set = rg_sets_find(&s->sets, name);
+    set = set < 0 ? rg_sets_add(&s->sets, name) : set;
+    rg_free(name);
+    return set;
 }
 
 /* Formats without names (Nastran, Medit, STEP) number their entities: the numbers become sets. */
-static void name_entities(rg_gmsh_sets *s, const char *path) {
-    if (s->entities > RG_MAX_SETS) {
-        rg_warn("%s: %zu %s without physical groups are more than the %d that can be sets: in no set", path,
-                s->entities, s->dimension == 2 ? "surfaces" : "volumes", RG_MAX_SETS);
-        return;
-    }
+static void name_entities(rg_gmsh_sets *s) {
     for (size_t i = 0; i < s->entities; i++) {
-        s->name[i] = RG_NEW(char, RG_SET_NAME);
-        snprintf(s->name[i], RG_SET_NAME, "%d", s->entity[i].tag);
-        s->entity[i].set = s->count++;
+        char name[RG_SET_NAME];
+        snprintf(name, sizeof name, "%d", s->entity[i].tag);
+        s->entity[i].group = rg_sets_add(&s->sets, name);
     }
 }
 
@@ -92,35 +63,74 @@ rg_gmsh_sets rg_gmsh_entities(const char *path, int dimension) {
     return s;
 }
 
+static int by_tag(const void *a, const void *b) {
+    const struct rg_gmsh_entity *p = a, *q = b;
+    return (p->tag > q->tag) - (p->tag < q->tag);
+}
+
+/* An entity of a physical group. */
+struct member {
+    int32_t set;
+    int tag;
+};
+
+static int by_set(const void *a, const void *b) {
+    const struct member *p = a, *q = b;
+    if (p->set != q->set) {
+        return p->set < q->set ? -1 : 1;
+    }
+    return (p->tag > q->tag) - (p->tag < q->tag);
+}
+
+static void assign(rg_gmsh_sets *s, struct member *member, size_t members) {
+    rg_sets_joining joining = {.sets = &s->sets};
+    qsort(s->entity, s->entities, sizeof *s->entity, by_tag);
+    qsort(member, members, sizeof *member, by_set);
+    for (size_t i = 0; i < members; i++) {
+        struct rg_gmsh_entity key = {member[i].tag, 0};
+        struct rg_gmsh_entity *e = bsearch(&key, s->entity, s->entities, sizeof *s->entity, by_tag);
+        if (e != NULL) {
+            e->group = rg_sets_join(&joining, e->group, member[i].set);
+        }
+    }
+    rg_sets_joined(&joining);
+}
+
 rg_gmsh_sets rg_gmsh_sets_read(const char *path, int dimension) {
     rg_gmsh_sets s = rg_gmsh_entities(path, dimension);
     int *pair = NULL, error;
-    size_t numbers = 0;
+    size_t numbers = 0, members = 0, room = 0;
+    struct member *member = rg_grow(NULL, &room, 0, sizeof *member);
     gmshModelGetPhysicalGroups(&pair, &numbers, dimension, &error);
     rg_gmsh_require(path, error);
     for (size_t i = 0; i < numbers / 2; i++) {
-        int *tag = NULL, set = set_of(&s, path, pair[2 * i + 1]);
+        int *tag = NULL;
+        int32_t set = set_of(&s, path, pair[2 * i + 1]);
         size_t tags = 0;
         gmshModelGetEntitiesForPhysicalGroup(dimension, pair[2 * i + 1], &tag, &tags, &error);
         rg_gmsh_require(path, error);
         for (size_t k = 0; k < tags; k++) {
-            assign(&s, path, abs(tag[k]), set);
+            member = rg_grow(member, &room, members, sizeof *member);
+            member[members++] = (struct member){set, abs(tag[k])};
         }
         gmshFree(tag);
     }
     gmshFree(pair);
     if (numbers == 0) {
-        name_entities(&s, path);
+        name_entities(&s);
     }
+    assign(&s, member, members);
+    rg_free(member);
     return s;
 }
 
 void rg_gmsh_sets_free(rg_gmsh_sets *s) {
+    rg_sets_free(&s->sets);
     rg_free(s->entity);
 }
 
-void rg_gmsh_each(const char *path, const rg_gmsh_sets *s,
-                  void (*take)(void *, int, const size_t *, size_t, const size_t *, int), void *context) {
+void rg_gmsh_each(const char *path, const rg_gmsh_sets *s, void (*take)(void *, const rg_gmsh_block *),
+                  void *context) {
     for (size_t i = 0; i < s->entities; i++) {
         int *type = NULL, error;
         size_t types = 0, *tags = NULL, *nodes = NULL, n1 = 0, n2 = 0, **tag = NULL, **node = NULL;
@@ -128,7 +138,9 @@ void rg_gmsh_each(const char *path, const rg_gmsh_sets *s,
                                  s->entity[i].tag, &error);
         rg_gmsh_require(path, error);
         for (size_t k = 0; k < types; k++) {
-            take(context, type[k], tag[k], tags[k], node[k], s->entity[i].set);
+            rg_gmsh_block block = {.type = type[k], .count = tags[k], .tag = tag[k], .node = node[k]};
+            block.set = rg_sets_of(&s->sets, &s->entity[i].group, &block.sets);
+            take(context, &block);
             gmshFree(tag[k]);
             gmshFree(node[k]);
         }

@@ -3,6 +3,7 @@
 #include <inttypes.h>
 #include <math.h>
 #include <stdbool.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -70,7 +71,7 @@ static void look_at_orientation(rg_import *m, rg_gid name, const size_t *row) {
     }
 }
 
-void rg_import_element(rg_import *m, rg_gid name, int nodes, const size_t *node, int region) {
+void rg_import_element(rg_import *m, rg_gid name, int nodes, const size_t *node) {
     size_t row[10], count = (size_t)m->elements;
     m->corner = rg_grow(m->corner, &m->corner_room, count, 4 * sizeof *m->corner);
     m->name = rg_grow(m->name, &m->name_room, count, sizeof *m->name);
@@ -85,15 +86,25 @@ void rg_import_element(rg_import *m, rg_gid name, int nodes, const size_t *node,
     memcpy(m->corner + 4 * m->elements, row, 4 * sizeof *row);
     look_at_orientation(m, name, row);
     m->name[m->elements] = name;
-    m->region[m->elements++] = (int8_t)region;
+    m->region[m->elements++] = -1;
     if (nodes == 10) {
         look_at_middles(m, row);
     }
 }
 
-void rg_import_add_face(rg_import *m, rg_gid name, const size_t node[3], int set) {
+void rg_import_put(rg_import *m, rg_gid element, int32_t set) {
+    m->joining.sets = &m->volume;
+    m->region[element] = rg_sets_join(&m->joining, m->region[element], set);
+}
+
+void rg_import_add_face(rg_import *m, rg_import_face face) {
     m->face = rg_grow(m->face, &m->face_room, m->faces, sizeof *m->face);
-    m->face[m->faces++] = (rg_import_face){{node[0], node[1], node[2]}, name, set};
+    m->face[m->faces++] = face;
+}
+
+void rg_import_add_point(rg_import *m, size_t node, int32_t set) {
+    m->point = rg_grow(m->point, &m->point_room, m->points, sizeof *m->point);
+    m->point[m->points++] = (rg_import_point){node, set};
 }
 
 /* ---- vertices and elements ---- */
@@ -153,8 +164,8 @@ static void fill_elements(const rg_import *m, const rg_gid *vertex, rg_mesh *mes
     mesh->corner = RG_NEW(rg_gid, 4 * count);
     mesh->neighbour = RG_NEW(rg_gid, 4 * count);
     mesh->face = RG_NEW(int8_t, 4 * count);
-    mesh->set = RG_NEW(int8_t, 4 * count);
-    mesh->region = RG_NEW(int8_t, count);
+    mesh->set = RG_NEW(int32_t, 4 * count);
+    mesh->region = RG_NEW(int32_t, count);
     mesh->original = RG_NEW(rg_gid, count);
     memcpy(mesh->region, m->region, count * sizeof *m->region);
     memcpy(mesh->original, m->name, count * sizeof *m->name);
@@ -208,10 +219,11 @@ enum { FACE = RG_IMPORT_UNNAMED - 1 };
 struct triangle {
     rg_gid vertex[3]; /* ascending */
     rg_gid name;      /* of the input: its number; a face: 4 * element + face */
-    int set;
+    int32_t set;
+    bool skin;
 };
 
-/* Named ones, unnamed ones, then the faces in the order of the elements. */
+/* Named ones by their sets, unnamed ones, then the faces in the order of the elements. */
 static int by_vertices(const void *a, const void *b) {
     const struct triangle *p = a, *q = b;
     for (int i = 0; i < 3; i++) {
@@ -219,59 +231,64 @@ static int by_vertices(const void *a, const void *b) {
             return p->vertex[i] < q->vertex[i] ? -1 : 1;
         }
     }
-    int above = p->set < 0 ? p->set : 0, below = q->set < 0 ? q->set : 0;
-    if (above != below) {
-        return below - above;
+    if (p->set != q->set) {
+        bool named = p->set >= 0 && q->set >= 0;
+        return (p->set < q->set) == named ? -1 : 1;
     }
     return (p->name > q->name) - (p->name < q->name);
 }
 
-struct tally {
+/* A face of the surface. */
+struct outer {
+    rg_gid slot;                   /* 4 * element + face */
+    const struct triangle *vertex; /* any triangle there; from it on the named ones */
+    size_t named;
+};
+
+struct surface {
+    struct outer *face; /* by vertices, ascending */
+    size_t faces, room;
     int64_t inside, nowhere; /* named triangles between two elements; that are no faces */
 };
 
 /* One group of equal triangles: the named ones come first, then the unnamed ones, then the faces. */
-static void mark_group(const rg_import *m, const struct triangle *t, size_t count, char *const set_name[],
-                       rg_mesh *mesh, struct tally *tally) {
-    bool named = t[0].set >= 0;
-    size_t triangles = 0;
+static void look_at_group(const struct triangle *t, size_t count, rg_mesh *mesh, struct surface *s) {
+    size_t named = 0, triangles = 0, meant = 0;
     for (size_t i = 0; i < count; i++) {
-        if (t[i].set >= 0 && t[i].set != t[0].set) {
-            rg_fatal(RG_USAGE,
-                     "%s: %" PRId64 " and %" PRId64
-                     " are the same face, in surface sets '%s' and '%s'; it can be in one only",
-                     m->path, t[0].name, t[i].name, set_name[t[0].set], set_name[t[i].set]);
-        }
+        named += t[i].set >= 0;
         triangles += t[i].set != FACE;
+        meant += t[i].set != FACE && !t[i].skin;
     }
     size_t faces = count - triangles;
-    tally->inside += named && faces > 1;
-    tally->nowhere += named && faces == 0;
-    if (named && faces == 1) {
-        mesh->set[t[triangles].name] = (int8_t)t[0].set;
+    s->inside += named > 0 && meant > 0 && faces > 1;
+    s->nowhere += named > 0 && faces == 0;
+    if (faces == 1) {
+        s->face = rg_grow(s->face, &s->room, s->faces, sizeof *s->face);
+        s->face[s->faces++] = (struct outer){t[triangles].name, t, named};
     }
-    if (triangles > 0 && faces > 1) {
+    if (meant > 0 && faces > 1) {
         memcpy(mesh->inner + 3 * mesh->inners++, t->vertex, sizeof t->vertex);
     }
 }
 
 /* The input's triangles that have corners, then all faces of the mesh. */
 static struct triangle *list_triangles(rg_import *m, const rg_gid *vertex, const rg_mesh *mesh, size_t *count,
-                                       struct tally *tally) {
+                                       struct surface *s) {
     struct triangle *list = RG_NEW(struct triangle, m->faces + 4 * (size_t)mesh->elements);
     *count = 0;
     for (size_t i = 0; i < m->faces; i++) {
-        struct triangle t = {.name = m->face[i].name, .set = m->face[i].set};
+        const rg_import_face *face = &m->face[i];
+        struct triangle t = {.name = face->name, .set = face->set, .skin = face->skin};
         bool known = true;
         for (int k = 0; k < 3; k++) {
-            size_t n = row_of(m, m->face[i].node[k]);
+            size_t n = row_of(m, face->node[k]);
             t.vertex[k] = n < SIZE_MAX ? vertex[n] : -1;
             known = known && t.vertex[k] >= 0;
         }
         qsort(t.vertex, 3, sizeof *t.vertex, ascending);
         list[*count] = t;
         *count += known;
-        tally->nowhere += !known && t.set >= 0;
+        s->nowhere += !known && t.set >= 0;
     }
     for (rg_gid slot = 0; slot < 4 * mesh->elements; slot++) {
         struct triangle t = {.name = slot, .set = FACE};
@@ -283,30 +300,186 @@ static struct triangle *list_triangles(rg_import *m, const rg_gid *vertex, const
     return list;
 }
 
-static void mark_faces(rg_import *m, const rg_gid *vertex, char *const set_name[], rg_mesh *mesh) {
-    struct tally tally = {0, 0};
+static void tell_faces(const rg_import *m, const struct surface *s) {
+    if (s->inside > 0) {
+        rg_warn("%s: %" PRId64 " faces of surface sets lie between elements, not on the surface: in no set",
+                m->path, s->inside);
+    }
+    if (s->nowhere > 0) {
+        rg_warn("%s: %" PRId64 " triangles of surface sets are no faces of tetrahedra: left out", m->path,
+                s->nowhere);
+    }
+}
+
+/* ---- sets of nodes ---- */
+
+/* The nodes of one set, and what it becomes. */
+struct node_set {
+    const rg_import_point *point;
+    size_t points;
+    int32_t set; /* of the surface; -1: none */
+};
+
+static int by_set(const void *a, const void *b) {
+    const rg_import_point *p = a, *q = b;
+    if (p->set != q->set) {
+        return p->set < q->set ? -1 : 1;
+    }
+    return (p->node > q->node) - (p->node < q->node);
+}
+
+/* The first face of the surface whose lowest vertex is not below `v`. */
+static size_t first_face(const struct surface *s, rg_gid v) {
+    size_t low = 0, high = s->faces;
+    while (low < high) {
+        size_t middle = low + (high - low) / 2;
+        if (s->face[middle].vertex->vertex[0] < v) {
+            low = middle + 1;
+        } else {
+            high = middle;
+        }
+    }
+    return low;
+}
+
+/* Vertices of a set of nodes: marked with its number. */
+struct marks {
+    rg_import *import;
+    const rg_gid *vertex; /* of rows */
+    int32_t *mark;        /* [vertices] */
+    rg_sets_joining *joining;
+};
+
+static rg_gid vertex_of(const struct marks *k, size_t node) {
+    size_t row = row_of(k->import, node);
+    return row < SIZE_MAX ? k->vertex[row] : -1;
+}
+
+/* Puts the faces all of whose vertices have `mark` into the set, or without one only counts them. */
+static int64_t take_faces(const struct marks *k, const struct node_set *n, const struct surface *s,
+                          int32_t mark, rg_mesh *mesh) {
+    int64_t count = 0;
+    for (size_t i = 0; i < n->points; i++) {
+        rg_gid v = vertex_of(k, n->point[i].node);
+        bool again = i > 0 && n->point[i].node == n->point[i - 1].node;
+        for (size_t f = v < 0 || again ? s->faces : first_face(s, v);
+             f < s->faces && s->face[f].vertex->vertex[0] == v; f++) {
+            const rg_gid *corner = s->face[f].vertex->vertex;
+            if (k->mark[corner[1]] == mark && k->mark[corner[2]] == mark) {
+                int32_t *group = &mesh->set[s->face[f].slot];
+                *group = n->set >= 0 ? rg_sets_join(k->joining, *group, n->set) : *group;
+                count++;
+            }
+        }
+    }
+    return count;
+}
+
+static void mark_nodes(const struct marks *k, const struct node_set *n, int32_t mark) {
+    for (size_t i = 0; i < n->points; i++) {
+        rg_gid v = vertex_of(k, n->point[i].node);
+        if (v >= 0) {
+            k->mark[v] = mark;
+        }
+    }
+}
+
+/* Adds a name to a list for a message, which keeps the first few. */
+static void note_name(char *text, size_t size, const char *name, int64_t before) {
+    size_t used = strlen(text);
+    if (before < 5) {
+        snprintf(text + used, size - used, "%s'%s'", before > 0 ? ", " : "", name);
+    } else if (before == 5) {
+        snprintf(text + used, size - used, ", ...");
+    }
+}
+
+/* Which sets of nodes become surface sets. */
+static void choose_node_sets(struct marks *k, struct node_set *sets, const struct surface *s, rg_mesh *mesh) {
+    rg_import *m = k->import;
+    char without[400] = "", taken[400] = "";
+    int64_t withouts = 0, takens = 0;
+    for (int32_t i = 0; i < m->node_set.count; i++) {
+        const char *name = m->node_set.name[i];
+        mark_nodes(k, &sets[i], i + 1);
+        if (take_faces(k, &sets[i], s, i + 1, mesh) == 0) {
+            note_name(without, sizeof without, name, withouts++);
+        } else if (rg_sets_find(&m->surface, name) >= 0) {
+            note_name(taken, sizeof taken, name, takens++);
+        } else {
+            sets[i].set = rg_sets_add(&m->surface, name);
+        }
+    }
+    if (withouts > 0) {
+        rg_warn("%s: %" PRId64 " sets of nodes hold no whole face of the surface and are left out: %s",
+                m->path, withouts, without);
+    }
+    if (takens > 0) {
+        rg_warn("%s: %" PRId64 " sets of nodes are left out, for there are surfaces of their names: %s",
+                m->path, takens, taken);
+    }
+}
+
+static struct node_set *list_node_sets(rg_import *m) {
+    struct node_set *sets = RG_NEW(struct node_set, (size_t)m->node_set.count + 1);
+    if (m->points > 0) {
+        qsort(m->point, m->points, sizeof *m->point, by_set);
+    }
+    for (int32_t i = 0; i < m->node_set.count; i++) {
+        sets[i].set = -1;
+    }
+    for (size_t i = 0; i < m->points; i++) {
+        struct node_set *n = &sets[m->point[i].set];
+        n->point = n->points == 0 ? &m->point[i] : n->point;
+        n->points++;
+    }
+    return sets;
+}
+
+/* ---- all faces ---- */
+
+static void put_into_sets(struct marks *k, const struct node_set *sets, const struct surface *s,
+                          rg_mesh *mesh) {
+    for (size_t f = 0; f < s->faces; f++) {
+        for (size_t i = 0; i < s->face[f].named; i++) {
+            int32_t *group = &mesh->set[s->face[f].slot];
+            *group = rg_sets_join(k->joining, *group, s->face[f].vertex[i].set);
+        }
+    }
+    for (int32_t i = 0; i < k->import->node_set.count; i++) {
+        if (sets[i].set >= 0) {
+            mark_nodes(k, &sets[i], -1 - i);
+            take_faces(k, &sets[i], s, -1 - i, mesh);
+        }
+    }
+}
+
+static void mark_faces(rg_import *m, const rg_gid *vertex, rg_mesh *mesh) {
+    struct surface s = {.faces = 0};
     size_t count;
-    struct triangle *list = list_triangles(m, vertex, mesh, &count, &tally);
+    struct triangle *list = list_triangles(m, vertex, mesh, &count, &s);
     mesh->inner = RG_NEW(rg_gid, 3 * m->faces + 1);
     qsort(list, count, sizeof *list, by_vertices);
     for (size_t i = 0, n; i < count; i += n) {
         for (n = 1; i + n < count && memcmp(list[i].vertex, list[i + n].vertex, sizeof list->vertex) == 0;
              n++) {
         }
-        mark_group(m, list + i, n, set_name, mesh, &tally);
+        look_at_group(list + i, n, mesh, &s);
     }
-    if (tally.inside > 0) {
-        rg_warn("%s: %" PRId64 " faces of surface sets lie between elements, not on the surface: in no set",
-                m->path, tally.inside);
-    }
-    if (tally.nowhere > 0) {
-        rg_warn("%s: %" PRId64 " triangles of surface sets are no faces of tetrahedra: left out", m->path,
-                tally.nowhere);
-    }
+    tell_faces(m, &s);
+    rg_sets_joining joining = {.sets = &m->surface};
+    struct marks k = {m, vertex, RG_NEW(int32_t, (size_t)mesh->vertices), &joining};
+    struct node_set *sets = list_node_sets(m);
+    choose_node_sets(&k, sets, &s, mesh);
+    put_into_sets(&k, sets, &s, mesh);
+    rg_sets_joined(&joining);
+    rg_free(k.mark);
+    rg_free(sets);
+    rg_free(s.face);
     rg_free(list);
 }
 
-rg_mesh *rg_import_finish(rg_import *m, char *const set_name[]) {
+rg_mesh *rg_import_finish(rg_import *m) {
     if (m->elements == 0) {
         rg_fatal(RG_USAGE, "%s: no tetrahedra", m->path);
     }
@@ -316,7 +489,11 @@ rg_mesh *rg_import_finish(rg_import *m, char *const set_name[]) {
     fill_elements(m, vertex, mesh);
     tell_orientation(m);
     tell_nodes(m, order, vertex);
-    mark_faces(m, vertex, set_name, mesh);
+    mark_faces(m, vertex, mesh);
+    mesh->surface = m->surface;
+    mesh->volume = m->volume;
+    rg_sets_joined(&m->joining);
+    rg_sets_free(&m->node_set);
     rg_free(vertex);
     rg_free(order);
     rg_gid_map_free(&m->row);
@@ -326,5 +503,6 @@ rg_mesh *rg_import_finish(rg_import *m, char *const set_name[]) {
     rg_free(m->name);
     rg_free(m->region);
     rg_free(m->face);
+    rg_free(m->point);
     return mesh;
 }

@@ -3,6 +3,7 @@
 #ifndef RG_IMPORT_H
 #define RG_IMPORT_H
 
+#include <stdbool.h>
 #include <stddef.h>
 
 #include "mesh/gid_map.h"
@@ -12,8 +13,15 @@
 typedef struct {
     size_t node[3];
     rg_gid name; /* the input's number for it, for messages */
-    int set;     /* or RG_IMPORT_UNNAMED */
+    int32_t set; /* or RG_IMPORT_UNNAMED */
+    bool skin;   /* it is only meant if it is on the surface */
 } rg_import_face;
+
+/* A node of a set of nodes, which stands for the faces of the surface all of whose corners are in it. */
+typedef struct {
+    size_t node;
+    int32_t set; /* among `node_set` */
+} rg_import_point;
 
 /* Set of a face that is only known to be a place of its own, not by a name. */
 enum { RG_IMPORT_UNNAMED = -1 };
@@ -27,16 +35,21 @@ typedef struct {
     rg_gid_map row;   /* of a number, among the first `mapped` rows; numbers may be far apart */
     size_t mapped;
     rg_gid elements;
-    size_t *corner;        /* [elements][4] rows of nodes */
-    rg_gid *name;          /* [elements] numbers */
-    int8_t *region;        /* [elements] volume sets, -1 for none */
-    int64_t inverted;      /* elements of negative volume */
-    rg_gid first_inverted; /* number of one */
-    int64_t middles, bent; /* mid-nodes, and those off straight */
-    double worst;          /* how far, as a fraction of the edge */
+    size_t *corner;  /* [elements][4] rows of nodes */
+    rg_gid *name;    /* [elements] numbers */
+    int32_t *region; /* [elements] groups of `volume` */
+    rg_sets surface, volume;
+    rg_sets_joining joining; /* of volumes */
+    int64_t inverted;        /* elements of negative volume */
+    rg_gid first_inverted;   /* number of one */
+    int64_t middles, bent;   /* mid-nodes, and those off straight */
+    double worst;            /* how far, as a fraction of the edge */
     size_t faces;
     rg_import_face *face;
-    size_t x_room, number_room, corner_room, name_room, region_room, face_room;
+    rg_sets node_set; /* sets of nodes by their names */
+    rg_import_point *point;
+    size_t points;
+    size_t x_room, number_room, corner_room, name_room, region_room, face_room, point_room;
 } rg_import;
 
 /* Adds a node with coordinates x in units of the input; a number given twice keeps the last. */
@@ -44,13 +57,18 @@ void rg_import_node(rg_import *m, size_t number, const double x[3]);
 
 /* Adds a tetrahedron of 4 or 10 nodes (corners, then the middles of edges 01 12 20 30 23 13), whose nodes
  * must be there already; ends the run with a message if they are not. */
-void rg_import_element(rg_import *m, rg_gid name, int nodes, const size_t *node, int region);
+void rg_import_element(rg_import *m, rg_gid name, int nodes, const size_t *node);
 
-void rg_import_add_face(rg_import *m, rg_gid name, const size_t node[3], int set);
+/* Puts an element, by its row, into a set of `volume`; those of each element in ascending order, and once all
+ * sets are there. */
+void rg_import_put(rg_import *m, rg_gid element, int32_t set);
 
-/* The mesh, neither sorted nor connected, with `original` and `region` but without names of sets; frees the
- * rest. Warns of what is left out or not as it seems; ends the run if there are no elements or if a face is
- * in two sets, whose names set_name gives. */
-rg_mesh *rg_import_finish(rg_import *m, char *const set_name[]);
+void rg_import_add_face(rg_import *m, rg_import_face face);
+void rg_import_add_point(rg_import *m, size_t node, int32_t set);
+
+/* The mesh, neither sorted nor connected, with `original`, `region` and sets; frees the rest. Sets of nodes
+ * become surface sets; those without a face, or with the name of another set, are left out. Warns of what is
+ * left out or not as it seems; ends the run if there are no elements. */
+rg_mesh *rg_import_finish(rg_import *m);
 
 #endif

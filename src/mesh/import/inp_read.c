@@ -1,543 +1,577 @@
 #include "mesh/import/inp_read.h"
 
-#include <ctype.h>
-#include <errno.h>
 #include <inttypes.h>
-#include <stdarg.h>
 #include <stdbool.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
 #include "base/error.h"
-#include "base/files.h"
 #include "base/mem.h"
-#include "mesh/import/import.h"
-#include "mesh/rows.h"
-
-/* Where a set comes from; higher ones decide. */
-typedef enum { FROM_LINE, FROM_ELSET, FROM_SECTION } rank;
+#include "mesh/import/inp_generate.h"
+#include "mesh/import/inp_keyword.h"
+#include "mesh/import/inp_line.h"
+#include "mesh/import/inp_mesh.h"
+#include "mesh/import/inp_model.h"
+#include "mesh/import/inp_report.h"
+#include "mesh/import/inp_type.h"
 
 typedef struct {
+    rg_inp_model *model;
     char name[RG_SET_NAME];
-    rank rank;
-    long line;     /* where it begins */
-    bool internal; /* made by the preprocessor for a *SURFACE */
-    rg_gid *member;
-    size_t count, room;
-} elset;
+    rg_inp_place at;
+    int instances;
+} part;
 
 typedef struct {
-    rg_gid number;
-    int nodes; /* 4, 10: a tetrahedron; 3: the corners of a triangle */
-    size_t node[10];
-} element;
+    rg_inp_lines *lines;
+    rg_inp_word section; /* what data lines belong to */
+    char keyword[RG_INP_WORD];
+    bool in_step;
+    bool assembled; /* there is an assembly, in which what stands outside of instances is not of the mesh */
 
-typedef struct {
-    char name[RG_SET_NAME], of[RG_SET_NAME]; /* `of`: an element or a set of elements */
-    long line;
-    int face; /* 0 to 3: S1 to S4; 4: the triangle itself */
-} patch;
+    rg_inp_model *whole, *here; /* the assembly, or a file without parts; where things are added now */
+    int scope;                  /* of `here` */
+    part *part;
+    size_t parts;
 
-/* What a data line means. */
-typedef enum { SKIP, NODE, ELEMENT, ELSET, SURFACE, INSTANCE } section;
+    rg_frame system, placed; /* of *SYSTEM; of the instance */
+    double point[3][3];      /* data of *SYSTEM and *INSTANCE, as far as they have come */
+    int lines_read;
+    char instance[RG_SET_NAME];
+    size_t of_part;
+    bool pending;      /* an *INSTANCE that is not there yet: its data lines are still to come */
+    char nodes_system; /* of *NODE, SYSTEM=: R, C, S */
 
-typedef struct {
-    const char *path;
-    long line;
-    rg_import import;
-    section section;
-    int expected, parts; /* nodes of an element; *PART lines */
-    bool sections;       /* there is a *SOLID SECTION */
-    elset *set;
-    size_t sets, current; /* current: set of the data lines */
-    element *element;
-    size_t elements, element_room;
-    patch *patch;
-    size_t patches;
-    char surface[RG_SET_NAME]; /* the one that the data lines define */
-    bool generate;
-    element pending; /* read in part */
+    rg_inp_type type;
+    rg_gid element[11]; /* its number and nodes */
     int have;
-    rg_gid_map by_number; /* of the elements */
+    bool goes_on;           /* the element of another type, in the next line */
+    size_t tally;           /* of the type that is left out */
+    size_t set;             /* of the data lines; SIZE_MAX: none */
+    char name[RG_SET_NAME]; /* of the set that the generator fills; "": none */
+    int of_scope;           /* of the numbers of the data lines: that of INSTANCE= */
+    bool generate;
+    size_t surface;
+
+    rg_inp_report report;
 } reader;
 
-static const int face_corner[4][3] = {{0, 1, 2}, {0, 3, 1}, {1, 3, 2}, {2, 3, 0}}; /* S1 to S4 */
+/* ---- numbers ---- */
 
-static _Noreturn void refuse(const reader *r, const char *format, ...) __attribute__((format(printf, 2, 3)));
-
-static void refuse(const reader *r, const char *format, ...) {
-    char what[300];
-    va_list args;
-    va_start(args, format);
-    vsnprintf(what, sizeof what, format, args);
-    va_end(args);
-    rg_fatal(RG_USAGE, "%s:%ld: %s", r->path, r->line, what);
+static bool is_outside(const reader *r, int scope) {
+    return r->assembled && r->here == r->whole && scope == 0;
 }
 
-/* ---- text ---- */
+/* What is added to numbers of `scope` in data lines. */
+static rg_gid shift_of(const reader *r, rg_inp_of of, int scope) {
+    const rg_inp_scope *s = &r->here->scope[scope];
+    return is_outside(r, scope) ? RG_INP_OUTSIDE : of == RG_INP_NODES ? s->nodes : s->elements;
+}
 
-/* The next of the words between commas, without the blanks around it; NULL at the end. Cuts up *line. */
-static char *next_word(char **line) {
-    if (*line == NULL) {
-        return NULL;
+static rg_gid shifted(const reader *r, rg_inp_of of, rg_gid number) {
+    number += shift_of(r, of, r->scope);
+    if (number > RG_INP_MOST && number < RG_INP_OUTSIDE) {
+        rg_inp_refuse(r->lines->at, "the number gets beyond %" PRId64 " in instance '%s'", RG_INP_MOST,
+                      r->here->scope[r->scope].name);
     }
-    char *word = *line + strspn(*line, " \t"), *comma = strchr(word, ',');
-    *line = comma != NULL ? comma + 1 : NULL;
-    size_t length = comma != NULL ? (size_t)(comma - word) : strlen(word);
-    while (length > 0 && isspace((unsigned char)word[length - 1])) {
-        length--;
-    }
-    word[length] = '\0';
-    return word;
+    return number;
 }
 
-/* The value of parameter `name` of a keyword line ("" if it has none), NULL if it is not there. */
-static const char *parameter(const reader *r, const char *line, const char *name, char out[RG_SET_NAME]) {
-    char copy[1024], *rest = copy, *word;
-    snprintf(copy, sizeof copy, "%s", line);
-    while ((word = next_word(&rest)) != NULL) {
-        char *equals = strchr(word, '=');
-        size_t length = equals != NULL ? (size_t)(equals - word) : strlen(word);
-        while (length > 0 && word[length - 1] == ' ') {
-            length--;
-        }
-        if (length != strlen(name) || strncasecmp(word, name, length) != 0) {
-            continue;
-        }
-        const char *value = equals != NULL ? equals + 1 + strspn(equals + 1, " \"") : "";
-        size_t size = strcspn(value, "\"");
-        if (size >= RG_SET_NAME) {
-            refuse(r, "'%s' is longer than %d bytes", value, RG_SET_NAME - 1);
-        }
-        memcpy(out, value, size);
-        out[size] = '\0';
-        return out;
-    }
-    return NULL;
-}
-
-static rg_gid read_number(const reader *r, const char *word) {
-    char *end;
-    long long value = strtoll(word, &end, 10);
-    if (end == word || *end != '\0' || value < 1 || value > INT64_C(4000000000)) {
-        refuse(r, "'%s' is not the number of a node or element", word);
-    }
-    return value;
-}
-
-static bool is_number(const char *word) {
-    return word[0] != '\0' && word[strspn(word, "0123456789")] == '\0';
-}
-
-/* ---- sets ---- */
-
-static size_t find_set(const reader *r, const char *name, rank from) {
-    size_t i = 0;
-    while (i < r->sets && !(r->set[i].rank == from && strcasecmp(r->set[i].name, name) == 0)) {
-        i++;
-    }
-    return i;
-}
-
-/* The set of this name and kind, a new one if need be. */
-static size_t need_set(reader *r, const char *name, rank from) {
-    size_t i = find_set(r, name, from);
-    if (i == r->sets) {
-        r->set = rg_realloc(r->set, r->sets + 1, sizeof *r->set);
-        r->set[r->sets] = (elset){.rank = from, .line = r->line};
-        strcpy(r->set[r->sets++].name, name);
-    }
-    return i;
-}
-
-/* A set may name elements that come later, or some twice, but there are limits: sets of sets of sets grow
- * without bound, and so does one with all numbers there could be. */
-static void add_member(reader *r, size_t set, rg_gid number) {
-    elset *s = &r->set[set];
-    size_t most = 16 * r->elements + 65536;
-    if (s->count == most) {
-        refuse(r, "set '%s' has more than %zu members, with %zu elements so far", s->name, most, r->elements);
-    }
-    s->member = rg_grow(s->member, &s->room, s->count, sizeof *s->member);
-    s->member[s->count++] = number;
-}
-
-/* Adds all members of the sets called `name`. */
-static void add_set(reader *r, size_t to, const char *name) {
-    bool found = false;
-    for (size_t i = 0; i < r->sets; i++) {
-        if (i == to || r->set[i].rank == FROM_SECTION || strcasecmp(r->set[i].name, name) != 0) {
-            continue;
-        }
-        found = true;
-        for (size_t k = 0; k < r->set[i].count; k++) {
-            add_member(r, to, r->set[i].member[k]);
+/* A node or element by its number or the name of its set, which may stand behind the name of an instance and
+ * a dot. */
+static rg_inp_entry read_entry(const reader *r, rg_inp_of of, const char *field) {
+    int scope = r->of_scope;
+    size_t past = 0;
+    for (int s = 1; s < r->here->scopes; s++) {
+        size_t length = strlen(r->here->scope[s].name);
+        if (length >= past && strncasecmp(field, r->here->scope[s].name, length) == 0 &&
+            field[length] == '.') {
+            scope = s;
+            past = length + 1;
         }
     }
-    if (!found) {
-        refuse(r, "no set of elements '%s' so far", name);
+    const char *label = field + past;
+    rg_inp_entry e = {.step = 1, .scope = scope, .listed = true, .at = r->lines->at};
+    if (rg_inp_is_number(label)) {
+        e.from = e.to = rg_inp_number(r->lines, label) + shift_of(r, of, scope);
+    } else {
+        e.name = rg_inp_copy_text(label);
     }
+    return e;
 }
 
 /* ---- keyword lines ---- */
 
-/* Nodes that the data lines of an element type have; what else there is has none of our business (0). */
-static int nodes_of(const reader *r, const char *type) {
-    static const struct {
-        const char *begin;
-        int nodes;
-    } known[] = {{"C3D10", 10}, {"C3D4", 4},   {"S3", 3},    {"STRI3", 3}, {"STRI65", 6},
-                 {"CPS3", 3},   {"CPS6", 6},   {"CPE3", 3},  {"CPE6", 6},  {"M3D3", 3},
-                 {"M3D6", 6},   {"SFM3D3", 3}, {"SFM3D6", 6}};
-    for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
-        size_t length = strlen(known[i].begin);
-        if (strncasecmp(type, known[i].begin, length) == 0 && !isdigit((unsigned char)type[length])) {
-            return known[i].nodes;
+static const char *allowed_name(reader *r, const char *parameter) {
+    return rg_inp_parameter(r->lines, parameter) != NULL ? rg_inp_name(r->lines, parameter) : NULL;
+}
+
+/* The set that parameter `parameter` names, to be filled; SIZE_MAX if there is none. */
+static size_t set_to_fill(reader *r, rg_inp_of of, const char *parameter) {
+    const char *name = allowed_name(r, parameter);
+    if (name == NULL) {
+        return SIZE_MAX;
+    }
+    return (size_t)(rg_inp_need_set(r->here, of, name, r->scope, r->lines->at) - r->here->set);
+}
+
+static void begin_nodes(reader *r) {
+    const char *system = rg_inp_parameter(r->lines, "SYSTEM");
+    r->nodes_system = 'R';
+    if (system != NULL) {
+        static const char *const known[] = {"R", "C", "S", "RECTANGULAR", "CYLINDRICAL", "SPHERICAL"};
+        r->nodes_system = '\0';
+        for (int i = 0; i < 6; i++) {
+            r->nodes_system = strcasecmp(system, known[i]) == 0 ? known[i][0] : r->nodes_system;
         }
     }
-    if (strncasecmp(type, "C3D", 3) == 0 || strncasecmp(type, "SC", 2) == 0) {
-        refuse(r, "*ELEMENT, TYPE=%s: only tetrahedra of first and second order are possible: C3D4, C3D10",
-               type);
+    if (r->nodes_system == '\0') {
+        rg_inp_refuse(r->lines->at, "*NODE, SYSTEM=%s: R, C or S is expected", system);
     }
-    return 0;
+    r->set = set_to_fill(r, RG_INP_NODES, "NSET");
 }
 
-static void begin_elements(reader *r, const char *line) {
-    char type[RG_SET_NAME], set[RG_SET_NAME];
-    if (parameter(r, line, "TYPE", type) == NULL) {
-        refuse(r, "*ELEMENT without TYPE");
-    }
-    r->expected = nodes_of(r, type);
-    r->section = r->expected > 0 ? ELEMENT : SKIP;
+static void begin_elements(reader *r) {
+    const char *type = rg_inp_name(r->lines, "TYPE");
+    r->type = rg_inp_type_of(type);
     r->have = 0;
-    r->current = parameter(r, line, "ELSET", set) != NULL ? need_set(r, set, FROM_LINE) : SIZE_MAX;
-}
-
-static void begin_set(reader *r, const char *line) {
-    char name[RG_SET_NAME], unused[RG_SET_NAME];
-    if (parameter(r, line, "ELSET", name) == NULL) {
-        refuse(r, "*ELSET without a name");
+    r->goes_on = false;
+    r->set = set_to_fill(r, RG_INP_ELEMENTS, "ELSET");
+    bool of_mesh = r->type.shape == RG_INP_TETRAHEDRON || r->type.shape == RG_INP_TRIANGLE;
+    if (of_mesh && is_outside(r, r->scope)) {
+        rg_inp_refuse(r->lines->at, "*ELEMENT, TYPE=%s in the assembly, outside of its instances", type);
     }
-    r->section = ELSET;
-    r->current = need_set(r, name, FROM_ELSET);
-    r->generate = parameter(r, line, "GENERATE", unused) != NULL;
-    r->set[r->current].internal = parameter(r, line, "INTERNAL", unused) != NULL;
-}
-
-static void begin_surface(reader *r, const char *line) {
-    char type[RG_SET_NAME] = "ELEMENT";
-    parameter(r, line, "TYPE", type);
-    if (parameter(r, line, "NAME", r->surface) == NULL) {
-        refuse(r, "*SURFACE without NAME");
-    }
-    r->section = strcasecmp(type, "ELEMENT") == 0 ? SURFACE : SKIP;
-    if (r->section == SKIP) {
-        rg_warn("%s:%ld: *SURFACE, NAME=%s is not of TYPE=ELEMENT: left out", r->path, r->line, r->surface);
+    if (!of_mesh) {
+        r->tally = rg_inp_report_type(&r->report, type, r->type.shape == RG_INP_SOLID, r->lines->at);
     }
 }
 
-static void begin(reader *r, const char *line) {
-    char copy[1024], *rest = copy, name[RG_SET_NAME];
-    snprintf(copy, sizeof copy, "%s", line);
-    const char *word = next_word(&rest);
-    r->section = SKIP;
-    if (strcasecmp(word, "*NODE") == 0) {
-        r->section = NODE;
-    } else if (strcasecmp(word, "*ELEMENT") == 0) {
-        begin_elements(r, line);
-    } else if (strcasecmp(word, "*ELSET") == 0) {
-        begin_set(r, line);
-    } else if (strcasecmp(word, "*SURFACE") == 0) {
-        begin_surface(r, line);
-    } else if (strcasecmp(word, "*SOLID SECTION") == 0 && parameter(r, line, "ELSET", name) != NULL) {
-        need_set(r, name, FROM_SECTION);
-        r->sections = true;
-    } else if (strcasecmp(word, "*PART") == 0 && ++r->parts > 1) {
-        refuse(r, "a second *PART: only one is possible");
-    } else if (strcasecmp(word, "*INSTANCE") == 0) {
-        r->section = INSTANCE;
-    } else if (strcasecmp(word, "*INCLUDE") == 0) {
-        refuse(r, "*INCLUDE: put everything into one file");
+/* Scope of INSTANCE=, or the present one. */
+static int named_scope(const reader *r) {
+    const char *name = rg_inp_parameter(r->lines, "INSTANCE");
+    for (int s = 1; name != NULL && s < r->here->scopes; s++) {
+        if (strcasecmp(r->here->scope[s].name, name) == 0) {
+            return s;
+        }
+    }
+    if (name != NULL) {
+        rg_inp_refuse(r->lines->at, "there is no *INSTANCE, NAME=%s so far", name);
+    }
+    return r->scope;
+}
+
+static void begin_set(reader *r, rg_inp_of of, const char *parameter) {
+    rg_inp_name(r->lines, parameter);
+    r->of_scope = named_scope(r);
+    r->set = set_to_fill(r, of, parameter);
+    r->generate = rg_inp_parameter(r->lines, "GENERATE") != NULL;
+    rg_inp_set *s = &r->here->set[r->set];
+    s->internal = rg_inp_parameter(r->lines, "INTERNAL") != NULL;
+    s->unsorted = rg_inp_parameter(r->lines, "UNSORTED") != NULL;
+    if (of == RG_INP_NODES && rg_inp_parameter(r->lines, "ELSET") != NULL) {
+        char *name = rg_inp_copy_text(rg_inp_name(r->lines, "ELSET"));
+        rg_inp_add_entry(
+            s, (rg_inp_entry){.name = name, .scope = r->of_scope, .corners = true, .at = r->lines->at});
+    }
+}
+
+static void begin_surface(reader *r) {
+    const char *name = rg_inp_name(r->lines, "NAME"), *type = rg_inp_parameter(r->lines, "TYPE");
+    bool nodes = type != NULL && strcasecmp(type, "NODE") == 0;
+    if (type != NULL && !nodes && strcasecmp(type, "ELEMENT") != 0) {
+        rg_warn("%s:%ld: *SURFACE, NAME=%s is of TYPE=%s, not of elements or nodes: left out",
+                r->lines->at.path, r->lines->at.line, name, type);
+        r->section = RG_INP_IRRELEVANT;
+        return;
+    }
+    r->of_scope = r->scope;
+    rg_inp_of of = nodes ? RG_INP_NODES : RG_INP_ELEMENTS;
+    r->surface = (size_t)(rg_inp_need_surface(r->here, name, of, r->scope) - r->here->surface);
+}
+
+static void begin_generator(reader *r, const char *parameter) {
+    const char *name = allowed_name(r, parameter);
+    strcpy(r->name, name != NULL ? name : "");
+    if (r->section == RG_INP_ELCOPY) {
+        rg_inp_elcopy(r->lines, r->here, r->scope, name);
+    }
+}
+
+/* ---- parts and instances ---- */
+
+static void leave_part(reader *r) {
+    r->here = r->whole;
+    r->scope = 0;
+    r->system = r->placed = rg_frame_global;
+}
+
+static void begin_part(reader *r) {
+    const char *name = rg_inp_name(r->lines, "NAME");
+    leave_part(r);
+    for (size_t i = 0; i < r->parts; i++) {
+        if (strcasecmp(r->part[i].name, name) == 0) {
+            rg_inp_refuse(r->lines->at, "*PART, NAME=%s is there already, in line %ld", name,
+                          r->part[i].at.line);
+        }
+    }
+    r->part = rg_realloc(r->part, r->parts + 1, sizeof *r->part);
+    part *p = &r->part[r->parts++];
+    *p = (part){.model = rg_inp_model_make(), .at = r->lines->at};
+    strcpy(p->name, name);
+    r->here = p->model;
+}
+
+static void begin_instance(reader *r) {
+    const char *of = rg_inp_name(r->lines, "PART"), *name = rg_inp_name(r->lines, "NAME");
+    leave_part(r);
+    for (r->of_part = 0; r->of_part < r->parts && strcasecmp(r->part[r->of_part].name, of) != 0;
+         r->of_part++) {
+    }
+    if (r->of_part == r->parts) {
+        rg_inp_refuse(r->lines->at, "there is no *PART, NAME=%s so far", of);
+    }
+    for (int s = 1; s < r->whole->scopes; s++) {
+        if (strcasecmp(r->whole->scope[s].name, name) == 0) {
+            rg_inp_refuse(r->lines->at, "a second *INSTANCE, NAME=%s", name);
+        }
+    }
+    strcpy(r->instance, name);
+    r->assembled = r->pending = true;
+    r->lines_read = 0;
+}
+
+/* When its data lines are over. */
+static void place_instance(reader *r) {
+    part *p = &r->part[r->of_part];
+    p->instances++;
+    r->pending = false;
+    r->scope = rg_inp_add_instance(r->whole, p->model, r->instance, &r->placed, r->lines->at);
+}
+
+/* Whether another field of the data line is not blank. */
+static bool has_field(const reader *r) {
+    return r->lines->rest != NULL && r->lines->rest[strspn(r->lines->rest, " \t,")] != '\0';
+}
+
+/* A translation; then perhaps a rotation, about an axis by two points, and its angle. */
+static void read_instance(reader *r) {
+    double value[7] = {0};
+    for (int i = 0; i < (r->lines_read == 0 ? 3 : 7); i++) {
+        value[i] = rg_inp_value(r->lines);
+    }
+    if (r->lines_read > 1 || has_field(r)) {
+        rg_inp_refuse(r->lines->at,
+                      "*INSTANCE: 3 numbers in the first data line, 7 in the second, no third one");
+    }
+    if (r->lines_read++ == 0) {
+        memcpy(r->point[0], value, sizeof r->point[0]);
+        memcpy(r->placed.origin, value, sizeof r->placed.origin);
+    } else if (!rg_frame_moved(r->point[0], value, value + 3, value[6], &r->placed)) {
+        rg_inp_refuse(r->lines->at, "the axis of the rotation of *INSTANCE has no length");
+    }
+}
+
+/* An origin; then perhaps a point on the first axis, in the same line, and one on the side of the second. */
+static void read_system(reader *r) {
+    double value[6];
+    bool axis = false;
+    for (int i = 0; i < 6; i++) {
+        axis = axis || (i == 3 && has_field(r));
+        value[i] = rg_inp_value(r->lines);
+    }
+    if (r->lines_read > 1 || (r->lines_read == 1 && axis) || has_field(r)) {
+        rg_inp_refuse(r->lines->at,
+                      "*SYSTEM: two points in the first line, one in the second, no third line");
+    }
+    if (r->lines_read++ == 0) {
+        memcpy(r->point[0], value, sizeof r->point[0]);
+        memcpy(r->point[1], axis ? value + 3 : value, sizeof r->point[1]);
+        memcpy(r->system.origin, value, sizeof r->system.origin);
+        if (axis && !rg_frame_through(r->point[0], r->point[1], NULL, &r->system)) {
+            memset(r->system.axis, 0, sizeof r->system.axis); /* the second line has to save it */
+        }
+    } else if (!rg_frame_through(r->point[0], r->point[1], value, &r->system)) {
+        rg_inp_refuse(r->lines->at, "the three points of *SYSTEM are on a line");
     }
 }
 
 /* ---- data lines ---- */
 
-static void read_node(reader *r, char *line) {
-    char *rest = line;
-    size_t number = (size_t)read_number(r, next_word(&rest));
-    double x[3] = {0, 0, 0};
+static void read_node(reader *r) {
+    rg_gid number = rg_inp_integer(r->lines, 0);
+    double x[3];
     for (int i = 0; i < 3; i++) {
-        const char *word = next_word(&rest);
-        char *end;
-        x[i] = word != NULL ? strtod(word, &end) : 0;
-        if (word == NULL || end == word || *end != '\0') {
-            refuse(r, "node %zu needs three coordinates", number);
-        }
+        x[i] = rg_inp_value(r->lines);
     }
-    rg_import_node(&r->import, number, x);
+    if (is_outside(r, r->scope)) {
+        return; /* a reference point */
+    }
+    if (r->nodes_system == 'C') {
+        rg_from_cylindrical(x);
+    } else if (r->nodes_system == 'S') {
+        rg_from_spherical(x);
+    }
+    rg_frame_out(&r->system, x);
+    rg_frame_out(&r->placed, x);
+    number = shifted(r, RG_INP_NODES, number);
+    rg_inp_add_node(r->here, number, x);
+    if (r->set != SIZE_MAX) {
+        rg_inp_add_number(&r->here->set[r->set], number, false, r->lines->at);
+    }
 }
 
-static void end_element(reader *r) {
-    element *e = &r->pending;
-    r->element = rg_grow(r->element, &r->element_room, r->elements, sizeof *r->element);
-    e->nodes = r->expected < 4 || r->expected == 6 ? 3 : r->expected;
-    if (e->nodes == 10) { /* the last two middles stand the other way round */
-        size_t swap = e->node[8];
-        e->node[8] = e->node[9];
-        e->node[9] = swap;
+static void end_element(reader *r, int kind) {
+    if (!rg_inp_add_element(r->here, r->element[0], kind, r->element + 1)) {
+        rg_inp_refuse(r->lines->at, "element %" PRId64 " is defined twice",
+                      r->element[0] - shift_of(r, RG_INP_ELEMENTS, r->scope));
     }
-    r->element[r->elements++] = *e;
-    if (r->current != SIZE_MAX) {
-        add_member(r, r->current, e->number);
+    if (r->set != SIZE_MAX) {
+        rg_inp_add_number(&r->here->set[r->set], r->element[0], false, r->lines->at);
     }
     r->have = 0;
 }
 
 /* An element may go on in the next line. */
-static void read_element(reader *r, char *line) {
-    char *rest = line;
-    for (const char *word = next_word(&rest); word != NULL; word = next_word(&rest)) {
-        if (word[0] == '\0' && rest == NULL) {
-            break; /* comma at the end */
+static void read_element(reader *r) {
+    for (char *field = rg_inp_field(r->lines); field != NULL; field = rg_inp_field(r->lines)) {
+        if (field[0] == '\0' && r->lines->rest == NULL) {
+            break; /* a comma at the end */
         }
-        rg_gid number = read_number(r, word);
-        if (r->have == 0) {
-            r->pending.number = number;
-        } else {
-            r->pending.node[r->have - 1] = (size_t)number;
-        }
-        if (++r->have == r->expected + 1) {
-            end_element(r);
+        rg_gid number = rg_inp_number(r->lines, field);
+        r->element[r->have] = shifted(r, r->have == 0 ? RG_INP_ELEMENTS : RG_INP_NODES, number);
+        if (++r->have == r->type.nodes + 1) {
+            end_element(r, r->type.shape == RG_INP_TRIANGLE ? 3 : r->type.nodes);
         }
     }
 }
 
-static void read_set(reader *r, char *line) {
-    char *rest = line, *word;
+/* Of a type that is left out: counted. */
+static void pass_element(reader *r) {
+    bool first = !r->goes_on;
+    char *field = rg_inp_field(r->lines);
+    if (first) {
+        r->element[0] = shifted(r, RG_INP_ELEMENTS, rg_inp_number(r->lines, field));
+        end_element(r, 0);
+        r->report.type[r->tally].count++;
+    }
+    for (; field != NULL; field = rg_inp_field(r->lines)) {
+        r->goes_on = field[0] == '\0';
+    }
+}
+
+static void read_set(reader *r, rg_inp_of of) {
+    rg_inp_set *s = &r->here->set[r->set];
     if (r->generate) {
-        rg_gid from = read_number(r, next_word(&rest)), step = 1;
-        word = next_word(&rest);
-        rg_gid to = word != NULL ? read_number(r, word) : from;
-        word = next_word(&rest);
-        step = word != NULL && word[0] != '\0' ? read_number(r, word) : 1;
-        for (; from <= to; from += step) {
-            add_member(r, r->current, from);
+        rg_gid shift = shift_of(r, of, r->of_scope), from = rg_inp_integer(r->lines, 0);
+        rg_gid to = rg_inp_integer(r->lines, from), step = rg_inp_integer(r->lines, 1);
+        if (to < from) {
+            rg_inp_refuse(r->lines->at, "GENERATE from %" PRId64 " to %" PRId64 ", which is less", from, to);
         }
+        rg_inp_add_entry(s, (rg_inp_entry){from + shift, to + shift, step, .at = r->lines->at});
         return;
     }
-    while ((word = next_word(&rest)) != NULL) {
-        if (is_number(word)) {
-            add_member(r, r->current, read_number(r, word));
-        } else if (word[0] != '\0') {
-            add_set(r, r->current, word);
+    for (char *field = rg_inp_field(r->lines); field != NULL; field = rg_inp_field(r->lines)) {
+        if (field[0] == '\0') {
+            continue;
+        }
+        rg_inp_entry e = read_entry(r, of, field);
+        if (e.name == NULL) {
+            rg_inp_add_number(s, e.from, e.from < RG_INP_OUTSIDE, e.at);
+        } else {
+            rg_inp_add_entry(s, e);
         }
     }
 }
 
-static void read_surface(reader *r, char *line) {
-    static const char *const labels[] = {"S1", "S2", "S3", "S4", "SPOS", "SNEG"};
-    char *rest = line;
-    const char *of = next_word(&rest), *label = next_word(&rest);
-    patch p = {.line = r->line, .face = -1};
-    for (int i = 0; i < 6 && label != NULL; i++) {
-        p.face = strcasecmp(label, labels[i]) == 0 ? (i < 4 ? i : 4) : p.face;
+static void read_surface(reader *r) {
+    static const char *const labels[] = {"S1", "S2", "S3", "S4", "SPOS", "SNEG", ""};
+    static const int faces[] = {0, 1, 2, 3, RG_INP_SIDE, RG_INP_SIDE, RG_INP_FREE};
+    rg_inp_surface *s = &r->here->surface[r->surface];
+    const char *of = rg_inp_field(r->lines), *label = rg_inp_field(r->lines);
+    int i = label == NULL || s->of == RG_INP_NODES ? 6 : 0;
+    for (; i < 6 && strcasecmp(label, labels[i]) != 0; i++) {
     }
-    if (p.face < 0 || strlen(of) >= RG_SET_NAME) {
-        refuse(r, "*SURFACE: 'element or set, S1 to S4' is expected");
+    if (of[0] == '\0' || (i == 6 && label != NULL && label[0] != '\0' && s->of == RG_INP_ELEMENTS)) {
+        rg_inp_refuse(r->lines->at, "*SURFACE: 'element or set, S1 to S4' is expected");
     }
-    strcpy(p.name, r->surface);
-    strcpy(p.of, of);
-    r->patch = rg_realloc(r->patch, r->patches + 1, sizeof *r->patch);
-    r->patch[r->patches++] = p;
+    rg_inp_add_patch(s, (rg_inp_patch){read_entry(r, s->of, of), faces[i]});
 }
 
-static void read_data(reader *r, char *line) {
+/* ---- all lines ---- */
+
+static void end_keyword(reader *r) {
+    if (r->section == RG_INP_ELEMENT && r->have > 0) {
+        rg_inp_refuse(r->lines->at, "element %" PRId64 " has %d of %d nodes",
+                      r->element[0] - shift_of(r, RG_INP_ELEMENTS, r->scope), r->have - 1, r->type.nodes);
+    }
+    if (r->section == RG_INP_SYSTEM && r->lines_read > 0 && r->system.axis[0][0] == 0 &&
+        r->system.axis[0][1] == 0 && r->system.axis[0][2] == 0) {
+        rg_inp_refuse(r->lines->at,
+                      "the axis of *SYSTEM stands across the x-y plane, which takes a second line");
+    }
+    if (r->pending) {
+        place_instance(r);
+    }
+}
+
+static void begin(reader *r) {
+    end_keyword(r);
+    rg_inp_keyword keyword = rg_inp_keyword_of(r->lines->keyword);
+    bool of_step =
+        keyword.word == RG_INP_NSET || keyword.word == RG_INP_ELSET || keyword.word == RG_INP_END_STEP;
+    if (keyword.word == RG_INP_UNKNOWN && !r->in_step) {
+        rg_inp_refuse(
+            r->lines->at,
+            "*%s is not a keyword that is known here, and might change the mesh: without it, the mesh "
+            "could be another one",
+            r->lines->keyword);
+    }
+    if (keyword.parameters == NULL || (r->in_step && !of_step)) {
+        rg_inp_report_keyword(&r->report, r->lines->keyword);
+        r->in_step = (r->in_step || keyword.word == RG_INP_STEP) && keyword.word != RG_INP_END_STEP;
+        r->section = RG_INP_IRRELEVANT;
+        return;
+    }
+    rg_inp_allow(r->lines, keyword.parameters);
+    strcpy(r->keyword, keyword.name);
+    r->section = keyword.word;
+    r->lines_read = 0;
+    switch (keyword.word) {
+    case RG_INP_NODE:
+        begin_nodes(r);
+        break;
+    case RG_INP_ELEMENT:
+        begin_elements(r);
+        break;
+    case RG_INP_NSET:
+        begin_set(r, RG_INP_NODES, "NSET");
+        break;
+    case RG_INP_ELSET:
+        begin_set(r, RG_INP_ELEMENTS, "ELSET");
+        break;
+    case RG_INP_SURFACE:
+        begin_surface(r);
+        break;
+    case RG_INP_SYSTEM:
+        r->system = rg_frame_global;
+        break;
+    case RG_INP_PART:
+        begin_part(r);
+        break;
+    case RG_INP_ASSEMBLY:
+        r->assembled = true;
+        leave_part(r);
+        break;
+    case RG_INP_END_ASSEMBLY:
+    case RG_INP_END_PART:
+    case RG_INP_END_INSTANCE:
+        leave_part(r);
+        break;
+    case RG_INP_INSTANCE:
+        begin_instance(r);
+        break;
+    case RG_INP_NGEN:
+    case RG_INP_NFILL:
+        begin_generator(r, "NSET");
+        break;
+    case RG_INP_ELGEN:
+        begin_generator(r, "ELSET");
+        break;
+    case RG_INP_ELCOPY:
+        begin_generator(r, "NEWSET");
+        break;
+    case RG_INP_UNKNOWN:
+    case RG_INP_IRRELEVANT:
+    case RG_INP_STEP:
+    case RG_INP_END_STEP:
+        break;
+    }
+    rg_inp_follow(r->lines);
+}
+
+static void read_data(reader *r) {
+    const char *set = r->name[0] != '\0' ? r->name : NULL;
     switch (r->section) {
-    case NODE:
-        read_node(r, line);
+    case RG_INP_NODE:
+        read_node(r);
         break;
-    case ELEMENT:
-        read_element(r, line);
+    case RG_INP_ELEMENT:
+        r->type.nodes > 0 ? read_element(r) : pass_element(r);
         break;
-    case ELSET:
-        read_set(r, line);
+    case RG_INP_NSET:
+        read_set(r, RG_INP_NODES);
         break;
-    case SURFACE:
-        read_surface(r, line);
+    case RG_INP_ELSET:
+        read_set(r, RG_INP_ELEMENTS);
         break;
-    case INSTANCE:
-        refuse(r, "*INSTANCE that is moved: give the part in its own coordinates");
-    case SKIP:
+    case RG_INP_SURFACE:
+        read_surface(r);
+        break;
+    case RG_INP_SYSTEM:
+        read_system(r);
+        break;
+    case RG_INP_INSTANCE:
+        read_instance(r);
+        break;
+    case RG_INP_NGEN:
+        rg_inp_ngen(r->lines, r->here, r->scope, set);
+        break;
+    case RG_INP_NFILL:
+        rg_inp_nfill(r->lines, r->here, r->scope, set);
+        break;
+    case RG_INP_ELGEN:
+        rg_inp_elgen(r->lines, r->here, r->scope, set);
+        break;
+    case RG_INP_UNKNOWN:
+        rg_inp_refuse(r->lines->at, "data before the first keyword");
+    case RG_INP_PART:
+    case RG_INP_END_PART:
+    case RG_INP_ASSEMBLY:
+    case RG_INP_END_ASSEMBLY:
+    case RG_INP_END_INSTANCE:
+    case RG_INP_ELCOPY:
+        rg_inp_refuse(r->lines->at, "*%s has no data lines", r->keyword);
+    case RG_INP_IRRELEVANT:
+    case RG_INP_STEP:
+    case RG_INP_END_STEP:
         break;
     }
 }
 
 static void read_lines(reader *r) {
-    FILE *f = rg_open_input(r->path);
-    char *line = NULL;
-    size_t size = 0;
-    if (f == NULL) {
-        rg_fatal(RG_USAGE, "%s: cannot be read: %s", r->path, strerror(errno));
+    for (rg_inp_kind kind = rg_inp_next(r->lines); kind != RG_INP_END; kind = rg_inp_next(r->lines)) {
+        kind == RG_INP_KEYWORD ? begin(r) : read_data(r);
     }
-    while (getline(&line, &size, f) >= 0) {
-        r->line++;
-        if (r->line == 1 && strncmp(line, "\xef\xbb\xbf", 3) == 0) { /* how some editors mark UTF-8 */
-            memmove(line, line + 3, strlen(line + 3) + 1);
-        }
-        line[strcspn(line, "\r\n")] = '\0';
-        bool blank = line[strspn(line, " \t")] == '\0', comment = strncmp(line, "**", 2) == 0;
-        if (line[0] == '*' && !comment) {
-            if (r->section == ELEMENT && r->have > 0) {
-                refuse(r, "element %" PRId64 " has %d of %d nodes", r->pending.number, r->have - 1,
-                       r->expected);
-            }
-            begin(r, line);
-        } else if (!blank && !comment) {
-            read_data(r, line);
-        }
-    }
-    bool failed = ferror(f) != 0;
-    free(line);
-    fclose(f);
-    if (failed || (r->section == ELEMENT && r->have > 0)) {
-        refuse(r, "the file ends within an element, or cannot be read");
-    }
+    end_keyword(r);
 }
 
-/* ---- sets to regions and faces ---- */
-
-static const element *find_element(const reader *r, rg_gid number) {
-    rg_lid i = rg_gid_map_get(&r->by_number, number);
-    return i >= 0 ? &r->element[i] : NULL;
-}
-
-static void index_elements(reader *r) {
-    r->by_number = rg_gid_map_make(r->elements);
-    for (size_t i = 0; i < r->elements; i++) {
-        if (rg_gid_map_put(&r->by_number, r->element[i].number, (rg_lid)i) != (rg_lid)i) {
-            rg_fatal(RG_USAGE, "%s: element %" PRId64 " is defined twice", r->path, r->element[i].number);
+/* A part by itself needs no instance; of several, those without one are left out. */
+static rg_inp_model *choose_model(reader *r) {
+    if (r->whole->scopes == 1 && r->parts == 1 && r->whole->elements.count == 0) {
+        return r->part[0].model;
+    }
+    for (size_t i = 0; i < r->parts; i++) {
+        const part *p = &r->part[i];
+        if (p->instances == 0 && p->model->elements.count > 0) {
+            rg_inp_refuse(p->at, "no *INSTANCE places *PART, NAME=%s, which has %zu elements", p->name,
+                          p->model->elements.count);
         }
     }
+    return r->whole;
 }
 
-/* The number of set `name` in a mesh's list, a new one if need be. */
-static int name_set(const reader *r, const char *name, int *count, char *list[]) {
-    for (int i = 0; i < *count; i++) {
-        if (strcmp(list[i], name) == 0) {
-            return i;
-        }
-    }
-    if (*count == RG_MAX_SETS) {
-        rg_fatal(RG_USAGE, "%s: more than %d sets", r->path, RG_MAX_SETS);
-    }
-    list[*count] = RG_NEW(char, RG_SET_NAME);
-    strcpy(list[*count], name);
-    return (*count)++;
-}
-
-/* A section has the members of the sets of its name. */
-static void fill_sections(reader *r) {
-    for (size_t i = 0; i < r->sets; i++) {
-        if (r->set[i].rank == FROM_SECTION) {
-            char name[RG_SET_NAME];
-            r->line = r->set[i].line;
-            strcpy(name, r->set[i].name);
-            add_set(r, i, name);
-        }
-    }
-}
-
-/* chosen[element]: the set that counts for it, + 1; solids and triangles each by their own rules. */
-static size_t *choose_sets(const reader *r) {
-    size_t *chosen = RG_NEW(size_t, r->elements + 1);
-    for (size_t s = 0; s < r->sets; s++) {
-        for (size_t k = 0; k < r->set[s].count && !r->set[s].internal; k++) {
-            const element *e = find_element(r, r->set[s].member[k]);
-            if (e == NULL || (e->nodes > 3 && r->sections && r->set[s].rank != FROM_SECTION)) {
-                continue;
-            }
-            size_t *now = &chosen[e - r->element];
-            const elset *old = *now > 0 ? &r->set[*now - 1] : NULL;
-            if (old != NULL && old->rank == r->set[s].rank && *now != s + 1) {
-                rg_fatal(RG_USAGE,
-                         "%s: element %" PRId64 " is in two sets, '%s' and '%s'; it can be in one only",
-                         r->path, e->number, old->name, r->set[s].name);
-            }
-            *now = old == NULL || old->rank < r->set[s].rank ? s + 1 : *now;
-        }
-    }
-    return chosen;
-}
-
-static void take_elements(reader *r, rg_mesh *names) {
-    size_t *chosen = choose_sets(r);
-    for (size_t i = 0; i < r->elements; i++) {
-        const element *e = &r->element[i];
-        const char *set = chosen[i] > 0 ? r->set[chosen[i] - 1].name : NULL;
-        if (e->nodes > 3) {
-            int region = set != NULL ? name_set(r, set, &names->regions, names->region_name) : -1;
-            rg_import_element(&r->import, e->number, e->nodes, e->node, region);
-        } else if (set != NULL) {
-            rg_import_add_face(&r->import, e->number, e->node,
-                               name_set(r, set, &names->sets, names->set_name));
-        }
-    }
-    rg_free(chosen);
-}
-
-static void take_face(reader *r, const patch *p, int set, rg_gid number) {
-    const element *e = find_element(r, number);
-    if (e == NULL || (p->face < 4) != (e->nodes > 3)) {
-        rg_fatal(RG_USAGE, "%s: *SURFACE, NAME=%s: element %" PRId64 " is not there or has no such face",
-                 r->path, p->name, number);
-    }
-    size_t node[3];
-    for (int k = 0; k < 3; k++) {
-        node[k] = e->node[p->face < 4 ? face_corner[p->face][k] : k];
-    }
-    rg_import_add_face(&r->import, number, node, set);
-}
-
-static void take_surfaces(reader *r, rg_mesh *names) {
-    for (size_t i = 0; i < r->patches; i++) {
-        const patch *p = &r->patch[i];
-        r->line = p->line;
-        int set = name_set(r, p->name, &names->sets, names->set_name);
-        if (is_number(p->of)) {
-            take_face(r, p, set, read_number(r, p->of));
-            continue;
-        }
-        size_t all = need_set(r, "", FROM_SECTION); /* a place to collect them */
-        r->set[all].count = 0;
-        add_set(r, all, p->of);
-        for (size_t k = 0; k < r->set[all].count; k++) {
-            take_face(r, p, set, r->set[all].member[k]);
-        }
-    }
-}
-
-rg_mesh *rg_inp_read(const char *path, double scale) {
-    reader r = {.path = path, .import = {.path = path, .scale = scale}};
-    rg_mesh names = {0};
+rg_mesh *rg_inp_read(const char *path, double scale, FILE *out) {
+    reader r = {.lines = rg_inp_open(path), .whole = rg_inp_model_make(), .section = RG_INP_UNKNOWN};
+    leave_part(&r);
     read_lines(&r);
-    index_elements(&r);
-    fill_sections(&r);
-    take_elements(&r, &names);
-    take_surfaces(&r, &names);
-    rg_mesh *mesh = rg_import_finish(&r.import, names.set_name);
-    mesh->sets = names.sets;
-    mesh->regions = names.regions;
-    memcpy(mesh->set_name, names.set_name, sizeof mesh->set_name);
-    memcpy(mesh->region_name, names.region_name, sizeof mesh->region_name);
-    for (size_t s = 0; s < r.sets; s++) {
-        rg_free(r.set[s].member);
+    rg_inp_report_judge(&r.report, path);
+    rg_mesh *mesh = rg_inp_mesh(path, scale, choose_model(&r));
+    rg_inp_report_print(&r.report, path, out);
+    for (size_t i = 0; i < r.parts; i++) {
+        rg_inp_model_free(r.part[i].model);
     }
-    rg_free(r.set);
-    rg_free(r.element);
-    rg_free(r.patch);
-    rg_gid_map_free(&r.by_number);
+    rg_free(r.part);
+    rg_inp_model_free(r.whole);
+    rg_inp_close(r.lines);
     return mesh;
 }

@@ -1,18 +1,24 @@
-/* Meshes from Abaqus input files. */
+/* Meshes from Abaqus and CalculiX input files. */
 #ifndef RG_INP_READ_H
 #define RG_INP_READ_H
 
+#include <stdio.h>
+
 #include "mesh/mesh.h"
 
-/* Reads the mesh of an Abaqus input file, with lengths times `scale` in m: *NODE; *ELEMENT with types C3D4
- * and C3D10 (and variants: C3D10M, C3D10HS, ...); triangles (S3, STRI65, CPS6, SFM3D3, ...), which only name
- * faces; *ELSET; *SURFACE, TYPE=ELEMENT.
+/* Reads the mesh of an input file, with lengths times `scale` in m, as the manuals define it: nodes and
+ * elements, given (*NODE, *ELEMENT, in local systems) and generated (*NGEN, *NFILL, *ELGEN, *ELCOPY), in one
+ * body or in parts that instances place, in one file or several. Elements are tetrahedra of any physics;
+ * triangles (S3, CPS6, SFM3D3, ...) only name faces.
  *
- * Volume sets: the ELSETs of *SOLID SECTION; where there is no such line, those of *ELSET, and for elements
- * in none of these the ELSET of their *ELEMENT line. Surface sets: every *SURFACE, and the ELSETs of
- * triangles, chosen like those of volumes. An element or face in two sets ends the run. One part, in its own
- * coordinates: a second *PART or a moved *INSTANCE ends the run, as do other solid elements. The result is
- * neither sorted nor connected; `original` holds the file's element numbers. The caller frees it. */
-rg_mesh *rg_inp_read(const char *path, double scale);
+ * Volume sets are all sets of elements, surface sets all surfaces, sets of triangles, and sets of nodes that
+ * hold whole faces; they may overlap. Sets that the preprocessor made for its own use (INTERNAL) are none.
+ * With several instances the sets of each are called "instance.set".
+ *
+ * What is not read either has no influence on the mesh, and `out` gets a line with its number, or is left out
+ * with a warning (elements that are no solids), or ends the run: other solids, keywords and parameters that
+ * are not known here. The result is neither sorted nor connected; `original` holds the file's element
+ * numbers, in later instances plus a multiple of a power of ten. The caller frees it. */
+rg_mesh *rg_inp_read(const char *path, double scale, FILE *out);
 
 #endif

@@ -76,7 +76,7 @@ static bool make_ring(const rg_tets *t, rg_gid a, rg_gid b, ring *r) {
 }
 
 /* Label of the face (a, b, vertex i) as its tetrahedron has it. */
-static int8_t spoke_label(const rg_tets *t, const ring *r, int i) {
+static int32_t spoke_label(const rg_tets *t, const ring *r, int i) {
     bool last = i > 0 && i == r->tets; /* of a fan */
     const rg_tet *tet = t->tet + r->tet[last ? i - 1 : i];
     rg_gid opposite = r->vertex[last ? i - 1 : (i + 1) % r->vertices];
@@ -164,7 +164,7 @@ bool rg_tets_remove_edge(rg_tets *t, rg_gid a, rg_gid b) {
     }
     rg_gid corner[2 * MOST_RING][4];
     int count = list_pairs(&r, &best, 0, last, 0, corner);
-    int8_t label = spoke_label(t, &r, 0);
+    int32_t label = spoke_label(t, &r, 0);
     rg_labelled_face ends[2] = {rg_labelled_face_of(a, r.vertex[0], r.vertex[last], label),
                                 rg_labelled_face_of(b, r.vertex[0], r.vertex[last], label)};
     rg_tets_replace(t, r.tets, r.tet, count, (const rg_gid(*)[4])corner, r.vertices > r.tets ? 2 : 0, ends);

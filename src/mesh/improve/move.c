@@ -64,7 +64,7 @@ static void confine(freedom *f, const double e[3]) {
 /* An edge of labelled faces at the vertex, by its other end. */
 typedef struct {
     rg_gid end;
-    int8_t label;
+    int32_t label;
     bool differ;
     int faces; /* twice their number: a kept face is met from both sides */
 } face_edge;
@@ -74,7 +74,7 @@ typedef struct {
     face_edge edge[MOST_EDGES];
 } face_edges;
 
-static bool note_edge(face_edges *list, rg_gid end, int8_t label) {
+static bool note_edge(face_edges *list, rg_gid end, int32_t label) {
     int i = 0;
     while (i < list->count && list->edge[i].end != end) {
         i++;

@@ -75,7 +75,7 @@ int rg_tets_around(const rg_tets *t, rg_gid a, rg_gid b, int most, rg_gid *tet) 
     return count;
 }
 
-rg_labelled_face rg_labelled_face_of(rg_gid a, rg_gid b, rg_gid c, int8_t label) {
+rg_labelled_face rg_labelled_face_of(rg_gid a, rg_gid b, rg_gid c, int32_t label) {
     rg_gid low = a < b ? a : b, high = a < b ? b : a;
     rg_labelled_face face = {{low, high, c}, label};
     if (c < low) {
@@ -124,7 +124,7 @@ static void drop(rg_tets *t, rg_gid tet) {
     t->tet[tet].corner[0] = -1;
 }
 
-static int8_t label_among(const rg_labelled_face *list, int count, rg_labelled_face face) {
+static int32_t label_among(const rg_labelled_face *list, int count, rg_labelled_face face) {
     for (int i = 0; i < count; i++) {
         if (memcmp(list[i].vertex, face.vertex, sizeof face.vertex) == 0) {
             return list[i].label;
@@ -172,10 +172,10 @@ static int by_vertices(const void *a, const void *b) {
     return 0;
 }
 
-static int8_t label_of(const rg_mesh *mesh, rg_gid slot) {
+static int32_t label_of(const rg_mesh *mesh, rg_gid slot) {
     rg_gid e = slot / 4, other = mesh->neighbour[slot], name[3];
     if (other < 0) {
-        return (int8_t)(RG_SURFACE + mesh->set[slot] + 1);
+        return RG_SURFACE + mesh->set[slot] + 1;
     }
     for (int i = 0; i < 3; i++) {
         name[i] = mesh->corner[4 * e + rg_face_node[slot % 4][i]];
@@ -188,7 +188,7 @@ static int8_t label_of(const rg_mesh *mesh, rg_gid slot) {
 
 static void turn(rg_tet *tet) {
     rg_gid corner = tet->corner[0];
-    int8_t label = tet->label[0];
+    int32_t label = tet->label[0];
     tet->corner[0] = tet->corner[1];
     tet->label[0] = tet->label[1];
     tet->corner[1] = corner;
@@ -202,7 +202,7 @@ rg_tets rg_tets_make(rg_mesh *mesh) {
     }
     for (rg_gid e = 0; e < mesh->elements; e++) {
         rg_tet tet = {.original = rg_mesh_original(mesh, e),
-                      .region = (int8_t)(mesh->region != NULL ? mesh->region[e] : -1)};
+                      .region = mesh->region != NULL ? mesh->region[e] : -1};
         for (int i = 0; i < 4; i++) {
             tet.corner[i] = mesh->corner[4 * e + i];
             tet.label[i] = label_of(mesh, 4 * e + i);
@@ -224,8 +224,7 @@ static void put(rg_mesh *mesh, rg_gid e, const rg_tet *tet) {
             place += tet->corner[k] < tet->corner[i];
         }
         mesh->corner[4 * e + place] = tet->corner[i];
-        mesh->set[4 * e + place] =
-            (int8_t)(tet->label[i] >= RG_SURFACE ? tet->label[i] - RG_SURFACE - 1 : -1);
+        mesh->set[4 * e + place] = tet->label[i] >= RG_SURFACE ? tet->label[i] - RG_SURFACE - 1 : -1;
     }
     mesh->original[e] = tet->original;
     if (mesh->region != NULL) {
@@ -246,11 +245,11 @@ static void resize(rg_mesh *mesh, size_t count) {
     mesh->corner = RG_NEW(rg_gid, 4 * count);
     mesh->neighbour = RG_NEW(rg_gid, 4 * count);
     mesh->face = RG_NEW(int8_t, 4 * count);
-    mesh->set = RG_NEW(int8_t, 4 * count);
+    mesh->set = RG_NEW(int32_t, 4 * count);
     mesh->original = RG_NEW(rg_gid, count);
     if (mesh->region != NULL) {
         rg_free(mesh->region);
-        mesh->region = RG_NEW(int8_t, count);
+        mesh->region = RG_NEW(int32_t, count);
     }
 }
 

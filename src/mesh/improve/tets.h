@@ -9,15 +9,15 @@
 #include "mesh/mesh.h"
 
 /* Labels of faces: 0 inside, RG_KEPT on a face inside that must stay where it is (between two volume sets, or
- * named), RG_SURFACE + set + 1 on the surface. */
+ * named), RG_SURFACE + group + 1 on the surface. */
 enum { RG_KEPT = 1, RG_SURFACE = 2 };
 
 typedef struct {
     rg_gid corner[4]; /* right-handed; corner[0] is -1 once the tetrahedron is gone */
     rg_gid original;
-    double height;   /* smallest (m) */
-    int8_t label[4]; /* of the face opposite each corner */
-    int8_t region;
+    double height;    /* smallest (m) */
+    int32_t label[4]; /* of the face opposite each corner */
+    int32_t region;
 } rg_tet;
 
 /* The tetrahedra around a vertex. */
@@ -38,7 +38,7 @@ typedef struct {
 /* A face by its vertices, ascending. */
 typedef struct {
     rg_gid vertex[3];
-    int8_t label;
+    int32_t label;
 } rg_labelled_face;
 
 /* Takes a connected mesh apart; `mesh` must stay. rg_tets_finish frees. */
@@ -71,6 +71,6 @@ int rg_tets_around(const rg_tets *t, rg_gid a, rg_gid b, int most, rg_gid *tet);
 void rg_tets_replace(rg_tets *t, int olds, const rg_gid *old, int news, const rg_gid (*corner)[4], int mores,
                      const rg_labelled_face *more);
 
-rg_labelled_face rg_labelled_face_of(rg_gid a, rg_gid b, rg_gid c, int8_t label);
+rg_labelled_face rg_labelled_face_of(rg_gid a, rg_gid b, rg_gid c, int32_t label);
 
 #endif

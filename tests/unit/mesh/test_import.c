@@ -15,8 +15,6 @@
 #include "mesh/import/import.h"
 #include "support/mesh_text.h"
 
-static char *const names[] = {(char[]){"top"}, (char[]){"side"}};
-
 static void add_nodes(rg_import *m) {
     static const double x[5][3] = {{1, 2, 3}, {5, 2, 3.5}, {1.5, 7, 3}, {1, 2.5, 9}, {6, 8, 10}};
     for (size_t n = 0; n < 5; n++) {
@@ -28,16 +26,15 @@ static void add_nodes(rg_import *m) {
 static rg_import make_pair(void) {
     rg_import m = {.path = "pair", .scale = 1};
     add_nodes(&m);
-    rg_import_element(&m, 1, 4, (const size_t[]){10, 20, 30, 40}, -1);
-    rg_import_element(&m, 2, 4, (const size_t[]){20, 30, 40, 50}, -1);
+    rg_import_element(&m, 1, 4, (const size_t[]){10, 20, 30, 40});
+    rg_import_element(&m, 2, 4, (const size_t[]){20, 30, 40, 50});
+    rg_sets_add(&m.surface, "top");
+    rg_sets_add(&m.surface, "side");
     return m;
 }
 
 static void end(rg_import *m) {
-    rg_mesh *mesh = rg_import_finish(m, names);
-    mesh->sets = 2;
-    mesh->set_name[0] = names[0];
-    mesh->set_name[1] = names[1];
+    rg_mesh *mesh = rg_import_finish(m);
     print_mesh(mesh, stderr);
 }
 
@@ -48,9 +45,9 @@ static void end(rg_import *m) {
 static void add_in_turns(void) {
     rg_import m = make_pair();
     rg_import_node(&m, 5, (const double[]){8, 1, 2});
-    rg_import_element(&m, 3, 4, (const size_t[]){10, 20, 30, 5}, -1);
+    rg_import_element(&m, 3, 4, (const size_t[]){10, 20, 30, 5});
     rg_import_node(&m, 50, (const double[]){6.5, 8.5, 10.5});
-    rg_import_element(&m, 4, 4, (const size_t[]){10, 20, 5, 40}, -1);
+    rg_import_element(&m, 4, 4, (const size_t[]){10, 20, 5, 40});
     end(&m);
 }
 
@@ -66,7 +63,7 @@ static void test_turns(void **state) {
 
 static void no_nodes(void) {
     rg_import m = {.path = "pair", .scale = 1};
-    rg_import_element(&m, 8, 4, (const size_t[]){10, 20, 30, 40}, -1);
+    rg_import_element(&m, 8, 4, (const size_t[]){10, 20, 30, 40});
 }
 
 static void no_elements(void) {
@@ -100,8 +97,9 @@ static void add_quadratic(void) {
         node[4 + k] = 100 + (size_t)k;
         rg_import_node(&m, node[4 + k], x);
     }
-    rg_import_element(&m, 1, 10, node, 0);
-    rg_mesh *mesh = rg_import_finish(&m, names);
+    rg_import_element(&m, 1, 10, node);
+    rg_import_put(&m, 0, rg_sets_add(&m.volume, "steel"));
+    rg_mesh *mesh = rg_import_finish(&m);
     assert_int_equal(mesh->region[0], 0);
     print_mesh(&(rg_mesh){.vertices = 1, .x = mesh->x}, stderr);
 }
@@ -141,7 +139,7 @@ static void add_faces(void) {
     rg_import_node(&m, 60, (const double[]){0, 0, 0.25});
     rg_import_node(&m, 5, (const double[]){9, 9, 9.5});
     for (size_t i = 0; i < face_count; i++) {
-        rg_import_add_face(&m, faces[i].name, faces[i].node, faces[i].set);
+        rg_import_add_face(&m, faces[i]);
     }
     end(&m);
 }
@@ -159,37 +157,104 @@ static void expect_faces(size_t count, const rg_import_face *list, int status, c
 
 static void test_faces(void **state) {
     (void)state;
-    const rg_import_face surface[] = {{{40, 10, 20}, 7, 1}, {{50, 40, 20}, 8, 0}, {{20, 10, 40}, 9, 1}};
+    const rg_import_face surface[] = {
+        {{40, 10, 20}, 7, 1, false}, {{50, 40, 20}, 8, 0, false}, {{20, 10, 40}, 9, 1, false}};
     expect_faces(3, surface, RG_OK, LEFT X5 "e 1: 0 1 2 3, side at 2\ne 2: 1 2 3 4, top at 1\n");
-    const rg_import_face unnamed[] = {{{40, 10, 20}, 7, RG_IMPORT_UNNAMED},
-                                      {{40, 30, 20}, 8, RG_IMPORT_UNNAMED}};
+    const rg_import_face unnamed[] = {{{40, 10, 20}, 7, RG_IMPORT_UNNAMED, false},
+                                      {{40, 30, 20}, 8, RG_IMPORT_UNNAMED, false}};
     expect_faces(2, unnamed, RG_OK, LEFT X5 "e 1: 0 1 2 3\ne 2: 1 2 3 4\ninner 1 2 3\n");
-    const rg_import_face both[] = {{{40, 10, 20}, 7, RG_IMPORT_UNNAMED},
-                                   {{40, 10, 20}, 8, 0},
-                                   {{40, 30, 20}, 9, RG_IMPORT_UNNAMED},
-                                   {{40, 20, 30}, 10, 1}};
+    const rg_import_face both[] = {{{40, 10, 20}, 7, RG_IMPORT_UNNAMED, false},
+                                   {{40, 10, 20}, 8, 0, false},
+                                   {{40, 30, 20}, 9, RG_IMPORT_UNNAMED, false},
+                                   {{40, 20, 30}, 10, 1, false}};
     expect_faces(4, both, RG_OK,
                  LEFT WARNING "1 " BETWEEN X5 "e 1: 0 1 2 3, top at 2\ne 2: 1 2 3 4\ninner 1 2 3\n");
     /* with node 60, 99 and 5, of which the second is not there and the others are no corners; and behind all
      * faces */
-    const rg_import_face nowhere[] = {{{10, 20, 50}, 7, 0},
-                                      {{10, 20, 60}, 8, 0},
-                                      {{99, 20, 10}, 9, 1},
-                                      {{10, 5, 50}, 10, RG_IMPORT_UNNAMED},
-                                      {{10, 30, 50}, 11, RG_IMPORT_UNNAMED},
-                                      {{20, 10, 30}, 12, 1},
-                                      {{40, 50, 50}, 13, 1}};
+    const rg_import_face nowhere[] = {{{10, 20, 50}, 7, 0, false},
+                                      {{10, 20, 60}, 8, 0, false},
+                                      {{99, 20, 10}, 9, 1, false},
+                                      {{10, 5, 50}, 10, RG_IMPORT_UNNAMED, false},
+                                      {{10, 30, 50}, 11, RG_IMPORT_UNNAMED, false},
+                                      {{20, 10, 30}, 12, 1, false},
+                                      {{40, 50, 50}, 13, 1, false}};
     expect_faces(7, nowhere, RG_OK, LEFT WARNING "4 " NOWHERE X5 "e 1: 0 1 2 3, side at 3\ne 2: 1 2 3 4\n");
-    const rg_import_face two[] = {{{40, 10, 20}, 9, 1}, {{20, 10, 40}, 7, 0}};
-    expect_faces(
-        2, two, RG_USAGE,
-        LEFT
-        "rhegma: pair: 7 and 9 are the same face, in surface sets 'top' and 'side'; it can be in one only\n");
-    const rg_import_face inside[] = {{{40, 30, 20}, 7, 1}, {{20, 30, 40}, 9, 0}};
-    expect_faces(
-        2, inside, RG_USAGE,
-        LEFT
-        "rhegma: pair: 7 and 9 are the same face, in surface sets 'side' and 'top'; it can be in one only\n");
+    const rg_import_face two[] = {{{40, 10, 20}, 9, 1, false}, {{20, 10, 40}, 7, 0, false}};
+    expect_faces(2, two, RG_OK, LEFT X5 "e 1: 0 1 2 3, top and side at 2\ne 2: 1 2 3 4\n");
+    const rg_import_face inside[] = {{{40, 30, 20}, 7, 1, false}, {{20, 30, 40}, 9, 0, false}};
+    expect_faces(2, inside, RG_OK, LEFT WARNING "1 " BETWEEN X5 "e 1: 0 1 2 3\ne 2: 1 2 3 4\ninner 1 2 3\n");
+    /* what is only meant where it is on the surface is not said to lie inside, nor kept there */
+    const rg_import_face skin[] = {{{40, 30, 20}, 7, 1, true}, {{20, 10, 40}, 9, 1, true}};
+    expect_faces(2, skin, RG_OK, LEFT X5 "e 1: 0 1 2 3, side at 2\ne 2: 1 2 3 4\n");
+}
+
+/* Sets of nodes: faces of the surface all of whose corners are in one. */
+static void add_points(void) {
+    static const struct {
+        const char *name;
+        size_t node[5];
+    } sets[] = {{"all", {10, 20, 30, 40, 50}}, {"none", {10, 20, 50}},   {"foot", {30, 10, 20, 30, 99}},
+                {"side", {50, 40, 30}},        {"inside", {20, 30, 40}}, {"back", {40, 50, 30, 60}}};
+    rg_import m = make_pair();
+    rg_import_node(&m, 60, (const double[]){0, 0, 0.5});
+    rg_import_add_face(&m, (rg_import_face){{40, 10, 20}, 7, 1, false});
+    for (int i = 5; i >= 0; i--) {
+        for (int k = 0; k < 5 && sets[i].node[k] > 0; k++) {
+            rg_import_add_point(&m, sets[i].node[k], i);
+        }
+    }
+    for (int i = 0; i < 6; i++) {
+        rg_sets_add(&m.node_set, sets[i].name);
+    }
+    end(&m);
+}
+
+static void test_points(void **state) {
+    (void)state;
+    expect_said(
+        add_points, RG_OK,
+        WARNING
+        "1 nodes belong to no tetrahedron and are left out; the first is node 60 at (0, 0, 0.5) m\n" WARNING
+        "2 sets of nodes hold no whole face of the surface and are left out: 'none', 'inside'\n" WARNING
+        "1 sets of nodes are left out, for there are surfaces of their names: 'side'\n" X5
+        "e 1: 0 1 2 3, all at 1, side and all at 2, all and foot at 3\n"
+        "e 2: 1 2 3 4, all and back at 0, all at 1, all at 2\n");
+}
+
+/* The message names the first five. */
+static void add_many_points(void) {
+    rg_import m = make_pair();
+    for (int i = 0; i < 7; i++) {
+        rg_sets_add(&m.node_set, (const char[]){(char)('a' + i), '\0'});
+    }
+    end(&m);
+}
+
+static void test_many_points(void **state) {
+    (void)state;
+    expect_said(add_many_points, RG_OK,
+                WARNING
+                "7 sets of nodes hold no whole face of the surface and are left out: 'a', 'b', 'c', 'd', "
+                "'e', ...\n" X5 "e 1: 0 1 2 3\ne 2: 1 2 3 4\n");
+}
+
+/* Elements in several sets of volumes. */
+static void add_volumes(void) {
+    rg_import m = make_pair();
+    rg_sets_add(&m.volume, "steel");
+    rg_sets_add(&m.volume, "half");
+    rg_sets_add(&m.volume, "whole");
+    for (int32_t e = 0; e < 2; e++) {
+        rg_import_put(&m, e, e);
+        rg_import_put(&m, e, 2);
+        rg_import_put(&m, e, 2);
+    }
+    end(&m);
+}
+
+static void test_volumes(void **state) {
+    (void)state;
+    expect_said(add_volumes, RG_OK, X5 "e 1: 0 1 2 3 in steel and whole\ne 2: 1 2 3 4 in half and whole\n");
 }
 
 /* A mesh takes as much memory as its arrays have items, and gives all of it back. */
@@ -197,12 +262,12 @@ static void test_memory(void **state) {
     (void)state;
     size_t before = rg_alloc_total();
     rg_import m = make_pair();
-    rg_import_add_face(&m, 7, (const size_t[]){40, 10, 20}, 1);
-    rg_import_add_face(&m, 8, (const size_t[]){40, 10, 30}, 1);
-    rg_mesh *mesh = rg_import_finish(&m, names);
+    rg_import_add_face(&m, (rg_import_face){{40, 10, 20}, 7, 1, false});
+    rg_import_add_face(&m, (rg_import_face){{40, 10, 30}, 8, 1, false});
+    rg_mesh *mesh = rg_import_finish(&m);
     enum { VERTICES = 5, ELEMENTS = 2, FACES = 2 };
     assert_int_equal(rg_alloc_total() - before,
-                     sizeof *mesh + 3 * VERTICES * sizeof *mesh->x +
+                     sizeof *mesh + sizeof "top" + sizeof "side" + 3 * VERTICES * sizeof *mesh->x +
                          ELEMENTS * (4 * (sizeof *mesh->corner + sizeof *mesh->neighbour +
                                           sizeof *mesh->face + sizeof *mesh->set) +
                                      sizeof *mesh->region + sizeof *mesh->original) +
@@ -213,8 +278,9 @@ static void test_memory(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_turns), cmocka_unit_test(test_nothing), cmocka_unit_test(test_middles),
-        cmocka_unit_test(test_faces), cmocka_unit_test(test_memory),
+        cmocka_unit_test(test_turns),   cmocka_unit_test(test_nothing), cmocka_unit_test(test_middles),
+        cmocka_unit_test(test_faces),   cmocka_unit_test(test_points),  cmocka_unit_test(test_many_points),
+        cmocka_unit_test(test_volumes), cmocka_unit_test(test_memory),
     };
     return cmocka_run_group_tests_name("import", tests, NULL, NULL);
 }

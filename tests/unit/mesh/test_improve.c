@@ -141,7 +141,7 @@ static double middle_area(const rg_mesh *m) {
 static void test_volume_sets_stay(void **state) {
     (void)state;
     rg_mesh *m = layered();
-    m->region = RG_NEW(int8_t, (size_t)m->elements);
+    m->region = RG_NEW(int32_t, (size_t)m->elements);
     for (rg_gid e = 0; e < m->elements; e++) {
         double z = 0;
         for (int i = 0; i < 4; i++) {
@@ -231,10 +231,10 @@ static rg_mesh *small(rg_gid vertices, const double *x, rg_gid elements, const r
     m->corner = RG_NEW(rg_gid, slots);
     m->neighbour = RG_NEW(rg_gid, slots);
     m->face = RG_NEW(int8_t, slots);
-    m->set = RG_NEW(int8_t, slots);
+    m->set = RG_NEW(int32_t, slots);
     memcpy(m->x, x, 3 * (size_t)vertices * sizeof *x);
     memcpy(m->corner, corner, slots * sizeof *corner);
-    memset(m->set, -1, slots);
+    memset(m->set, -1, slots * sizeof *m->set);
     rg_mesh_connect(m);
     return m;
 }
@@ -386,7 +386,7 @@ static void test_fans(void **state) {
         m->set[0] = 3;                      /* 1 2 3: stays */
         m->set[4 + 1] = what == 4 ? 2 : -1; /* 0 3 4: stays */
         double volume = total_volume(m, 0);
-        m->region = what == 5 ? RG_NEW(int8_t, 2) : NULL;
+        m->region = what == 5 ? RG_NEW(int32_t, 2) : NULL;
         if (what == 5) {
             m->region[0] = 1; /* the face between them must stay */
         }
@@ -458,13 +458,13 @@ static void test_faces(void **state) {
                 }
             }
             rg_mesh *m = small(5, x, 2, corner);
-            m->region = RG_NEW(int8_t, 2);
+            m->region = RG_NEW(int32_t, 2);
             m->region[0] = kind == 1;
             for (int s = 0; s < 8;
                  s++) { /* each surface face is of the set of the vertex of the triangle that it lacks */
                 const rg_gid *c = corner + s / 4 * 4;
                 for (int k = 1; k < 4; k++) {
-                    m->set[s] = (int8_t)(c[s % 4] == number[k] ? k : m->set[s]);
+                    m->set[s] = c[s % 4] == number[k] ? k : m->set[s];
                 }
             }
             double before = smallest_height(m), volume = total_volume(m, 0) + total_volume(m, 1);
@@ -564,7 +564,7 @@ static rg_mesh *make_star(int kind, uint64_t seed, const bool free[3]) {
     }
     rg_mesh *m = small(7, x, tets, corner);
     m->inner = RG_NEW(rg_gid, 3 * 2);
-    m->region = kind == BETWEEN_REGIONS ? RG_NEW(int8_t, (size_t)tets) : NULL;
+    m->region = kind == BETWEEN_REGIONS ? RG_NEW(int32_t, (size_t)tets) : NULL;
     for (int e = 0; e < tets; e++) {
         const rg_gid *c = corner + 4 * e;
         bool below = c[2] == 5, left = c[0] == 3 || c[1] == 3 || c[2] == 3;
@@ -573,7 +573,7 @@ static rg_mesh *make_star(int kind, uint64_t seed, const bool free[3]) {
         }
         for (int f = 0; f < 3; f++) { /* the faces of the middle vertex in the plane of x and y */
             bool flat = c[f] == 2 || c[f] == 5;
-            m->set[4 * e + f] = (int8_t)(kind == BETWEEN_SETS && flat && left ? 1 : m->set[4 * e + f]);
+            m->set[4 * e + f] = kind == BETWEEN_SETS && flat && left ? 1 : m->set[4 * e + f];
         }
     }
     for (rg_gid v = 1; kind == RIM && v <= 4; v += 3) { /* a sheet that ends at the axis of y */

@@ -194,9 +194,9 @@ static void test_sets(void **state) {
     static const char *const names[6] = {"x-", "x+", "y-", "y+", "z-", "z+"};
     for (int b = 0; b < BOXES; b++) {
         rg_mesh *m = make(&boxes[b]);
-        assert_int_equal(m->sets, 6);
+        assert_int_equal(m->surface.count, 6);
         for (int s = 0; s < 6; s++) {
-            assert_string_equal(m->set_name[s], names[s]);
+            assert_string_equal(m->surface.name[s], names[s]);
         }
         check_sets(m, &boxes[b]);
         rg_mesh_free(m);
@@ -358,7 +358,7 @@ static void test_hilbert_locality(void **state) {
 /* An element as vertices and sets, whatever its number. */
 struct record {
     rg_gid corner[4];
-    int8_t set[4];
+    int32_t set[4];
 };
 
 static int by_corners(const void *a, const void *b) {
@@ -382,10 +382,10 @@ static void test_sort(void **state) {
     rg_mesh *m = make(&boxes[BOXES - 1]);
     size_t faces = 4 * (size_t)m->elements, bytes = (size_t)m->elements * sizeof(struct record);
     rg_gid *moved = RG_NEW(rg_gid, (size_t)m->elements), *corner = RG_NEW(rg_gid, faces);
-    int8_t *set = RG_NEW(int8_t, faces);
+    int32_t *set = RG_NEW(int32_t, faces);
     struct record *before = records(m);
     memcpy(corner, m->corner, faces * sizeof *corner);
-    memcpy(set, m->set, faces);
+    memcpy(set, m->set, faces * sizeof *set);
     shuffle(moved, m->elements, 2);
     for (size_t slot = 0; slot < faces; slot++) {
         m->corner[4 * moved[slot / 4] + (rg_gid)slot % 4] = corner[slot];

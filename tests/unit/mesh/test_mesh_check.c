@@ -99,7 +99,7 @@ static rg_mesh *chain(void) {
                    .corner = RG_NEW(rg_gid, 4 * 4),
                    .neighbour = RG_NEW(rg_gid, 4 * 4),
                    .face = RG_NEW(int8_t, 4 * 4),
-                   .set = RG_NEW(int8_t, 4 * 4),
+                   .set = RG_NEW(int32_t, 4 * 4),
                    .original = RG_NEW(rg_gid, 4)};
     memcpy(m->x, x, sizeof x);
     memcpy(m->corner, corner, sizeof corner);
@@ -225,7 +225,7 @@ static void check_copies(void) {
     memcpy(m->corner + 12, (const rg_gid[]){6, 7, 8, 9}, 4 * sizeof *m->corner);
     m->vertices = 10;
     m->elements = 4;
-    memset(m->set, -1, 16);
+    memset(m->set, -1, 16 * sizeof *m->set);
     rg_mesh_connect(m);
     rg_mesh_check(m, "chain");
 }
@@ -271,7 +271,7 @@ static void check_three(void) {
                    .corner = RG_NEW(rg_gid, 12),
                    .neighbour = RG_NEW(rg_gid, 12),
                    .face = RG_NEW(int8_t, 12),
-                   .set = RG_NEW(int8_t, 12)};
+                   .set = RG_NEW(int32_t, 12)};
     static const double x[4][3] = {{0, 0, 0}, {1, 0.5, 0.25}, {0.5, 2, 0}, {0.25, 0, 3}};
     for (int k = 0; k < 12; k++) {
         m->corner[k] = k;
@@ -415,7 +415,7 @@ static rg_mesh *join(int count, rg_mesh *const part[]) {
     m->corner = RG_NEW(rg_gid, 4 * (size_t)m->elements);
     m->neighbour = RG_NEW(rg_gid, 4 * (size_t)m->elements);
     m->face = RG_NEW(int8_t, 4 * (size_t)m->elements);
-    m->set = RG_NEW(int8_t, 4 * (size_t)m->elements);
+    m->set = RG_NEW(int32_t, 4 * (size_t)m->elements);
     rg_gid v = 0, e = 0;
     for (int k = 0; k < count; k++) {
         memcpy(m->x + 3 * v, part[k]->x, 3 * (size_t)part[k]->vertices * sizeof *m->x);

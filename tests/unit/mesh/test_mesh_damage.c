@@ -32,15 +32,15 @@ static rg_mesh *make(void) {
     const int64_t cells[3] = {5, 3, 3};
     const double origin[3] = {-1, 0.5, 2}, size[3] = {0.5, 0.4, 1.1};
     rg_mesh *m = rg_mesh_box(cells, origin, size, 0.1, 3);
-    m->region = RG_NEW(int8_t, ELEMENTS);
-    m->regions = 2;
+    m->region = RG_NEW(int32_t, ELEMENTS);
     for (rg_gid e = 0; e < ELEMENTS; e++) {
-        m->region[e] = (int8_t)(e % 3 - 1);
+        m->region[e] = (int32_t)(e % 3 - 1);
         m->original[e] = 1000 + 7 * e % ELEMENTS;
     }
     for (int r = 0; r < 2; r++) {
-        m->region_name[r] = RG_NEW(char, RG_SET_NAME);
-        memset(m->region_name[r], 'a' + r, r == 0 ? 1 : RG_SET_NAME - 1);
+        char name[RG_SET_NAME] = "";
+        memset(name, 'a' + r, r == 0 ? 1 : RG_SET_NAME - 1);
+        rg_sets_add(&m->volume, name);
     }
     return m;
 }
@@ -54,7 +54,8 @@ static const rg_rows *rows_of(const char *name) {
                             &rg_rows_set,          &rg_rows_region,         &rg_rows_original,
                             &rg_rows_vertex_start, &rg_rows_vertex,         &rg_rows_x,
                             &rg_rows_tile_start,   &rg_rows_tile_neighbour, &rg_rows_tile_faces,
-                            &rg_rows_surface_sets, &rg_rows_volume_sets,    &partition_2};
+                            &rg_rows_surface_sets, &rg_rows_volume_sets,    &rg_rows_surface_combinations,
+                            &partition_2};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
         if (strcmp(all[i]->name, name) == 0) {
             return all[i];
@@ -179,8 +180,11 @@ static void test_header(void **state) {
         const char *said;
     } cases[] = {
         {"version", 1, ""},
-        {"version", 0, "version: 0, but this program reads version 1\n"},
-        {"version", 2, "version: 2, but this program reads version 1\n"},
+        {"version", 0, "version: 0, but this program reads versions 1 to 2\n"},
+        {"version", 2,
+         "surface_combinations: cannot be read: can't locate attribute in name index; the file is "
+         "damaged or not a mesh file\n"},
+        {"version", 3, "version: 3, but this program reads versions 1 to 2\n"},
         {"version", -1, "version: -1 is not between 0 and 9223372036854775807\n"},
         {"elements", 0, "elements: 0 is not between 1 and 1099511627776\n"},
         {"elements", 1099511627777, "elements: 1099511627777 is not between 1 and 1099511627776\n"},
@@ -199,12 +203,12 @@ static void test_header(void **state) {
         {"tile_elements", 257, "tile_elements: 257 is not between 1 and 256\n"},
         {"tile_elements", 256, "tiles: 68 is not between 2 and 2\n"},
         {"tile_elements", 1, "tiles: 68 is not between 270 and 270\n"},
-        {"surface_sets", -1, "surface_sets: -1 is not between 0 and 64\n"},
-        {"surface_sets", 65, "surface_sets: 65 is not between 0 and 64\n"},
-        {"surface_sets", 64, "surface_sets: " DAMAGED},
-        {"volume_sets", -1, "volume_sets: -1 is not between 0 and 64\n"},
-        {"volume_sets", 65, "volume_sets: 65 is not between 0 and 64\n"},
-        {"volume_sets", 1, "volume_sets: " DAMAGED},
+        {"surface_sets", -1, "surface_sets: -1 is not between 0 and 16777216\n"},
+        {"surface_sets", 16777217, "surface_sets: 16777217 is not between 0 and 16777216\n"},
+        {"surface_sets", 16777216, "surface_sets: has 6 rows, not 16777216\n"},
+        {"volume_sets", -1, "volume_sets: -1 is not between 0 and 16777216\n"},
+        {"volume_sets", 16777217, "volume_sets: 16777217 is not between 0 and 16777216\n"},
+        {"volume_sets", 1, "volume_sets: has 2 rows, not 1\n"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         hid_t file = open_copy();
@@ -446,6 +450,71 @@ static void test_partition_values(void **state) {
     try_values(read_partition, cases, sizeof cases / sizeof *cases);
 }
 
+/* ---- sets that overlap ---- */
+
+/* The mesh with two combinations of its surface sets, of three and of two. */
+static void write_overlapping(const char *name) {
+    rg_mesh *m = make();
+    rg_mesh_sort(m);
+    rg_mesh_connect(m);
+    rg_sets_combine(&m->surface, 3, (const int32_t[]){0, 2, 5});
+    rg_sets_combine(&m->surface, 2, (const int32_t[]){3, 4});
+    rg_mesh_file_write(name, m, 0, NULL);
+    rg_mesh_free(m);
+}
+
+static void test_combinations(void **state) {
+    (void)state;
+    static const struct {
+        int64_t at, value; /* of (0, 0), (0, 2), (0, 5), (1, 3), (1, 4) */
+        const char *said;
+    } cases[] = {
+        {0, 0, ""},
+        {0, 1, "row 0 begins no combination of sets"},
+        {2, 1, "row 0 begins no combination of sets"},
+        {1, 1, ""},
+        {1, 2, "row 0 begins no combination of sets"},
+        {1, -1, "row 0 begins no combination of sets"},
+        {5, 6, "row 0 begins no combination of sets"},
+        {5, 3, ""},
+        {3, 5, "row 0 begins no combination of sets"},
+        {8, 2, "row 3 begins no combination of sets"},
+        {6, 0, "row 0 begins no combination of sets"},
+        {9, 5, ""},
+        {9, 6, "row 3 begins no combination of sets"},
+        {9, 3, "row 3 begins no combination of sets"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char words[100] = "";
+        write_overlapping(bad);
+        hid_t file = H5Fopen(bad, H5F_ACC_RDWR, H5P_DEFAULT);
+        change_integer(file, "surface_combinations", cases[i].at, cases[i].value);
+        H5Fclose(file);
+        if (cases[i].said[0] != '\0') {
+            snprintf(words, sizeof words, "surface_combinations: %s\n", cases[i].said);
+        }
+        expect_fault(read_whole, words);
+    }
+    static const struct {
+        const char *name;
+        int64_t value;
+        const char *said;
+    } counts[] = {
+        {"surface_combinations", -1, "surface_combinations: -1 is not between 0 and 16777216\n"},
+        {"surface_combinations", 4, "surface_combinations: has 5 rows, not 4\n"},
+        {"volume_combinations", 1,
+         "volume_combinations: cannot be read: object 'volume_combinations' doesn't exist; the file is "
+         "damaged or not a mesh file\n"},
+    };
+    for (size_t i = 0; i < sizeof counts / sizeof *counts; i++) {
+        write_overlapping(bad);
+        hid_t file = H5Fopen(bad, H5F_ACC_RDWR, H5P_DEFAULT);
+        set_attribute(file, counts[i].name, counts[i].value);
+        H5Fclose(file);
+        expect_fault(read_whole, counts[i].said);
+    }
+}
+
 /* ---- names ---- */
 
 static void test_names(void **state) {
@@ -459,9 +528,9 @@ static void test_names(void **state) {
         expect_fault(read_whole,
                      volumes ? "volume_sets: name 1 has no end\n" : "surface_sets: name 1 has no end\n");
     }
-    mesh->region_name[0] = rg_realloc(NULL, RG_SET_NAME + 1, 1);
-    memset(mesh->region_name[0], 'n', RG_SET_NAME);
-    mesh->region_name[0][RG_SET_NAME] = '\0';
+    rg_free(mesh->volume.name[0]);
+    mesh->volume.name[0] = RG_NEW(char, RG_SET_NAME + 1);
+    memset(mesh->volume.name[0], 'n', RG_SET_NAME);
 }
 
 static void write_long_name(void) {
@@ -486,9 +555,13 @@ static void test_checksums(void **state) {
     char words[200];
     for (int k = 0; k < 6; k++) {
         int64_t columns = k < 4 ? 4 : 1, zero = 0, at = columns * ELEMENTS - 1;
-        int8_t other = k == 4 ? 0 : 1;
+        int8_t face = 1;
+        int32_t group = k == 4 ? 0 : 1;
         hid_t file = open_copy();
-        change_value(file, of_tiles[k], at, k == 2 || k == 3 || k == 4 ? (void *)&other : (void *)&zero,
+        change_value(file, of_tiles[k], at,
+                     k == 2             ? (void *)&face
+                     : k == 3 || k == 4 ? (void *)&group
+                                        : (void *)&zero,
                      false);
         H5Fclose(file);
         snprintf(words, sizeof words, "%s: the checksum of tile 67 is wrong; the file is damaged\n",
@@ -709,6 +782,7 @@ int main(void) {
         cmocka_unit_test(test_original_number),
         cmocka_unit_test(test_partitions),
         cmocka_unit_test(test_paths),
+        cmocka_unit_test(test_combinations),
         cmocka_unit_test(test_names),
         cmocka_unit_test(test_long_name),
     };

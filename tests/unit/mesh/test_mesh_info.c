@@ -219,7 +219,7 @@ static rg_mesh *scattered(int count, uint64_t seed) {
                    .corner = RG_NEW(rg_gid, slots),
                    .neighbour = RG_NEW(rg_gid, slots),
                    .face = RG_NEW(int8_t, slots),
-                   .set = RG_NEW(int8_t, slots),
+                   .set = RG_NEW(int32_t, slots),
                    .original = RG_NEW(rg_gid, (size_t)count)};
     dice d = {.seed = seed};
     for (int e = 0; e < count; e++) {
@@ -233,16 +233,12 @@ static rg_mesh *scattered(int count, uint64_t seed) {
     }
     for (size_t s = 0; s < slots; s++) {
         m->corner[s] = (rg_gid)s;
-        m->set[s] = (int8_t)((int)(s * s / 3 % 4) - 1);
+        m->set[s] = (int32_t)(s * s / 3 % 4) - 1;
     }
     rg_mesh_connect(m);
-    m->sets = 3;
-    m->regions = 2;
     static const char *const names[] = {"top", "side", "foot", "steel", "brass"};
     for (int k = 0; k < 5; k++) {
-        char **to = k < 3 ? &m->set_name[k] : &m->region_name[k - 3];
-        *to = RG_NEW(char, 8);
-        strcpy(*to, names[k]);
+        rg_sets_add(k < 3 ? &m->surface : &m->volume, names[k]);
     }
     return m;
 }
@@ -290,9 +286,9 @@ static void test_scattered(void **state) {
         size_t size;
         rg_mesh *m = scattered(counts[k], 5 + (uint64_t)k);
         for (int regions = 0; regions < 2; regions++) {
-            m->region = regions ? RG_NEW(int8_t, (size_t)m->elements) : NULL;
+            m->region = regions ? RG_NEW(int32_t, (size_t)m->elements) : NULL;
             for (rg_gid e = 0; e < m->elements && regions; e++) {
-                m->region[e] = (int8_t)(e * e % 5 % 3 - 1);
+                m->region[e] = (int32_t)(e * e % 5 % 3 - 1);
             }
             FILE *stream = open_memstream(&first, &size);
             write_counts(stream, m, parts[k]);

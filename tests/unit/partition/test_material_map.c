@@ -24,25 +24,24 @@ static void centroid(const rg_mesh *m, rg_gid e, double x[3]) {
     }
 }
 
-/* Material of an element: `low` has what is below x = 1.3, `set` volume set 1, `slab` what is between two
- * planes, the last that claims one has it. */
+/* Material of an element: `low` has what is below x = 1.3, `set` volume set 1 (and group 2, of both), `slab`
+ * what is between two planes, the last that claims one has it. */
 static int expected_material(const rg_mesh *m, rg_gid e) {
     double x[3];
     centroid(m, e, x);
-    return x[2] > 4.1 && x[1] < 0.7 ? 3 : m->region[e] == 1 ? 2 : x[0] < 1.3 ? 1 : 0;
+    return x[2] > 4.1 && x[1] < 0.7 ? 3 : m->region[e] >= 1 ? 2 : x[0] < 1.3 ? 1 : 0;
 }
 
 static rg_mesh *make_mesh(void) {
     static const char *const names[2] = {"core", "shell"};
     rg_mesh *m = rg_mesh_box(cells, origin, size, 0.1, 3);
-    m->region = RG_NEW(int8_t, (size_t)m->elements);
-    m->regions = 2;
+    m->region = RG_NEW(int32_t, (size_t)m->elements);
     for (int r = 0; r < 2; r++) {
-        m->region_name[r] = RG_NEW(char, 8);
-        strcpy(m->region_name[r], names[r]);
+        rg_sets_add(&m->volume, names[r]);
     }
+    rg_sets_combine(&m->volume, 2, (const int32_t[]){0, 1});
     for (rg_gid e = 0; e < m->elements; e++) {
-        m->region[e] = (int8_t)(e * e % 7 % 3 - 1);
+        m->region[e] = (int32_t)(e * e % 7 - 1 > 2 ? 2 : e * e % 7 - 1);
     }
     return m;
 }
@@ -73,15 +72,15 @@ static void check_claims(const rg_mesh *m, int tile) {
     MPI_Allreduce(MPI_IN_PLACE, seen, 4, MPI_INT, MPI_SUM, MPI_COMM_WORLD);
     report(own && seen[0] > 0 && seen[1] > 0 && seen[2] > 0 && seen[3] > 0, "box", "materials");
     report(beside, "box", "materials of neighbours");
-    report(rg_part_region(part, "core") == 0 && rg_part_region(part, "shell") == 1 &&
-               rg_part_region(part, "cor") == -1 && rg_part_set(part, "x-") == 0 &&
-               rg_part_set(part, "z+") == 5 && rg_part_set(part, "core") == -1,
+    report(rg_sets_find(&part->volume, "core") == 0 && rg_sets_find(&part->volume, "shell") == 1 &&
+               rg_sets_find(&part->volume, "cor") == -1 && rg_sets_find(&part->surface, "x-") == 0 &&
+               rg_sets_find(&part->surface, "z+") == 5 && rg_sets_find(&part->surface, "core") == -1,
            "box", "sets by their names");
     bool region = true;
     for (rg_lid i = 0; i < part->elements; i++) {
         region = region && part->element[i].region == m->region[part->element[i].id];
     }
-    report(region && part->regions == 2, "box", "volume sets of elements");
+    report(region && part->volume.count == 2, "box", "volume sets of elements");
     rg_part_free(part);
     part = rg_part_distribute(rank == 0 ? m : NULL, tile, MPI_COMM_WORLD);
     c.others = 0;

@@ -72,9 +72,9 @@ static bool header_right(const struct whole *w, const struct box *b) {
 }
 
 static bool names_right(const struct whole *w) {
-    bool good = w->part->sets == w->mesh->sets;
-    for (int s = 0; good && s < w->part->sets; s++) {
-        good = strcmp(w->part->set_name[s], w->mesh->set_name[s]) == 0;
+    bool good = w->part->surface.count == w->mesh->surface.count;
+    for (int s = 0; good && s < w->part->surface.count; s++) {
+        good = strcmp(w->part->surface.name[s], w->mesh->surface.name[s]) == 0;
     }
     return good;
 }

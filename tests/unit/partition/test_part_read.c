@@ -30,12 +30,21 @@ enum { BOXES = sizeof boxes / sizeof boxes[0], CHECKS = 12 };
 
 static bool same_counts(const rg_part *a, const rg_part *b) {
     bool good = a->total == b->total && a->interfaces == b->interfaces && a->tile == b->tile &&
-                a->sets == b->sets && memcmp(a->box, b->box, sizeof a->box) == 0;
-    for (int s = 0; good && s < a->sets; s++) {
-        good = strcmp(a->set_name[s], b->set_name[s]) == 0;
+                a->surface.count == b->surface.count && a->volume.count == 2 && b->volume.count == 2 &&
+                memcmp(a->box, b->box, sizeof a->box) == 0;
+    for (int s = 0; good && s < a->surface.count; s++) {
+        good = strcmp(a->surface.name[s], b->surface.name[s]) == 0;
     }
+    for (int32_t g = 0; good && g < 9; g++) { /* group 7 is of sets 1 and 6, group 8 of 2 and 6 */
+        for (int32_t s = 0; s < 7; s++) {
+            bool in = g == s || (g > 6 && (s == 6 || s == g - 6));
+            good = good && rg_sets_hold(&a->surface, g, s) == in && rg_sets_hold(&b->surface, g, s) == in;
+        }
+    }
+    good = good && rg_sets_groups(&a->surface) == 9 && rg_sets_groups(&b->volume) == 3 &&
+           rg_sets_hold(&a->volume, 2, 0) && rg_sets_hold(&b->volume, 2, 1);
     for (int r = 0; good && r < 2; r++) {
-        good = a->regions == 2 && b->regions == 2 && strcmp(a->region_name[r], b->region_name[r]) == 0;
+        good = strcmp(a->volume.name[r], b->volume.name[r]) == 0;
     }
     return good;
 }
@@ -113,17 +122,23 @@ static void write_silly(int64_t tiles) {
     rg_free(owner);
 }
 
-/* A box of which each third element is in no volume set. */
+/* A box of which each fourth element is in no volume set, and each fourth in two; two sides have a set more.
+ */
 static rg_mesh *make_mesh(const struct box *b) {
     rg_mesh *mesh = rg_mesh_box(b->cells, b->origin, b->size, b->jitter, 5);
-    mesh->region = RG_NEW(int8_t, (size_t)mesh->elements);
-    mesh->regions = 2;
-    for (int r = 0; r < 2; r++) {
-        mesh->region_name[r] = RG_NEW(char, 8);
-        strcpy(mesh->region_name[r], r == 0 ? "core" : "shell");
-    }
+    mesh->region = RG_NEW(int32_t, (size_t)mesh->elements);
+    rg_sets_add(&mesh->volume, "core");
+    rg_sets_add(&mesh->volume, "shell");
+    rg_sets_add(&mesh->surface, "both");
+    rg_sets_combine(&mesh->surface, 2, (const int32_t[]){1, 6});
+    rg_sets_combine(&mesh->surface, 2, (const int32_t[]){2, 6});
+    rg_sets_combine(&mesh->volume, 2, (const int32_t[]){0, 1});
     for (rg_gid e = 0; e < mesh->elements; e++) {
-        mesh->region[e] = (int8_t)(e % 3 - 1);
+        for (int f = 0; f < 4; f++) {
+            int32_t *set = &mesh->set[4 * e + f];
+            *set = *set == 1 || *set == 2 ? *set + 6 : *set;
+        }
+        mesh->region[e] = (int32_t)(e % 4 - 1);
         mesh->original[e] = 2 * mesh->original[e] + 7;
     }
     return mesh;

@@ -77,7 +77,7 @@ static double volume_of(const rg_mesh *mesh, rg_gid e) {
 static bool may_touch(const rg_mesh *mesh, const rg_body_input *b, rg_gid slot) {
     bool named = b->sets == 0;
     for (int k = 0; k < b->sets; k++) {
-        named = named || strcmp(mesh->set_name[mesh->set[slot]], b->set[k]) == 0;
+        named = named || strcmp(mesh->surface.name[mesh->set[slot]], b->set[k]) == 0;
     }
     return named;
 }
@@ -270,9 +270,7 @@ static void test_full_state(void **state) {
 static void make_without_side(void) {
     rg_case *c = rg_case_read_text("block", block, sizeof block - 1, 1, asked, stderr);
     rg_mesh *mesh = rg_mesh_of_case(c);
-    for (int s = 0; s < mesh->sets; s++) {
-        mesh->set_name[s][0] = strcmp(mesh->set_name[s], "x+") == 0 ? 'q' : mesh->set_name[s][0];
-    }
+    mesh->surface.name[rg_sets_find(&mesh->surface, "x+")][0] = 'q';
     rg_solver_make_from_part(c, rg_part_distribute(mesh, 8, MPI_COMM_WORLD), MPI_COMM_WORLD);
 }
 

@@ -168,7 +168,7 @@ static void renumber(rg_mesh *mesh, const rg_gid *to) {
             }
         }
     }
-    memset(mesh->set, -1, 4 * (size_t)mesh->elements);
+    memset(mesh->set, -1, 4 * (size_t)mesh->elements * sizeof *mesh->set);
     free(x);
     rg_mesh_connect(mesh);
 }

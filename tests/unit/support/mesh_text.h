@@ -18,12 +18,17 @@ static inline void print_mesh(const rg_mesh *m, FILE *out) {
         const rg_gid *c = m->corner + 4 * e;
         fprintf(out, "e %" PRId64 ": %" PRId64 " %" PRId64 " %" PRId64 " %" PRId64, rg_mesh_original(m, e),
                 c[0], c[1], c[2], c[3]);
-        if (m->region != NULL && m->region[e] >= 0) {
-            fprintf(out, " in %s", m->region_name[m->region[e]]);
+        int32_t count = 0;
+        const int32_t *set = m->region != NULL ? rg_sets_of(&m->volume, &m->region[e], &count) : NULL;
+        for (int32_t i = 0; i < count; i++) {
+            fprintf(out, "%s%s", i == 0 ? " in " : " and ", m->volume.name[set[i]]);
         }
         for (int f = 0; f < 4; f++) {
-            int s = m->set[4 * e + f];
-            s >= 0 ? fprintf(out, ", %s at %d", s < m->sets ? m->set_name[s] : "?", f) : 0;
+            set = rg_sets_of(&m->surface, &m->set[4 * e + f], &count);
+            for (int32_t i = 0; i < count; i++) {
+                fprintf(out, "%s%s", i == 0 ? ", " : " and ", m->surface.name[set[i]]);
+            }
+            count > 0 ? fprintf(out, " at %d", f) : 0;
         }
         fputc('\n', out);
     }

@@ -117,7 +117,7 @@ static bool may_touch(const twin *w, const rg_body_input *in, size_t e, int f) {
     int set = w->mesh->set[4 * e + (size_t)f];
     bool named = in->sets == 0;
     for (int k = 0; k < in->sets; k++)
-        named = named || (set >= 0 && strcmp(in->set[k], w->mesh->set_name[set]) == 0);
+        named = named || (set >= 0 && strcmp(in->set[k], w->mesh->surface.name[set]) == 0);
     return named && w->mesh->neighbour[4 * e + (size_t)f] < 0;
 }
 

@@ -202,7 +202,7 @@ static void find_held(twin *w) {
             for (int f = 0; f < RG_FACES; f++) {
                 int set = w->mesh->set[4 * e + (size_t)f];
                 for (int a = 0; a < RG_FNODES && set >= 0; a++)
-                    if (strcmp(w->mesh->set_name[set], boundary->set) == 0)
+                    if (strcmp(w->mesh->surface.name[set], boundary->set) == 0)
                         on[w->node[RG_NODES * e + (size_t)rg_face_node[f][a]]] = true;
             }
         for (size_t k = 0; k < RG_NODES * w->elements; k++)

@@ -1,0 +1,45 @@
+#include "mesh/import/inp_type.h"
+
+#include <ctype.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <string.h>
+#include <strings.h>
+
+/* Whether the name is `begin` and more that does not go on with its number: C3D4H is a C3D4, C3D40 is not. */
+static bool is(const char *name, const char *begin) {
+    size_t length = strlen(begin);
+    return strncasecmp(name, begin, length) == 0 && !isdigit((unsigned char)name[length]);
+}
+
+/* Stress, heat, acoustic, fluid, electromagnetic, coupled. (F3D4 is a tetrahedron of fluid in CalculiX and a
+ * face of a fluid cavity in Abaqus: refused.) */
+static const char *const solid[] = {"C3D",  "DC3D",  "AC3D",  "FC3D", "EMC3D", "Q3D", "F3D", "DCC3D",
+                                    "EC3D", "CIN3D", "COH3D", "GK3D", "SC6",   "SC8", "CSS", "CCL"};
+enum { WITH_TETRAHEDRA = 6 }; /* so many of these, the first */
+
+static const struct {
+    const char *begin;
+    int nodes;
+} triangle[] = {{"S3", 3},   {"STRI3", 3}, {"STRI65", 6}, {"S6", 6},     {"CPS3", 3},
+                {"CPS6", 6}, {"CPE3", 3},  {"CPE6", 6},   {"CPEG3", 3},  {"CPEG6", 6},
+                {"M3D3", 3}, {"M3D6", 6},  {"SFM3D3", 3}, {"SFM3D6", 6}, {"R3D3", 3},
+                {"DS3", 3},  {"DS6", 6},   {"DC2D3", 3},  {"DC2D6", 6}};
+
+rg_inp_type rg_inp_type_of(const char *name) {
+    for (size_t i = 0; i < sizeof triangle / sizeof *triangle; i++) {
+        if (is(name, triangle[i].begin)) {
+            return (rg_inp_type){RG_INP_TRIANGLE, triangle[i].nodes};
+        }
+    }
+    for (size_t i = 0; i < sizeof solid / sizeof *solid; i++) {
+        size_t length = strlen(solid[i]);
+        if (strncasecmp(name, solid[i], length) != 0) {
+            continue;
+        }
+        bool linear = is(name + length, "4"), tetrahedron = linear || is(name + length, "10");
+        return i < WITH_TETRAHEDRA && tetrahedron ? (rg_inp_type){RG_INP_TETRAHEDRON, linear ? 4 : 10}
+                                                  : (rg_inp_type){RG_INP_SOLID, 0};
+    }
+    return (rg_inp_type){RG_INP_OTHER, 0};
+}
