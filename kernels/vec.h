@@ -27,13 +27,13 @@
 #endif
 
 #ifdef RG_SINGLE
-typedef int32_t rg_word;
+typedef int32_t rg_lane_int;
 #define RG_VLEN         (RG_VBYTES / 4)
 #define RG_INTRINSIC(f) f##ps
 #define RG_M512         __m512
 #define RG_M256         __m256
 #else
-typedef int64_t rg_word; /* as large as a real */
+typedef int64_t rg_lane_int; /* as large as a real */
 #define RG_VLEN         (RG_VBYTES / 8)
 #define RG_INTRINSIC(f) f##pd
 #define RG_M512         __m512d
@@ -41,7 +41,7 @@ typedef int64_t rg_word; /* as large as a real */
 #endif
 
 typedef rg_real rg_vec __attribute__((vector_size(RG_VBYTES)));
-typedef rg_word rg_mask __attribute__((vector_size(RG_VBYTES))); /* a lane is all ones or all zeros */
+typedef rg_lane_int rg_mask __attribute__((vector_size(RG_VBYTES))); /* a lane is all ones or all zeros */
 
 #define RG_INLINE static inline __attribute__((always_inline))
 
@@ -229,7 +229,7 @@ RG_INLINE rg_vec rg_min(rg_vec a, rg_vec b) {
 #endif
 
 RG_INLINE rg_vec rg_abs(rg_vec a) {
-    const rg_word no_sign = sizeof(rg_real) == 8 ? (rg_word)INT64_MAX : INT32_MAX;
+    const rg_lane_int no_sign = sizeof(rg_real) == 8 ? (rg_lane_int)INT64_MAX : INT32_MAX;
     return (rg_vec)((rg_mask)a & no_sign);
 }
 
@@ -252,7 +252,7 @@ RG_INLINE bool rg_any(rg_mask m) {
 #elif RG_VBYTES == 32
     return !_mm256_testz_si256((__m256i)m, (__m256i)m);
 #else
-    rg_word any = 0;
+    rg_lane_int any = 0;
     for (int l = 0; l < RG_VLEN; l++) {
         any |= m[l];
     }

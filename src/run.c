@@ -212,7 +212,7 @@ static bool save(run *r) {
     if (!due && !r->uneven) {
         return false;
     }
-    rg_restart_settle(&r->keep, s, r->energy, r->probes, r->fragments, r->snapshots);
+    rg_restart_sync(&r->keep, s, r->energy, r->probes, r->fragments, r->snapshots);
     rg_checkpoint_write(&r->checkpoints, (int)r->input->checkpoint.keep);
     rg_schedule_done(&r->schedule, s, r->checkpoints.slowest);
     r->stopped = s->stop_request >= RG_REQUEST_STOP;

@@ -26,14 +26,14 @@ RG_INLINE rg_mask returning(const interface *s, const point_opening *o, rg_mask 
  * It falls as they slide off each other; and a side that comes back from elsewhere must not count as deep
  * inside. Where faces are pressed w_n is some thousandths of their size. */
 #define DEPTHS 16.0
-RG_INLINE rg_vec overlap_root(const interface *s, const point_opening *o) {
+RG_INLINE rg_vec facing_root(const interface *s, const point_opening *o) {
     rg_vec apart = rg_dot(o->tangential, o->tangential) + DEPTHS * (o->normal * o->normal);
     return rg_max(1.0 - apart / rg_max(s->area, rg_splat(RG_NO_AREA)), rg_splat(0.0));
 }
 
 /* Contact as a potential: E = c/2 w_n^2 root^2. */
 RG_INLINE void add_potential(const interface *s, const point_opening *o, rg_vec pressed, rg_law_response *r) {
-    rg_vec root = overlap_root(s, o), force = s->contact * pressed * root;
+    rg_vec root = facing_root(s, o), force = s->contact * pressed * root;
     rg_vec away = 2.0 * force * pressed / rg_max(s->area, rg_splat(RG_NO_AREA));
     r->normal += force * root - DEPTHS * away * pressed;
     r->shear = r->shear * r->weight - away;
@@ -87,7 +87,7 @@ RG_INLINE void add_contact(const interface *s, int q, vec3 g[2], const point_ope
 RG_INLINE rg_vec contact_energy(const interface *s, const point_opening *o, rg_mask broken) {
     rg_vec energy = 0.5 * s->contact * o->normal * o->normal;
     if (s->args->law.contact == RG_CONTACT_POTENTIAL) {
-        rg_vec root = overlap_root(s, o);
+        rg_vec root = facing_root(s, o);
         energy *= root * root;
     }
     rg_mask touches = s->args->law.contact == RG_CONTACT_FLUX ? (rg_mask){0} : broken & is_touching(s, o);

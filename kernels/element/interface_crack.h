@@ -9,7 +9,7 @@
 RG_INLINE rg_mask bit_mask(const uint8_t bits[RG_VLEN], int q) {
     rg_mask m;
     for (int l = 0; l < RG_VLEN; l++) {
-        m[l] = -(rg_word)((bits[l] >> q) & 1);
+        m[l] = -(rg_lane_int)((bits[l] >> q) & 1);
     }
     return m;
 }

@@ -289,8 +289,8 @@ static bool touches(const rg_cohesive *law, const opening *o) {
     return false;
 }
 
-/* How much of a face lies over the other one. */
-static double overlap(const point *p, const opening *o) {
+/* How much of a face still faces the other one. */
+static double facing(const point *p, const opening *o) {
     double apart = rg_reference_dot(o->shear, o->shear) + 16 * o->normal * o->normal;
     double left = fmax(0, 1 - apart / p->area);
     return left * left;
@@ -317,9 +317,9 @@ static void add_contact(const rg_interface_args *args, const point *p, const ope
                         double turning[RG_FNODES][3]) {
     bool potential = args->law.contact == RG_CONTACT_POTENTIAL;
     if (touches(&args->law, o))
-        t->along += p->contact * o->normal * (potential ? overlap(p, o) : 1);
+        t->along += p->contact * o->normal * (potential ? facing(p, o) : 1);
     if (touches(&args->law, o) && potential) {
-        double apart = -2 * p->contact * o->normal * o->normal * sqrt(overlap(p, o)) / p->area;
+        double apart = -2 * p->contact * o->normal * o->normal * sqrt(facing(p, o)) / p->area;
         t->along += 16 * apart * o->normal;
         t->over += apart;
     }
@@ -445,7 +445,7 @@ static void point_energy(const rg_interface_args *args, size_t i, int q, double 
     if (unlinked)
         energy[RG_E_COHESIVE] += p.weight * p.area * a.stored;
     if (touches(law, &o)) {
-        double share = law->contact == RG_CONTACT_POTENTIAL ? overlap(&p, &o) : 1;
+        double share = law->contact == RG_CONTACT_POTENTIAL ? facing(&p, &o) : 1;
         energy[RG_E_CONTACT] += p.weight * p.contact * o.normal * o.normal / 2 * share;
     }
     for (int d = 0; d < 2 && law->sliding == RG_SLIDING_COULOMB; d++) {

@@ -145,7 +145,7 @@ void rg_close_in(FILE *file, const char *dir, const char *name) {
     }
 }
 
-int64_t rg_settle(FILE *file, const char *name) {
+int64_t rg_sync_file(FILE *file, const char *name) {
     struct stat found;
     if (fflush(file) != 0 || fsync(fileno(file)) != 0 || fstat(fileno(file), &found) != 0) {
         rg_fatal(RG_FAILURE, "%s: cannot be written: %s", name, strerror(errno));
@@ -192,7 +192,7 @@ void rg_replaced_in(FILE *file, const char *dir, const char *name) {
     char part[PATH_BYTES + 8], path[PATH_BYTES];
     join(path, sizeof path, dir, name);
     snprintf(part, sizeof part, "%s.part", path);
-    rg_settle(file, path);
+    rg_sync_file(file, path);
     if (fclose(file) != 0 || rename(part, path) != 0) {
         rg_fatal(RG_FAILURE, "%s: cannot be written: %s", path, strerror(errno));
     }
@@ -235,8 +235,8 @@ void rg_refuse_busy(const char *dir, const char *name) {
     }
 }
 
-int64_t rg_csv_settle(rg_csv *t) {
-    return t->file != NULL ? rg_settle(t->file, t->path) : 0;
+int64_t rg_csv_sync(rg_csv *t) {
+    return t->file != NULL ? rg_sync_file(t->file, t->path) : 0;
 }
 
 static void finish_row(rg_csv *t) {

@@ -22,7 +22,7 @@ bool rg_sync_folder(const char *path);
 
 /* Length of an open file with all that was written to it, which this brings to the disk. Ends the run with a
  * message about `name` on failure. */
-int64_t rg_settle(FILE *file, const char *name);
+int64_t rg_sync_file(FILE *file, const char *name);
 
 /* Ends the run if case.yaml in `dir` is not of a run but the user's own; rank 0. */
 void rg_refuse_own_case(const char *dir);
@@ -66,7 +66,7 @@ void rg_csv_hold(const rg_csv *t);
 void rg_refuse_busy(const char *dir, const char *name);
 
 /* Brings the table to the disk; its length (rank 0; 0 elsewhere). */
-int64_t rg_csv_settle(rg_csv *t);
+int64_t rg_csv_sync(rg_csv *t);
 void rg_csv_header(rg_csv *t, const char *columns);
 
 /* A row of whole numbers, then of others in all their digits. */

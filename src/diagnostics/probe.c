@@ -201,9 +201,9 @@ void rg_probes_flush(rg_probes *p) {
     p->samples = 0;
 }
 
-int64_t rg_probes_settle(rg_probes *p) {
+int64_t rg_probes_sync(rg_probes *p) {
     rg_probes_flush(p);
-    return p->file != NULL ? rg_settle(p->file, "history.csv") : 0;
+    return p->file != NULL ? rg_sync_file(p->file, "history.csv") : 0;
 }
 
 void rg_probes_close(rg_probes *p) {

@@ -20,7 +20,7 @@ void rg_probes_reopen(rg_probes *p, rg_solver *s, int64_t length);
 
 /* Writes what is buffered and brings it to the disk; the length of history.csv (rank 0; 0 elsewhere).
  * Collective. */
-int64_t rg_probes_settle(rg_probes *p);
+int64_t rg_probes_sync(rg_probes *p);
 
 /* Closes the record of a kick at `time` (s). Collective only when the buffer is full. */
 void rg_probes_next(rg_probes *p, double time);

@@ -37,8 +37,8 @@ rg_fragment_table *rg_fragment_table_reopen(const rg_solver *s, const rg_fragmen
     return t;
 }
 
-rg_fragment_mark rg_fragment_table_settle(rg_fragment_table *t) {
-    int64_t bytes = t->csv == NULL ? 0 : rg_csv_settle(t->csv);
+rg_fragment_mark rg_fragment_table_sync(rg_fragment_table *t) {
+    int64_t bytes = t->csv == NULL ? 0 : rg_csv_sync(t->csv);
     return (rg_fragment_mark){bytes, t->overlap_time, {t->overlap[0], t->overlap[1]}};
 }
 

@@ -32,7 +32,7 @@ rg_fragment_table *rg_fragment_table_open(const rg_solver *s);
 rg_fragment_table *rg_fragment_table_reopen(const rg_solver *s, const rg_fragment_mark *mark);
 
 /* Brings the table to the disk. */
-rg_fragment_mark rg_fragment_table_settle(rg_fragment_table *t);
+rg_fragment_mark rg_fragment_table_sync(rg_fragment_table *t);
 
 /* Whether the table wants the fragments of this output; `last`: the run ends with it. */
 bool rg_fragment_table_due(const rg_fragment_table *t, const rg_solver *s, bool last);

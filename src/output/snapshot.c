@@ -203,7 +203,7 @@ rg_snapshots *rg_snapshots_reopen(const rg_solver *s, rg_slab **slab, const rg_w
     return w;
 }
 
-rg_writer_mark rg_snapshots_settle(rg_snapshots *w) {
+rg_writer_mark rg_snapshots_sync(rg_snapshots *w) {
     if (w->fields == 0) {
         return (rg_writer_mark){0};
     }

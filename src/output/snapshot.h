@@ -24,7 +24,7 @@ rg_snapshots *rg_snapshots_open(const rg_solver *s, rg_slab **slab);
 rg_snapshots *rg_snapshots_reopen(const rg_solver *s, rg_slab **slab, const rg_writer_mark *mark);
 
 /* Brings what was written to the disk; where the files stand now. Collective. */
-rg_writer_mark rg_snapshots_settle(rg_snapshots *w);
+rg_writer_mark rg_snapshots_sync(rg_snapshots *w);
 
 /* Bytes of a frame on disk for each element, as they are without compression and without cracks. */
 double rg_snapshots_frame_bytes(const rg_case *c);

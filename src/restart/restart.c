@@ -22,13 +22,13 @@ void rg_restart_register(rg_state *state, rg_restart *keep, rg_solver *s, rg_led
     rg_state_add(state, "limiting_state", RG_OF_RUN, RG_STATE_BYTE, RG_LIMITING_WORDS, keep->limiting_state);
 }
 
-void rg_restart_settle(rg_restart *keep, const rg_solver *s, rg_csv *energy, rg_probes *probes,
-                       rg_fragment_table *fragments, rg_snapshots *snapshots) {
-    keep->history_bytes = rg_probes_settle(probes);
-    keep->energy_bytes = rg_csv_settle(energy);
-    keep->fragments = rg_fragment_table_settle(fragments);
+void rg_restart_sync(rg_restart *keep, const rg_solver *s, rg_csv *energy, rg_probes *probes,
+                     rg_fragment_table *fragments, rg_snapshots *snapshots) {
+    keep->history_bytes = rg_probes_sync(probes);
+    keep->energy_bytes = rg_csv_sync(energy);
+    keep->fragments = rg_fragment_table_sync(fragments);
     if (snapshots->fields != 0) {
-        keep->fields = rg_snapshots_settle(snapshots);
+        keep->fields = rg_snapshots_sync(snapshots);
     }
     keep->core_seconds = s->pass_seconds * s->ranks * s->threads;
     if (s->limiting_state != keep->limiting_state) { /* not a word that came from a checkpoint itself */

@@ -28,8 +28,8 @@ void rg_restart_register(rg_state *state, rg_restart *keep, rg_solver *s, rg_led
                          rg_summary *summary);
 
 /* Before a checkpoint: the outputs go to the disk, and `keep` learns where they stand. Collective. */
-void rg_restart_settle(rg_restart *keep, const rg_solver *s, rg_csv *energy, rg_probes *probes,
-                       rg_fragment_table *fragments, rg_snapshots *snapshots);
+void rg_restart_sync(rg_restart *keep, const rg_solver *s, rg_csv *energy, rg_probes *probes,
+                     rg_fragment_table *fragments, rg_snapshots *snapshots);
 
 /* After loading one: what rg_spectrum would have found out. */
 void rg_restart_spectrum(const rg_restart *keep, rg_solver *s);

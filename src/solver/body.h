@@ -35,7 +35,7 @@ typedef struct {
     double direction[3]; /* unit normal of a plane, unit axis of a cylinder */
     double mass;         /* kg; infinite where the motion is prescribed */
     /* From here to the end doubles only: a checkpoint takes them as a row. */
-    double x[3];       /* place of input->at, in the state that the forces belong to (m) */
+    double x[3];       /* position of input->at, in the state that the forces belong to (m) */
     double v[3];       /* in the middle of the last step, after a kick of the next one (m/s) */
     double work;       /* as in `seen`, up to the middle of the next step (J) */
     rg_body_seen seen; /* at the last kick */

@@ -23,11 +23,11 @@ typedef struct {
 /* What a component of an element must remember. Arrays run over the constrained nodes of the pattern. Doubles
  * only: a checkpoint takes it as a row of them. */
 typedef struct {
-    double work, work_now;    /* of all kicks; up to the present time (J) */
-    double before[RG_NODES];  /* velocity before the kick */
-    double present[RG_NODES]; /* velocity at the time of the kick */
-    double target[RG_NODES];  /* velocity after it */
-    double place[RG_NODES];   /* displacement after it, where that is prescribed */
+    double work, work_now;         /* of all kicks; up to the present time (J) */
+    double before[RG_NODES];       /* velocity before the kick */
+    double present[RG_NODES];      /* velocity at the time of the kick */
+    double target[RG_NODES];       /* velocity after it */
+    double displacement[RG_NODES]; /* after it, where it is prescribed */
 } memory;
 
 /* One component of one element. */
@@ -259,7 +259,7 @@ void rg_constraints_start(rg_constraints *k, const rg_real *u, const rg_real *ve
         for (int i = 0; i < e->pattern->constrained; i++) {
             size_t at = rg_node_index((size_t)e->slot, e->pattern->node[i], e->component);
             e->is.before[i] = velocity[at];
-            e->is.place[i] = u[at];
+            e->is.displacement[i] = u[at];
             e->is.target[i] = e->is.present[i] = velocity_at(k, e, i, 0, 0);
             bool placed = k->input->boundary[e->boundary[i]].is_displacement;
             double first = value_at(k, e, i, 0);
@@ -293,8 +293,8 @@ void rg_constraints_set(rg_constraints *k, double time, double dt, bool moving) 
         for (int i = 0; e->varies && i < e->pattern->constrained; i++) {
             if (k->input->boundary[e->boundary[i]].is_displacement) {
                 double next = value_at(k, e, i, time + dt);
-                e->is.target[i] = (next - e->is.place[i]) / dt;
-                e->is.place[i] = next;
+                e->is.target[i] = (next - e->is.displacement[i]) / dt;
+                e->is.displacement[i] = next;
             } else {
                 e->is.target[i] = value_at(k, e, i, time + 0.5 * dt);
             }
@@ -349,13 +349,13 @@ void rg_constraints_kick(rg_constraints *k, size_t tile, rg_real *velocity, rg_r
     }
 }
 
-void rg_constraints_place(const rg_constraints *k, size_t tile, rg_real *u) {
+void rg_constraints_drift(const rg_constraints *k, size_t tile, rg_real *u) {
     for (size_t n = k->tile_begin[tile]; n < k->tile_begin[tile + 1]; n++) {
         const entry *e = &k->entry[n];
         for (int i = 0; i < e->pattern->constrained; i++) {
             if (k->input->boundary[e->boundary[i]].is_displacement) {
                 u[rg_node_index((size_t)e->slot, e->pattern->node[i], e->component)] =
-                    (rg_real)e->is.place[i];
+                    (rg_real)e->is.displacement[i];
             }
         }
     }

@@ -9,8 +9,8 @@
 #include "domain/halo.h"
 
 typedef enum {
-    RG_PHASE_COMPUTE,  /* first sweep: elements, interfaces inside the tiles, their kick */
-    RG_PHASE_JUMP,     /* second sweep: tile-boundary faces, their kick, drift */
+    RG_PHASE_COMPUTE,  /* element sweep: elements, interfaces inside the tiles, their kick */
+    RG_PHASE_JUMP,     /* boundary sweep: tile-boundary faces, their kick, drift */
     RG_PHASE_PACK,     /* rows for other ranks into their messages */
     RG_PHASE_EXCHANGE, /* messages started: with shared memory also their way into it */
     RG_PHASE_WAIT,     /* for messages, and for ranks that are later */

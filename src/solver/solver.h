@@ -1,10 +1,11 @@
 /* The state of a run on one rank and the passes over it: the physics, with the messages hidden under it.
  *
  * A step from state n to n + 1 is a kick and a drift. The kick evaluates the forces of u(n) in two sweeps
- * over the tiles: elements and the interfaces inside them, whose results never leave the cache; then, when
- * the tractions of all tiles are known, the tile-boundary faces. The drift moves u and publishes the traces
- * of the tile-boundary faces. In form continuous the sweeps kick accelerations in place of velocities, whose
- * mean over the copies of a node (domain/assembly.h) moves all of them in a third one.
+ * over the tiles: the element sweep does elements and the interfaces inside tiles, whose results never leave
+ * the cache; then, when the tractions of all tiles are known, the boundary sweep the tile-boundary faces. The
+ * drift moves u and publishes the traces of the tile-boundary faces. In form continuous the sweeps kick
+ * accelerations in place of velocities, whose mean over the copies of a node (domain/assembly.h) moves all of
+ * them in a third one.
  *
  * A material with a history goes on in the kick, by the step that led to u(n): once for each state. Between
  * kick and drift stress and energy are those that the forces were made of. */

@@ -37,7 +37,7 @@ size_t rg_state_bytes(const rg_state_array *a) {
 }
 
 /* Where value k of record i lies. */
-static char *place(const rg_state_array *a, size_t i, size_t k) {
+static char *address(const rg_state_array *a, size_t i, size_t k) {
     size_t value = value_bytes(a);
     if (a->of == RG_OF_LIST || a->of == RG_OF_RUN) {
         return (char *)a->data + i * a->stride + k * value;
@@ -56,14 +56,14 @@ void rg_state_get(const rg_state_array *a, size_t i, void *out) {
         return;
     }
     for (size_t k = 0; k < (size_t)a->count; k++) {
-        memcpy((char *)out + k * value, place(a, i, k), value);
+        memcpy((char *)out + k * value, address(a, i, k), value);
     }
 }
 
 void rg_state_put(const rg_state_array *a, size_t i, const void *in) {
     size_t value = value_bytes(a);
     for (size_t k = 0; k < (size_t)a->count; k++) {
-        memcpy(place(a, i, k), (const char *)in + k * value, value);
+        memcpy(address(a, i, k), (const char *)in + k * value, value);
     }
 }
 

@@ -29,7 +29,7 @@ typedef struct {
 } impulse;
 
 /* Where the velocity at the present time goes; NULL: it is not wanted. */
-static rg_real *now_of(const rg_solver *s, size_t tile, const impulse *p) {
+static rg_real *step_velocity_of(const rg_solver *s, size_t tile, const impulse *p) {
     return !p->apart && (p->observe || s->watched[tile]) ? s->step_velocity : NULL;
 }
 
@@ -44,10 +44,10 @@ static void mark_cracked(rg_solver *s, const rg_tile *t, size_t begin, size_t en
     }
 }
 
-static void kick(rg_solver *s, size_t tile, const rg_workspace *w, const impulse *p, rg_sweep sweep) {
+static void tile_kick(rg_solver *s, size_t tile, const rg_workspace *w, const impulse *p, rg_sweep sweep) {
     const rg_tile *t = &s->domain->tile[tile];
     size_t at = t->begin * RG_NODE_BLOCK;
-    rg_real *now = now_of(s, tile, p);
+    rg_real *step_velocity = step_velocity_of(s, tile, p);
     rg_kick_args args = {.mass = s->input->mass,
                          .sweep = sweep,
                          .contact = s->model->law.contact,
@@ -59,7 +59,7 @@ static void kick(rg_solver *s, size_t tile, const rg_workspace *w, const impulse
                          .broken = s->broken + t->ibegin * RG_LANES,
                          .interface = s->domain->interface + t->begin * RG_LINK_BLOCK,
                          .velocity = p->velocity + at,
-                         .step_velocity = now == NULL ? NULL : now + at,
+                         .step_velocity = step_velocity == NULL ? NULL : step_velocity + at,
                          .dt_now = 0.5 * s->dt};
     for (size_t begin = 0, end; begin < rg_tile_eblocks(t); begin = end) {
         end = rg_run_end(s->domain, t, begin);
@@ -68,8 +68,8 @@ static void kick(rg_solver *s, size_t tile, const rg_workspace *w, const impulse
     }
 }
 
-static void touch(rg_solver *s, size_t tile, const impulse *p) {
-    rg_contact_kick k = {p->dt, 0.5 * s->dt, p->velocity, now_of(s, tile, p)};
+static void touch_bodies(rg_solver *s, size_t tile, const impulse *p) {
+    rg_contact_kick k = {p->dt, 0.5 * s->dt, p->velocity, step_velocity_of(s, tile, p)};
     rg_bodies_touch(s->bodies, tile, s->u, &k);
 }
 
@@ -84,7 +84,8 @@ static rg_real largest(const rg_real *x, size_t count) {
 }
 
 /* Bulk viscosity, on the forces of the bulk, of blocks that are of one material. */
-static void dampen(rg_solver *s, const rg_tile *t, const rg_bulk_args *bulk, size_t begin, size_t end) {
+static void add_viscosity(rg_solver *s, const rg_tile *t, const rg_bulk_args *bulk, size_t begin,
+                          size_t end) {
     double b1 = s->input->viscosity.linear, b2 = s->input->viscosity.quadratic,
            speed = rg_material_dilatational(&bulk->material);
     double xi = s->damping * b1;
@@ -107,8 +108,8 @@ static rg_interface_args interfaces_of(const rg_solver *s, const rg_tile *t, con
     return args;
 }
 
-/* Elements and the interfaces inside: what they compute stays in the cache. */
-static void inside(rg_solver *s, size_t tile, const rg_workspace *w, const impulse *p) {
+/* The element sweep: elements and the interfaces inside; what they compute stays in the cache. */
+static void element_sweep(rg_solver *s, size_t tile, const rg_workspace *w, const impulse *p) {
     const rg_tile *t = &s->domain->tile[tile];
     size_t blocks = rg_tile_eblocks(t);
     rg_bulk_args bulk = rg_tile_bulk(s, t, w, 0);
@@ -124,44 +125,44 @@ static void inside(rg_solver *s, size_t tile, const rg_workspace *w, const impul
         bulk.material = *rg_block_ready(s, t, begin);
         s->kernels->bulk(&bulk, begin, end);
         if (s->heat != NULL && p->constrain) {
-            dampen(s, t, &bulk, begin, end);
+            add_viscosity(s, t, &bulk, begin, end);
         }
     }
     s->kernels->send_tractions(&traces, 0, rg_tile_face_blocks(t));
     s->kernels->interface(&interface, 0, rg_tile_inner_blocks(t));
     mark_cracked(s, t, t->ibegin, t->sbegin);
-    kick(s, tile, w, p, RG_SWEEP_ELEMENT);
+    tile_kick(s, tile, w, p, RG_SWEEP_ELEMENT);
     if (p->constrain) {
-        touch(s, tile, p);
+        touch_bodies(s, tile, p);
     }
     s->tile_stiffening[tile] = largest(bulk.stiffening, blocks * RG_LANES);
 }
 
-static void drift(rg_solver *s, size_t tile, const rg_workspace *w) {
+static void tile_drift(rg_solver *s, size_t tile, const rg_workspace *w) {
     const rg_tile *t = &s->domain->tile[tile];
     size_t at = t->begin * RG_NODE_BLOCK;
     rg_drift_args args = {s->dt_next, s->velocity + at, s->u + at};
     s->kernels->drift(&args, 0, rg_tile_eblocks(t));
-    rg_constraints_place(s->constraints, tile, s->u);
+    rg_constraints_drift(s->constraints, tile, s->u);
     rg_trace_args traces = rg_tile_traces(s, t, w, true);
     s->kernels->send(&traces, 0, rg_tile_face_blocks(t));
 }
 
 /* The velocities of a tile are complete. */
-static void settle(rg_solver *s, size_t tile, const rg_workspace *w, const impulse *p) {
+static void tile_complete(rg_solver *s, size_t tile, const rg_workspace *w, const impulse *p) {
     if (p->constrain) {
-        rg_constraints_kick(s->constraints, tile, p->velocity, now_of(s, tile, p));
+        rg_constraints_kick(s->constraints, tile, p->velocity, step_velocity_of(s, tile, p));
     }
     if (s->watched[tile] && p->constrain) {
         s->watch(s->watch_context, s, tile, w);
     }
     if (p->move) {
-        drift(s, tile, w);
+        tile_drift(s, tile, w);
     }
 }
 
-/* Tile-boundary faces, once the tractions of all tiles are known. */
-static void across(rg_solver *s, size_t tile, const rg_workspace *w, const impulse *p) {
+/* The boundary sweep: tile-boundary faces, once the tractions of all tiles are known. */
+static void boundary_sweep(rg_solver *s, size_t tile, const rg_workspace *w, const impulse *p) {
     const rg_tile *t = &s->domain->tile[tile];
     rg_interface_args interface = interfaces_of(s, t, w, p);
     rg_tile_receive(s, t, w);
@@ -170,11 +171,11 @@ static void across(rg_solver *s, size_t tile, const rg_workspace *w, const impul
     if (s->tile_opening_rate != NULL && p->constrain) {
         s->tile_opening_rate[tile] = rg_tile_opening_rate(s, t);
     }
-    kick(s, tile, w, p, RG_SWEEP_BOUNDARY);
+    tile_kick(s, tile, w, p, RG_SWEEP_BOUNDARY);
     if (p->apart) {
         rg_assembly_sum(s->assembly, tile, p->velocity);
     } else {
-        settle(s, tile, w, p);
+        tile_complete(s, tile, w, p);
     }
 }
 
@@ -182,7 +183,7 @@ static void across(rg_solver *s, size_t tile, const rg_workspace *w, const impul
 static void assemble(rg_solver *s, size_t tile, const rg_workspace *w, const impulse *p) {
     const rg_tile *t = &s->domain->tile[tile];
     size_t at = t->begin * RG_NODE_BLOCK, blocks = rg_tile_eblocks(t);
-    rg_real *a = s->acceleration, *now = now_of(s, tile, p);
+    rg_real *a = s->acceleration, *now = step_velocity_of(s, tile, p);
     rg_assembly_gather(s->assembly, tile, a);
     if (now != NULL) {
         memcpy(now + at, p->velocity + at, blocks * RG_NODE_BLOCK * sizeof *now);
@@ -192,16 +193,16 @@ static void assemble(rg_solver *s, size_t tile, const rg_workspace *w, const imp
     if (s->watched[tile]) {
         rg_tile_receive(s, t, w);
     }
-    settle(s, tile, w, p);
+    tile_complete(s, tile, w, p);
 }
 
-static void assemble_inside(rg_solver *s, size_t tile, const rg_workspace *w, const impulse *p) {
+static void assemble_ready(rg_solver *s, size_t tile, const rg_workspace *w, const impulse *p) {
     if (!rg_assembly_waits(s->assembly, tile)) {
         assemble(s, tile, w, p);
     }
 }
 
-static void assemble_outside(rg_solver *s, size_t tile, const rg_workspace *w, const impulse *p) {
+static void assemble_waiting(rg_solver *s, size_t tile, const rg_workspace *w, const impulse *p) {
     if (rg_assembly_waits(s->assembly, tile)) {
         assemble(s, tile, w, p);
     }
@@ -273,10 +274,10 @@ static void start_bodies(rg_solver *s, const impulse *p) {
 static void assemble_all(rg_solver *s, const impulse *p) {
     rg_halo *rows = rg_assembly_halo(s->assembly);
     start(s, rows);
-    sweep(s, assemble_inside, p, 0, s->domain->tiles, rows);
+    sweep(s, assemble_ready, p, 0, s->domain->tiles, rows);
     mark(s, RG_PHASE_JUMP);
     finish(s, rows);
-    sweep(s, assemble_outside, p, 0, s->domain->tiles, NULL);
+    sweep(s, assemble_waiting, p, 0, s->domain->tiles, NULL);
     mark(s, RG_PHASE_JUMP);
 }
 
@@ -297,18 +298,18 @@ static void evaluate(rg_solver *s, const impulse *whole) {
     rg_phases_begin(&s->phases);
 #pragma omp parallel
     {
-        sweep(s, inside, p, outer, all, traces);
+        sweep(s, element_sweep, p, outer, all, traces);
         mark(s, RG_PHASE_COMPUTE);
         finish(s, traces);
-        sweep(s, inside, p, 0, outer, NULL);
+        sweep(s, element_sweep, p, 0, outer, NULL);
         mark(s, RG_PHASE_COMPUTE);
         start(s, s->stepper->halo_t);
         start_stiffening(s);
         start_bodies(s, p);
-        sweep(s, across, p, outer, all, s->stepper->halo_t);
+        sweep(s, boundary_sweep, p, outer, all, s->stepper->halo_t);
         mark(s, RG_PHASE_JUMP);
         finish(s, s->stepper->halo_t);
-        sweep(s, across, p, 0, outer, NULL);
+        sweep(s, boundary_sweep, p, 0, outer, NULL);
         mark(s, RG_PHASE_JUMP);
         if (s->assembly != NULL) {
             assemble_all(s, whole);
@@ -465,7 +466,7 @@ void rg_solver_drift(rg_solver *s) {
         const rg_workspace *w = &s->work[omp_get_thread_num()];
 #pragma omp for schedule(static)
         for (size_t t = 0; t < d->tiles; t++) {
-            drift(s, t, w);
+            tile_drift(s, t, w);
         }
         mark(s, RG_PHASE_JUMP);
         start(s, s->stepper->halo_u[1 - s->stepper->current]);

@@ -293,21 +293,21 @@ static void close_after_failure(void) {
     rg_close_in(f, "d", "f.csv");
 }
 
-static void settle_full(void) {
+static void sync_full(void) {
     FILE *f = fopen("/dev/full", "w");
     fputs("text", f);
-    rg_settle(f, "name");
+    rg_sync_file(f, "name");
 }
 
-static void settle_null(void) {
-    rg_settle(fopen("/dev/null", "w"), "name");
+static void sync_null(void) {
+    rg_sync_file(fopen("/dev/null", "w"), "name");
 }
 
 static void test_open_and_close(void **state) {
     (void)state;
     FILE *f = rg_open_in(".", "f");
     fputs("abcde", f);
-    assert_int_equal(rg_settle(f, "f"), 5);
+    assert_int_equal(rg_sync_file(f, "f"), 5);
     expect_file("f", "abcde");
     rg_close_in(f, ".", "f");
     f = rg_open_in(".", "f"); /* anew */
@@ -324,8 +324,8 @@ static void test_open_and_close(void **state) {
     expect_end(close_full, RG_FAILURE, "rhegma: d/f.csv: cannot be written: No space left on device\n");
     expect_end(close_after_failure, RG_FAILURE,
                "rhegma: d/f.csv: cannot be written: No space left on device\n");
-    expect_end(settle_full, RG_FAILURE, "rhegma: name: cannot be written: No space left on device\n");
-    expect_end(settle_null, RG_FAILURE, "rhegma: name: cannot be written: Invalid argument\n");
+    expect_end(sync_full, RG_FAILURE, "rhegma: name: cannot be written: No space left on device\n");
+    expect_end(sync_null, RG_FAILURE, "rhegma: name: cannot be written: Invalid argument\n");
 }
 
 static void reopen_none(void) {
@@ -482,12 +482,12 @@ static void test_table(void **state) {
     rg_csv_row(t, (const int64_t[]){1, -2}, 2, (const double[]){0.1, -1e300}, 2);
     expect_file("t.csv", "a,b,c,d\n1,-2,0.10000000000000001,-1.0000000000000001e+300\n"); /* at once */
     rg_csv_row(t, (const int64_t[]){INT64_MAX}, 1, NULL, 0);
-    assert_int_equal(rg_csv_settle(t), 8 + 50 + 20);
+    assert_int_equal(rg_csv_sync(t), 8 + 50 + 20);
     rg_csv_row(t, (const int64_t[]){3}, 1, NULL, 0);
     rg_csv_header(silent, "a");
     rg_csv_row(silent, (const int64_t[]){1}, 1, NULL, 0);
     rg_csv_hold(silent);
-    assert_int_equal(rg_csv_settle(silent), 0);
+    assert_int_equal(rg_csv_sync(silent), 0);
     rg_csv_close(t);
     rg_csv_close(silent);
     assert_false(there("other.csv"));
@@ -553,8 +553,8 @@ static void write_full(void) {
     rg_csv_header(rg_csv_open("/dev", "full", 0), "a,b");
 }
 
-static void settle_table(void) {
-    rg_csv_settle(rg_csv_open("/dev", "null", 0));
+static void sync_table(void) {
+    rg_csv_sync(rg_csv_open("/dev", "null", 0));
 }
 
 static void ask_whether_busy(void) {
@@ -573,7 +573,7 @@ static void test_busy_table(void **state) {
     static const char busy[] =
         "rhegma: ./t.csv: another run is writing to it; wait for its end, or take another directory\n";
     expect_end(write_full, RG_FAILURE, "rhegma: /dev/full: cannot be written: No space left on device\n");
-    expect_end(settle_table, RG_FAILURE, "rhegma: /dev/null: cannot be written: Invalid argument\n");
+    expect_end(sync_table, RG_FAILURE, "rhegma: /dev/null: cannot be written: Invalid argument\n");
     rg_csv *t = rg_csv_open(".", "t.csv", 0);
     expect_end(ask_whether_busy, 0, "mine");
     rg_csv_hold(t);

@@ -207,7 +207,7 @@ static void check_probes(void) {
     rg_probes_open(p, r.solver);
     watch(&r);
     rg_probes_next(p, time_of(0));
-    int64_t length = rg_probes_settle(p);
+    int64_t length = rg_probes_sync(p);
     report(rank != 0 || table_good(wanted), "probes", "displacement, velocity, stress, and bodies");
     MPI_Allreduce(MPI_IN_PLACE, &length, 1, MPI_INT64_T, MPI_MAX, MPI_COMM_WORLD);
     rg_probes_next(p, 7); /* a line that the run which goes on does not have */
@@ -220,7 +220,7 @@ static void check_probes(void) {
     }
     rg_probes_flush(p);
     rg_probes_flush(p);
-    report((rg_probes_settle(p) > length * SAMPLES * 3 / 4) == (rank == 0), "probes", "length of the table");
+    report((rg_probes_sync(p) > length * SAMPLES * 3 / 4) == (rank == 0), "probes", "length of the table");
     report(rank != 0 || rows_good(), "probes", "one row for each sample, also behind a restart");
     rg_probes_close(p);
     random_state_free(&r);
@@ -238,7 +238,7 @@ static void check_nothing_to_record(void) {
     for (int k = 0; k < 300; k++) {
         rg_probes_next(p, 1);
     }
-    bool good = rg_probes_settle(p) == 0;
+    bool good = rg_probes_sync(p) == 0;
     rg_probes_close(p);
     p = rg_probes_find(r.solver);
     rg_probes_reopen(p, r.solver, 0);

@@ -189,7 +189,7 @@ static void check_table(void) {
     solver.time = 1.5e-7;
     distribution(ROWS, solver.ranks);
     rg_fragment_table_take(t, &solver, NULL);
-    rg_fragment_mark mark = rg_fragment_table_settle(t);
+    rg_fragment_mark mark = rg_fragment_table_sync(t);
     for (int k = 0; k < ROWS; k++) {
         append_row(wanted, 12, 1.5e-7, k);
     }
@@ -223,7 +223,7 @@ static void check_table(void) {
     look(t, &solver, true);
     append_row(wanted, 14, 1.5e-7, 0);
     append_row(wanted, 14, 1.5e-7, 1);
-    mark = rg_fragment_table_settle(t);
+    mark = rg_fragment_table_sync(t);
     report(rank != 0 || table_is(wanted), "restart", "goes on behind its mark");
     report(searches == 0 && mark.overlap_time == 3 && mark.overlap[0] == 7 && mark.overlap[1] == 8, "restart",
            "looks for no other overlap");
@@ -248,7 +248,7 @@ static void check_overlap(void) {
     report(searches == 1 && warnings == (rank == 0), "overlap", "said once");
     report(rank != 0 || strstr(warned, "fragments 5 and 9 overlap at 2.25e-07 s (step 20): ") == warned,
            "overlap", "which, and when");
-    rg_fragment_mark mark = rg_fragment_table_settle(t);
+    rg_fragment_mark mark = rg_fragment_table_sync(t);
     report(mark.overlap_time == 2.25e-7 && mark.overlap[0] == 5 && mark.overlap[1] == 9, "overlap",
            "is remembered");
     rg_fragment_table_close(t);
@@ -260,7 +260,7 @@ static void check_when(void) {
     rg_fragment_table *t = rg_fragment_table_open(&solver);
     report(!rg_fragment_table_due(t, &solver, false) && rg_fragment_table_due(t, &solver, true), "table",
            "due at the end");
-    rg_fragment_table_settle(t);
+    rg_fragment_table_sync(t);
     strcpy(wanted, header);
     report(rank != 0 || table_is(wanted), "table", "has its header from the start");
     report(rank != 0 || summary_is(t, ""), "summary", "nothing where nothing was counted");
@@ -272,7 +272,7 @@ static void check_when(void) {
     input.output.fragments = RG_FRAGMENTS_NONE;
     t = rg_fragment_table_open(&solver);
     bool due = rg_fragment_table_due(t, &solver, true);
-    rg_fragment_mark mark = rg_fragment_table_settle(t);
+    rg_fragment_mark mark = rg_fragment_table_sync(t);
     rg_fragment_table_close(t);
     t = rg_fragment_table_reopen(&solver, &mark);
     overlap = true;

@@ -442,10 +442,10 @@ static void check_all(const char *name, int changes, const char *const change[],
     report(internals_good(all, id, kept.count), name, "internal variables");
     report(numbers_good(&r, all, id, kept.count), name, "ranks, fragments, materials");
     report(cracks_good(&r), name, "cracks");
-    rg_writer_mark mark = rg_snapshots_settle(w);
+    rg_writer_mark mark = rg_snapshots_sync(w);
     rg_snapshots_close(w);
     report(mark.frames == 1 && mark.volume == 8 && mark.crack == 9 && kept.closed == 1, name,
-           "settled and closed");
+           "on the disk and closed");
     w = rg_snapshots_reopen(r.solver, &slab, &mark);
     report(kept.resumed == 9 && kept.style.single == style.single && kept.style.deflate == style.deflate,
            name, "reopened");
@@ -487,7 +487,7 @@ static void check_single_fields(void) {
     forget();
     rg_snapshots *w = rg_snapshots_open(r.solver, &slab);
     rg_snapshots_write(w, r.solver, parts);
-    rg_writer_mark mark = rg_snapshots_settle(w);
+    rg_writer_mark mark = rg_snapshots_sync(w);
     good = kept.ended == 0 && kept.total == 0 && mark.frames == 0 && mark.volume == 0 && mark.crack == 0;
     rg_snapshots_close(w);
     w = rg_snapshots_reopen(r.solver, &slab, &mark);

@@ -17,26 +17,26 @@
 #include "restart/checkpoint_folder.h"
 #include "restart/restart.h"
 
-/* ---- stand-ins: outputs that are settled ---- */
+/* ---- stand-ins: outputs that are brought to the disk ---- */
 
-int64_t __wrap_rg_probes_settle(rg_probes *p);
-int64_t __wrap_rg_csv_settle(rg_csv *t);
-rg_fragment_mark __wrap_rg_fragment_table_settle(rg_fragment_table *t);
-rg_writer_mark __wrap_rg_snapshots_settle(rg_snapshots *w);
+int64_t __wrap_rg_probes_sync(rg_probes *p);
+int64_t __wrap_rg_csv_sync(rg_csv *t);
+rg_fragment_mark __wrap_rg_fragment_table_sync(rg_fragment_table *t);
+rg_writer_mark __wrap_rg_snapshots_sync(rg_snapshots *w);
 
-int64_t __wrap_rg_probes_settle(rg_probes *p) {
+int64_t __wrap_rg_probes_sync(rg_probes *p) {
     return p == NULL ? 301 : -1;
 }
 
-int64_t __wrap_rg_csv_settle(rg_csv *t) {
+int64_t __wrap_rg_csv_sync(rg_csv *t) {
     return t == NULL ? 302 : -1;
 }
 
-rg_fragment_mark __wrap_rg_fragment_table_settle(rg_fragment_table *t) {
+rg_fragment_mark __wrap_rg_fragment_table_sync(rg_fragment_table *t) {
     return (rg_fragment_mark){t == NULL ? 303 : -1, 3.5, {3, 4}};
 }
 
-rg_writer_mark __wrap_rg_snapshots_settle(rg_snapshots *w) {
+rg_writer_mark __wrap_rg_snapshots_sync(rg_snapshots *w) {
     return (rg_writer_mark){w->first, 12, 13};
 }
 
@@ -145,7 +145,7 @@ static void what_is_kept_of_outputs(void **state) {
     rg_solver s = {.input = &input, .pass_seconds = 3, .ranks = 5, .threads = 7, .limiting_state = "closed"};
     rg_restart keep = {.fields = {1, 2, 3}, .frame = 4, .good_time = 8};
     rg_snapshots none = {.fields = 0, .first = 11}, some = {.fields = 1, .first = 11};
-    rg_restart_settle(&keep, &s, NULL, NULL, NULL, &none);
+    rg_restart_sync(&keep, &s, NULL, NULL, NULL, &none);
     assert_int_equal(keep.history_bytes, 301);
     assert_int_equal(keep.energy_bytes, 302);
     assert_int_equal(keep.fragments.bytes, 303);
@@ -154,7 +154,7 @@ static void what_is_kept_of_outputs(void **state) {
     assert_true(keep.core_seconds == 105);
     assert_string_equal(keep.limiting_state, "closed");
     assert_true(keep.frame == 4 && keep.good_time == 8);
-    rg_restart_settle(&keep, &s, NULL, NULL, NULL, &some);
+    rg_restart_sync(&keep, &s, NULL, NULL, NULL, &some);
     assert_true(keep.fields.frames == 11 && keep.fields.volume == 12 && keep.fields.crack == 13);
 }
 
@@ -167,7 +167,7 @@ static void what_is_kept_of_the_spectrum(void **state) {
     rg_restart_spectrum(&keep, &s);
     assert_true(s.pass_seconds == 7);
     assert_string_equal(s.limiting_state, "closed");
-    rg_restart_settle(&keep, &s, NULL, NULL, NULL, &none); /* the word is its own now */
+    rg_restart_sync(&keep, &s, NULL, NULL, NULL, &none); /* the word is its own now */
     assert_string_equal(keep.limiting_state, "closed");
     assert_true(keep.core_seconds == 105);
 }
