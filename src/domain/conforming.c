@@ -37,29 +37,38 @@ static bool selected(const rg_expr *faces, const rg_element *e, int f, rg_first_
 }
 
 uint8_t *rg_joined_faces(const rg_case *c, const rg_part *part, MPI_Comm comm) {
+    const rg_expr *faces = c->interface.faces;
     if (c->interface.form != RG_FORM_CONTINUOUS) {
         return NULL;
     }
     rg_first_bad bad = {.which = RG_NOWHERE};
     uint8_t *joined = RG_NEW(uint8_t, (size_t)part->elements + 1);
-#pragma omp parallel
+    int64_t chosen = 0;
+#pragma omp parallel reduction(+ : chosen)
     {
-        rg_expr *faces = rg_expr_copy(c->interface.faces); /* this thread's own */
+        rg_expr *own = rg_expr_copy(faces); /* this thread's */
 #pragma omp for schedule(static)
         for (rg_lid i = 0; i < part->elements; i++) {
             const rg_element *e = &part->element[i];
             for (int f = 0; f < RG_FACES; f++) {
-                bool conforming_face =
-                    e->neighbour[f] >= 0 && (faces == NULL || !selected(faces, e, f, &bad));
+                bool conforming_face = e->neighbour[f] >= 0 && (own == NULL || !selected(own, e, f, &bad));
                 joined[i] |= (uint8_t)(conforming_face << f);
+                chosen += e->neighbour[f] >= 0 && !conforming_face;
             }
         }
-        rg_expr_free(faces);
+        rg_expr_free(own);
     }
     if (rg_first_bad_lowest(&bad, comm)) {
         rg_speak(comm);
         rg_fatal(RG_USAGE, "%s: interface.faces: %s is not finite at (%g, %g, %g)", c->path,
-                 rg_expr_text(c->interface.faces), bad.x[0], bad.x[1], bad.x[2]);
+                 rg_expr_text(faces), bad.x[0], bad.x[1], bad.x[2]);
+    }
+    if (faces != NULL && !rg_expr_is_number(faces)) { /* a number says so on purpose */
+        MPI_Allreduce(MPI_IN_PLACE, &chosen, 1, MPI_INT64_T, MPI_SUM, comm);
+        if (chosen == 0) {
+            rg_speak(comm);
+            rg_fatal(RG_USAGE, "%s: interface.faces: %s: no face is in it", c->path, rg_expr_text(faces));
+        }
     }
     return joined;
 }

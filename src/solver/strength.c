@@ -18,6 +18,7 @@ typedef struct {
     const rg_solver *s;
     double work;       /* of separation, over strength times opening */
     int (*between)[2]; /* [sets]: materials that a set names, the lower first; of others nothing */
+    int64_t *claimed;  /* [sets]: faces that each has */
     rg_first_bad bad;  /* where an expression is not finite */
 } search;
 
@@ -84,6 +85,7 @@ static void apply_sets(search *look, size_t face, const double *x[RG_FCORNERS], 
     for (int i = 0; i < c->interface.sets; i++) {
         const rg_face_set *set = &c->interface.set[i];
         if (has(look, i, face, middle, normal)) {
+            look->claimed[i]++;
             double strength = set->strength > 0 ? set->strength : c->interface.strength;
             double energy = set->energy > 0 ? set->energy : c->interface.energy;
             f->strength = strength / law->strength;
@@ -119,6 +121,21 @@ static factors factors_of(search *look, const rg_tile *t, size_t i) {
     return f;
 }
 
+/* Ends the run where a set has no face at all: a plane that the mesh does not have, or a slip of the pen. */
+static void refuse_empty_sets(const search *look) {
+    const rg_case *c = look->s->input;
+    MPI_Allreduce(MPI_IN_PLACE, look->claimed, c->interface.sets, MPI_INT64_T, MPI_SUM, look->s->comm);
+    for (int i = 0; i < c->interface.sets; i++) {
+        const rg_face_set *set = &c->interface.set[i];
+        if (look->claimed[i] == 0) {
+            rg_speak(look->s->comm);
+            rg_fatal(RG_USAGE, "%s: interface.sets[%d]: no face is in it%s%s", c->path, i,
+                     set->where != NULL ? ", where: " : " between its materials",
+                     set->where != NULL ? rg_expr_text(set->where) : "");
+        }
+    }
+}
+
 void rg_strength_make(const rg_solver *s, rg_model *m) {
     const rg_case *c = s->input;
     const rg_domain *d = s->domain;
@@ -129,6 +146,7 @@ void rg_strength_make(const rg_solver *s, rg_model *m) {
     search look = {.s = s,
                    .work = rg_law_facts_of(m->law.law, m->law.shape, m->law.beta).work,
                    .between = rg_alloc((size_t)c->interface.sets + 1, sizeof *look.between),
+                   .claimed = RG_NEW(int64_t, (size_t)c->interface.sets + 1),
                    .bad = {.which = RG_NOWHERE}};
     const rg_first_bad *bad = &look.bad;
     find_materials(&look);
@@ -149,5 +167,7 @@ void rg_strength_make(const rg_solver *s, rg_model *m) {
                  (int)bad->which, rg_expr_text(c->interface.set[bad->which].where), bad->x[0], bad->x[1],
                  bad->x[2]);
     }
+    refuse_empty_sets(&look);
+    rg_free(look.claimed);
     MPI_Allreduce(&stiffest, &m->stiffest, 1, MPI_DOUBLE, MPI_MAX, s->comm);
 }

@@ -109,3 +109,10 @@ def test_stress_before_fracture_is_that_of_the_dg_form(plane, lumped, figure):
 def test_selection_of_faces_must_be_finite(run):
     failed = run(CASES / "affine.yaml", sets={"interface.form": "continuous", "interface.faces": "1/(z - z)"}, expect=2)
     assert "interface.faces: 1/(z - z) is not finite" in failed.stderr
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_selection_of_faces_must_hold_one(run, ranks):
+    """On all ranks together: there is a face at the top on some of them only."""
+    failed = run(CASES / "affine.yaml", ranks=ranks, sets={"interface.form": "continuous", "interface.faces": "z > 1e3"}, expect=2)
+    assert "interface.faces: z > 1e3: no face is in it\n" in failed.stderr

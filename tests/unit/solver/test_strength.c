@@ -309,6 +309,26 @@ static void test_not_finite(void **state) {
     }
 }
 
+/* A set without a face is no set. */
+static void test_empty(void **state) {
+    (void)state;
+    static const struct {
+        const char *sets, *words;
+    } wrong[] = {
+        {"interface.sets=[{where: z > 1, energy: 1}]", "interface.sets[0]: no face is in it, where: z > 1\n"},
+        {"interface.sets=[{where: 1, energy: 1}, {where: 'nx > 2', strength: 1}, {where: 0, energy: 1}]",
+         "interface.sets[1]: no face is in it, where: nx > 2\n"},
+    };
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+        char said[2000];
+        asked = wrong[i].sets;
+        assert_int_equal(run_child(make, said, sizeof said), 2);
+        if (strstr(said, wrong[i].words) == NULL) {
+            fail_msg("%s: said %s", asked, said);
+        }
+    }
+}
+
 /* A uniform case has no field. */
 static void test_uniform(void **state) {
     (void)state;
@@ -322,10 +342,15 @@ static void test_uniform(void **state) {
 
 int main(int argc, char **argv) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_weibull),           cmocka_unit_test(test_seed_and_keep),
-        cmocka_unit_test(test_numbers),           cmocka_unit_test(test_formula),
-        cmocka_unit_test(test_without_softening), cmocka_unit_test(test_sets),
-        cmocka_unit_test(test_uniform),           cmocka_unit_test(test_not_finite),
+        cmocka_unit_test(test_weibull),
+        cmocka_unit_test(test_seed_and_keep),
+        cmocka_unit_test(test_numbers),
+        cmocka_unit_test(test_formula),
+        cmocka_unit_test(test_without_softening),
+        cmocka_unit_test(test_sets),
+        cmocka_unit_test(test_empty),
+        cmocka_unit_test(test_uniform),
+        cmocka_unit_test(test_not_finite),
     };
     omp_set_num_threads(1); /* a child has none of its parent's threads */
     MPI_Init(&argc, &argv);
