@@ -1,6 +1,8 @@
 """Meshes that Gmsh reads, from files of a few elements: groups, their names and numbers, types of elements, mistakes."""
 
 import re
+import shutil
+import subprocess
 
 import h5py
 import numpy as np
@@ -173,6 +175,40 @@ def test_names_that_are_too_long(tmp_path):
     assert names["surface_sets"] == [63 * "n"]
     said = refused(tmp_path, [face, *SOLIDS], [(2, 3, 64 * "n")])
     assert said == f"physical group '{64 * 'n'}': its name is longer than 63 bytes\n"
+
+
+@pytest.mark.parametrize("name", ["broken.geo", "broken.diff"])
+def test_what_ends_gmsh_ends_in_a_message(tmp_path, name):
+    """An exception that nobody catches, and an access to memory that is not there."""
+    texts = {"broken.geo": """Mesh.RandomFactor = 1e-1; Mesh.CharacteristicLengthMax = 0.1; Mesh.Algorithm = 5;
+                 Point(1) = {0,0,0}; Point(2) = {1,0,0}; Point(3) = {1,1,0}; Point(4) = {0,1,0};
+                 Line(1) = {1,2}; Line(2) = {2,3}; Line(3) = {3,4}; Line(4) = {4,1};
+                 Curve Loop(1) = {1,2,3,4}; Plane Surface(1) = {1};
+                 out[] = Extrude {0,0,0.1} { Surface{1}; Layers{1}; };
+                 Physical Volume("v") = {out[1]};""",
+             "broken.diff": "\n\n Finite element mesh (GridFE):\n\n  Number of space dim. = 3\n  Number of elements = 999999999\n"}
+    (tmp_path / name).write_text(texts[name] + "\n")
+    process = launch("mesh", tmp_path / name, "-o", tmp_path / "a.h5")
+    assert process.returncode == 2 and not (tmp_path / "a.h5").exists()
+    assert re.search(rf"^rhegma: {tmp_path}/{name}: Gmsh(:| broke down on it \((Aborted|Segmentation fault)\):)", process.stderr, re.M), process.stderr
+
+
+@pytest.mark.parametrize("unit, size", [("MILLI", 1e-3), ("$", 1)])
+def test_the_unit_of_a_geometry_is_its_own(tmp_path, unit, size):
+    """A STEP file of a box of 3, as Gmsh writes it in mm, and with the unit replaced."""
+    gmsh = shutil.which("gmsh")
+    if gmsh is None:
+        pytest.skip("no Gmsh here")
+    (tmp_path / "box.geo").write_text('SetFactory("OpenCASCADE"); Box(1) = {0, 0, 0, 3, 2, 1}; Save "box.step";\n')
+    subprocess.run([gmsh, "-0", tmp_path / "box.geo", "-o", tmp_path / "box.step"], capture_output=True, timeout=100, check=True)
+    step = (tmp_path / "box.step").read_text()
+    assert "SI_UNIT(.MILLI.,.METRE.)" in step
+    (tmp_path / "box.step").write_text(step.replace(".MILLI.,.METRE.", f".{unit}.,.METRE." if unit != "$" else "$,.METRE."))
+    for scale, said in ((1, ""), (2, "the file says its unit, so its lengths are in m already; --scale multiplies them by 2")):
+        process = launch("mesh", tmp_path / "box.step", "-o", tmp_path / "a.h5", "--scale", scale)
+        assert process.returncode == 0 and said in process.stderr and bool(said) == bool(process.stderr)
+        with h5py.File(tmp_path / "a.h5") as file:
+            assert np.ptp(file.attrs["box"], axis=0) == pytest.approx(np.array([3, 2, 1]) * size * scale, rel=1e-9)
 
 
 def test_reasons(tmp_path):

@@ -6,6 +6,7 @@
 #include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
+#include <strings.h>
 
 #include "base/error.h"
 #include "base/files.h"
@@ -48,6 +49,18 @@ static bool has_volume_elements(const char *path) {
     return count > 0;
 }
 
+/* Formats that say in which unit their lengths are. */
+static bool has_unit(const char *path) {
+    static const char *const endings[] = {".step", ".stp", ".iges", ".igs"};
+    const char *dot = strrchr(path, '.');
+    for (size_t i = 0; dot != NULL && i < sizeof endings / sizeof *endings; i++) {
+        if (strcasecmp(dot, endings[i]) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
 static void open_model(const char *path) {
     int error;
     FILE *f = rg_open_input(path);
@@ -58,6 +71,9 @@ static void open_model(const char *path) {
     gmshInitialize(0, NULL, 0, &error);
     gmshOptionSetNumber("General.Terminal", 0, &error);
     gmshOptionSetNumber("General.NumThreads", 1, &error); /* the same mesh every time */
+    if (has_unit(path)) {                                 /* else OpenCASCADE makes mm of it */
+        gmshOptionSetString("Geometry.OCCTargetUnit", "M", &error);
+    }
     gmshLoggerStart(&error);
     gmshOpen(path, &error);
     rg_gmsh_require(path, error);
@@ -148,6 +164,10 @@ static void take_names(rg_sets *to, const rg_sets *from) {
 rg_mesh *rg_gmsh_read(const char *path, double scale) {
     rg_import m = {.path = path, .scale = scale};
     open_model(path);
+    if (has_unit(path) && scale != 1) {
+        rg_warn("%s: the file says its unit, so its lengths are in m already; --scale multiplies them by %g",
+                path, scale);
+    }
     read_nodes(&m);
     rg_gmsh_sets volumes = rg_gmsh_sets_read(path, 3), surfaces = rg_gmsh_sets_read(path, 2);
     struct taking t = {&m, volumes.sets.count > 0, 0};

@@ -5,12 +5,12 @@
 #include "mesh/mesh.h"
 
 /* Reads a mesh in any format of this Gmsh, or meshes a geometry (.geo, .step, ...), with lengths times
- * `scale` in m. Physical surfaces and volumes become sets by their names, or their numbers where they have
- * none; where there are no physical surfaces (or volumes) at all, all surfaces (or volumes) do by their
- * numbers. Elements outside of the physical volumes are left out. Second-order elements are taken by their
- * corners. What is left out is told in warnings; elements that are not tetrahedra, and faces or elements in
- * two sets, end the run. The result is neither sorted nor connected; `original` holds Gmsh's element numbers.
- * The caller frees it. */
+ * `scale` in m; formats that say their unit (STEP, IGES) are in m already. Physical surfaces and volumes
+ * become sets by their names, or their numbers where they have none, and may overlap; where there are no
+ * physical surfaces (or volumes) at all, all surfaces (or volumes) do by their numbers. Elements outside of
+ * the physical volumes are left out. Second-order elements are taken by their corners. What is left out is
+ * told in warnings; elements that are not tetrahedra end the run. The result is neither sorted nor connected;
+ * `original` holds Gmsh's element numbers. The caller frees it. */
 rg_mesh *rg_gmsh_read(const char *path, double scale);
 
 #endif
