@@ -371,9 +371,9 @@ static void test_fans(void **state) {
     /* 0 and 1 and the ends 2 and 4 in the plane y = 0; 3 beside it */
     static const double x[15] = {0, 0, 0, 0, 0, 1, 0.3, 0, 0.45, 0.05, 0.6, 0.5, -0.35, 0, 0.55};
     static const rg_gid corner[8] = {0, 1, 2, 3, 0, 1, 3, 4};
-    for (int n = 0; n < 12; n++) {
-        int what = n / 2;
-        double length = n % 2 == 0 ? 1 : 1e-3;
+    for (int n = 0; n < 18; n++) { /* as it is, small, and far from the origin */
+        int what = n / 3;
+        double length = n % 3 == 1 ? 1e-3 : 1, far = n % 3 == 2 ? 4 : 0;
         rg_mesh *m = small(5, x, 2, corner);
         /* faces 0 1 2 of the first and 0 1 4 of the second */
         m->set[3] = 7;
@@ -381,7 +381,7 @@ static void test_fans(void **state) {
         /* out of the plane: volume 0.3/6 of this, of which 1e-9 of the edge cubed is flat */
         m->x[13] = what == 2 ? -2.2e-8 : what == 3 ? -1.8e-8 : 0;
         for (int i = 0; i < 15; i++) {
-            m->x[i] *= length;
+            m->x[i] = length * m->x[i] + far;
         }
         m->set[0] = 3;                      /* 1 2 3: stays */
         m->set[4 + 1] = what == 4 ? 2 : -1; /* 0 3 4: stays */
@@ -398,7 +398,10 @@ static void test_fans(void **state) {
         rg_mesh_connect(m);
         rg_mesh_check(m, "fan");
         assert_close(total_volume(m, 0) + (what == 5 ? total_volume(m, 1) : 0), volume,
-                     (what == 3 ? 1e-9 : 1e-15) * length * length * length);
+                     (what == 3 ? 1e-9
+                      : far > 0 ? 1e-14
+                                : 1e-15) *
+                         length * length * length);
         int count[10] = {0};
         for (int s = 0; s < 8; s++) {
             count[m->set[s] + 1] += m->neighbour[s] < 0;
