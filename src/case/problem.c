@@ -3,6 +3,7 @@
 #include <ctype.h>
 #include <stdarg.h>
 #include <stdbool.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -129,4 +130,19 @@ const char *rg_nearest(const char *word, const char *const list[]) {
         }
     }
     return best;
+}
+
+const char *rg_choices(const char *word, const char *const list[], char *text, size_t size) {
+    const char *near = rg_nearest(word, list);
+    char question[RG_LONGEST_WORD + 32] = "";
+    if (near != NULL) {
+        snprintf(question, sizeof question, "; did you mean '%s'?", near);
+    }
+    size_t room = size - strlen(question), used = 0;
+    snprintf(text, room, "none");
+    for (int i = 0; list[i] != NULL && used < room; i++) {
+        used += (size_t)snprintf(text + used, room - used, "%s%s", i > 0 ? ", " : "", list[i]);
+    }
+    strcat(text, question);
+    return text;
 }

@@ -49,4 +49,8 @@ size_t rg_edit_distance(const char *a, size_t m, const char *b, size_t n);
 /* The entry of the NULL-terminated `list`, words as short, closest to `word`, or NULL if none is close. */
 const char *rg_nearest(const char *word, const char *const list[]);
 
+/* What may stand instead of `word`: "a, b, c; did you mean 'b'?", or "none"; of a list that is too long for
+ * `text` the end is missing. Returns `text`. */
+const char *rg_choices(const char *word, const char *const list[], char *text, size_t size);
+
 #endif

@@ -1,6 +1,5 @@
 #include "mesh/sets.h"
 
-#include <stdio.h>
 #include <string.h>
 
 #include "base/mem.h"
@@ -47,14 +46,6 @@ bool *rg_sets_groups_in(const rg_sets *s, int32_t set) {
         in[g] = rg_sets_hold(s, g, set);
     }
     return in;
-}
-
-void rg_sets_list(const rg_sets *s, char *text, size_t size) {
-    size_t used = 0;
-    snprintf(text, size, "none");
-    for (int32_t i = 0; i < s->count && used < size; i++) {
-        used += (size_t)snprintf(text + used, size - used, "%s%s", i > 0 ? ", " : "", s->name[i]);
-    }
 }
 
 int32_t rg_sets_combine(rg_sets *s, int32_t count, const int32_t *set) {

@@ -35,9 +35,6 @@ bool rg_sets_hold(const rg_sets *s, int32_t group, int32_t set);
 /* Which groups are in the set: [groups], which the caller frees. */
 bool *rg_sets_groups_in(const rg_sets *s, int32_t set);
 
-/* The names, "a, b, c", as far as they fit; "none". */
-void rg_sets_list(const rg_sets *s, char *text, size_t size);
-
 /* Adds a combination of `count` sets; its group. */
 int32_t rg_sets_combine(rg_sets *s, int32_t count, const int32_t *set);
 

@@ -3,7 +3,6 @@
 #include <inttypes.h>
 #include <math.h>
 #include <stdbool.h>
-#include <stdio.h>
 #include <string.h>
 
 #include "base/error.h"
@@ -29,12 +28,9 @@ static _Noreturn void refuse_set(const map *m, int i) {
     char all[1024];
     const char **names = RG_NEW(const char *, (size_t)part->volume.count + 1);
     memcpy(names, part->volume.name, (size_t)part->volume.count * sizeof *names);
-    rg_sets_list(&part->volume, all, sizeof all);
-    const char *near = rg_nearest(m->c->other[i].set, names);
     rg_speak(m->comm);
-    rg_fatal(RG_USAGE, "%s: materials[%d].set: %s: %s has no such volume set; allowed: %s%s%s%s", m->c->path,
-             i, m->c->other[i].set, m->c->mesh.file, all, near != NULL ? "; did you mean '" : "",
-             near != NULL ? near : "", near != NULL ? "'?" : "");
+    rg_fatal(RG_USAGE, "%s: materials[%d].set: %s: %s has no such volume set; allowed: %s", m->c->path, i,
+             m->c->other[i].set, m->c->mesh.file, rg_choices(m->c->other[i].set, names, all, sizeof all));
 }
 
 static void find_regions(map *m) {

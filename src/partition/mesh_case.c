@@ -19,14 +19,11 @@ static void check_sets(const rg_case *c) {
     const char **names = RG_NEW(const char *, (size_t)sets->count + 1);
     char all[1024];
     memcpy(names, sets->name, (size_t)sets->count * sizeof *names);
-    rg_sets_list(sets, all, sizeof all);
     for (int b = 0; b < c->boundaries; b++) {
         const char *set = c->boundary[b].set;
         if (rg_sets_find(sets, set) < 0) {
-            const char *near = rg_nearest(set, names);
-            rg_fatal(RG_USAGE, "%s: boundary[%d].set: %s: %s has no such surface set; allowed: %s%s%s%s",
-                     c->path, b, set, c->mesh.file, all, near != NULL ? "; did you mean '" : "",
-                     near != NULL ? near : "", near != NULL ? "'?" : "");
+            rg_fatal(RG_USAGE, "%s: boundary[%d].set: %s: %s has no such surface set; allowed: %s", c->path,
+                     b, set, c->mesh.file, rg_choices(set, names, all, sizeof all));
         }
     }
     rg_free(names);

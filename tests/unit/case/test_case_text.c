@@ -91,6 +91,33 @@ static void test_nearest_word(void **state) {
     assert_null(rg_nearest(longest, list));
 }
 
+static void test_choices(void **state) {
+    (void)state;
+    static const struct {
+        const char *word;
+        const char *list[4];
+        size_t size;
+        const char *said;
+    } cases[] = {
+        {"left", {NULL}, 40, "none"},
+        {"left", {"bottom", "top", NULL}, 40, "bottom, top"},
+        {"botom", {"bottom", "top", NULL}, 40, "bottom, top; did you mean 'bottom'?"},
+        {"botom", {"bottom", "top", NULL}, 36, "bottom, top; did you mean 'bottom'?"},
+        {"botom", {"bottom", "top", "side", NULL}, 36, "bottom, top; did you mean 'bottom'?"},
+        {"botom", {"bottom", "top", "side", NULL}, 39, "bottom, top, s; did you mean 'bottom'?"},
+        {"left", {"bottom", "top", "side", NULL}, 9, "bottom, "},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char text[64];
+        memset(text, '#', sizeof text);
+        assert_ptr_equal(rg_choices(cases[i].word, cases[i].list, text, cases[i].size), text);
+        assert_string_equal(text, cases[i].said);
+        for (size_t k = cases[i].size; k < sizeof text; k++) {
+            assert_int_equal(text[k], '#');
+        }
+    }
+}
+
 static void test_nearest_key(void **state) {
     (void)state;
     static const struct {
@@ -714,6 +741,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_edit_distance),
         cmocka_unit_test(test_nearest_word),
+        cmocka_unit_test(test_choices),
         cmocka_unit_test(test_nearest_key),
         cmocka_unit_test(test_sections),
         cmocka_unit_test(test_numbers),

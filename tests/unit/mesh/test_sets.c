@@ -68,18 +68,6 @@ static void test_groups(void **state) {
     assert_int_equal(rg_alloc_total(), before);
 }
 
-static void test_list(void **state) {
-    (void)state;
-    rg_sets s = {.count = 0};
-    char text[12];
-    rg_sets_list(&s, text, sizeof text);
-    assert_string_equal(text, "none");
-    s = make();
-    rg_sets_list(&s, text, sizeof text);
-    assert_string_equal(text, "a, bee, c, ");
-    rg_sets_free(&s);
-}
-
 /* Things of all 64 combinations of six sets, put into one set after the other: so many groups and no more,
  * and each holds what it should. */
 static void test_joining(void **state) {
@@ -111,7 +99,6 @@ static void test_joining(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_groups),
-        cmocka_unit_test(test_list),
         cmocka_unit_test(test_joining),
     };
     return cmocka_run_group_tests_name("sets", tests, NULL, NULL);
