@@ -228,6 +228,13 @@ def run(case_file, out, sets=None, overrides=(), **keywords):
     return Run(out)
 
 
+def run_once(case_file, out, sets=None, overrides=(), **keywords):
+    """The same, unless a run of these values is there already, as launch.run_once. Returns the run and the seconds that it
+    took, also of an earlier time."""
+    seconds = launch.run_once(case_file, out, sets, overrides, **keywords)
+    return Run(out), seconds
+
+
 # ---- materials ----
 
 

@@ -7,7 +7,7 @@ import subprocess
 import pytest
 from conftest import ENVIRONMENT, PROGRAM, ROOT, SINGLE, TIMEOUT
 
-FILES = """bin/rhegma bin/rhegma-plot share/rhegma/plot share/rhegma/rhegma.py share/rhegma/examples/spall/spall.yaml
+FILES = """bin/rhegma bin/rhegma-plot share/rhegma/plot share/rhegma/rhegma.py share/rhegma/case.schema.json share/rhegma/examples/spall/spall.yaml
     share/man/man1/rhegma.1 share/bash-completion/completions/rhegma""".split()
 
 
@@ -40,6 +40,10 @@ def test_an_installed_example_is_run_and_drawn(prefix, tmp_path):
     (tmp_path / "elsewhere/drawn").symlink_to(prefix / "bin/rhegma-plot")
     said = command("elsewhere/drawn", "results/spall", cwd=tmp_path)
     assert (tmp_path / "results/spall/energy.png").stat().st_size > 10000 and "energy.png" in said
+
+
+def test_the_schema_is_the_programs(prefix):
+    assert (prefix / "share/rhegma/case.schema.json").read_text() == command(PROGRAM, "keys", "--schema")
 
 
 @pytest.mark.skipif(SINGLE, reason="once is enough")
