@@ -93,25 +93,38 @@ static void make_room(rg_sets_joining *j) {
     }
 }
 
+/* The members of `group` with `set` among them, ascending; the caller frees them. */
+static int32_t *insert(const rg_sets *s, int32_t group, int32_t set, int32_t *count) {
+    const int32_t *member = rg_sets_of(s, &group, count);
+    int32_t *all = RG_NEW(int32_t, (size_t)*count + 1), at = 0;
+    for (; at < *count && member[at] < set; at++) {
+        all[at] = member[at];
+    }
+    all[at] = set;
+    memcpy(all + at + 1, member + at, (size_t)(*count - at) * sizeof *all);
+    ++*count;
+    return all;
+}
+
 /* The group of `group` and `set` together, a new one if need be. */
 static int32_t find_joined(rg_sets_joining *j, int32_t group, int32_t set) {
-    int32_t count;
+    int32_t count, members;
+    int32_t *all = insert(j->sets, group, set, &count);
     make_room(j);
-    for (int32_t g = j->child[group]; g >= 0; g = j->next[g]) {
-        const int32_t *member = rg_sets_of(j->sets, &g, &count);
-        if (member[count - 1] == set) {
-            return g;
+    int32_t found = j->child[group];
+    for (; found >= 0; found = j->next[found]) {
+        const int32_t *member = rg_sets_of(j->sets, &found, &members);
+        if (members == count && memcmp(member, all, (size_t)count * sizeof *all) == 0) {
+            break;
         }
     }
-    const int32_t *member = rg_sets_of(j->sets, &group, &count);
-    int32_t *all = RG_NEW(int32_t, (size_t)count + 1);
-    memcpy(all, member, (size_t)count * sizeof *all);
-    all[count] = set;
-    int32_t made = rg_sets_combine(j->sets, count + 1, all);
+    if (found < 0) {
+        found = rg_sets_combine(j->sets, count, all);
+        j->next[found] = j->child[group];
+        j->child[group] = found;
+    }
     rg_free(all);
-    j->next[made] = j->child[group];
-    j->child[group] = made;
-    return made;
+    return found;
 }
 
 int32_t rg_sets_join(rg_sets_joining *j, int32_t group, int32_t set) {

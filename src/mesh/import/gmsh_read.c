@@ -144,7 +144,7 @@ static void take_faces(void *context, const rg_gmsh_block *b) {
     }
     for (size_t i = 0; triangles && i < b->count; i++) {
         const size_t *node = b->node + (b->type == TRI3 ? 3 : 6) * i;
-        rg_import_face face = {{node[0], node[1], node[2]}, (rg_gid)b->tag[i], RG_IMPORT_UNNAMED, false};
+        rg_import_face face = {{node[0], node[1], node[2]}, (rg_gid)b->tag[i], RG_IMPORT_UNNAMED};
         for (int32_t s = 0; s < b->sets; s++) {
             face.set = b->set[s];
             rg_import_add_face(m, face);

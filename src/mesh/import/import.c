@@ -93,8 +93,18 @@ void rg_import_element(rg_import *m, rg_gid name, int nodes, const size_t *node)
 }
 
 void rg_import_put(rg_import *m, rg_gid element, int32_t set) {
-    m->joining.sets = &m->volume;
-    m->region[element] = rg_sets_join(&m->joining, m->region[element], set);
+    m->volumes.sets = &m->volume;
+    m->region[element] = rg_sets_join(&m->volumes, m->region[element], set);
+}
+
+void rg_import_put_skin(rg_import *m, rg_gid element, int32_t set) {
+    if (m->skin == NULL) {
+        m->skin = RG_NEW(int32_t, (size_t)m->elements);
+        memset(m->skin, -1, (size_t)m->elements * sizeof *m->skin);
+        m->skin_sets = rg_sets_copy(&m->surface);
+        m->skins.sets = &m->skin_sets;
+    }
+    m->skin[element] = rg_sets_join(&m->skins, m->skin[element], set);
 }
 
 void rg_import_add_face(rg_import *m, rg_import_face face) {
@@ -217,10 +227,9 @@ static void tell_nodes(const rg_import *m, const struct numbered *order, const r
 enum { FACE = RG_IMPORT_UNNAMED - 1 };
 
 struct triangle {
-    rg_gid vertex[3]; /* ascending */
-    rg_gid name;      /* of the input: its number; a face: 4 * element + face */
+    rg_lid vertex[3]; /* ascending */
     int32_t set;
-    bool skin;
+    rg_gid name; /* of the input: its number; a face: 4 * element + face */
 };
 
 /* Named ones by their sets, unnamed ones, then the faces in the order of the elements. */
@@ -253,22 +262,36 @@ struct surface {
 
 /* One group of equal triangles: the named ones come first, then the unnamed ones, then the faces. */
 static void look_at_group(const struct triangle *t, size_t count, rg_mesh *mesh, struct surface *s) {
-    size_t named = 0, triangles = 0, meant = 0;
+    size_t named = 0, triangles = 0;
     for (size_t i = 0; i < count; i++) {
         named += t[i].set >= 0;
         triangles += t[i].set != FACE;
-        meant += t[i].set != FACE && !t[i].skin;
     }
     size_t faces = count - triangles;
-    s->inside += named > 0 && meant > 0 && faces > 1;
+    s->inside += named > 0 && faces > 1;
     s->nowhere += named > 0 && faces == 0;
     if (faces == 1) {
         s->face = rg_grow(s->face, &s->room, s->faces, sizeof *s->face);
         s->face[s->faces++] = (struct outer){t[triangles].name, t, named};
     }
-    if (meant > 0 && faces > 1) {
-        memcpy(mesh->inner + 3 * mesh->inners++, t->vertex, sizeof t->vertex);
+    if (triangles > 0 && faces > 1) {
+        for (int i = 0; i < 3; i++) {
+            mesh->inner[3 * mesh->inners + (size_t)i] = t->vertex[i];
+        }
+        mesh->inners++;
     }
+}
+
+static void swap_if_less(rg_lid *a, rg_lid *b) {
+    rg_lid low = *a < *b ? *a : *b, high = *a < *b ? *b : *a;
+    *a = low;
+    *b = high;
+}
+
+static void sort_three(rg_lid v[3]) {
+    swap_if_less(&v[0], &v[1]);
+    swap_if_less(&v[1], &v[2]);
+    swap_if_less(&v[0], &v[1]);
 }
 
 /* The input's triangles that have corners, then all faces of the mesh. */
@@ -278,14 +301,14 @@ static struct triangle *list_triangles(rg_import *m, const rg_gid *vertex, const
     *count = 0;
     for (size_t i = 0; i < m->faces; i++) {
         const rg_import_face *face = &m->face[i];
-        struct triangle t = {.name = face->name, .set = face->set, .skin = face->skin};
+        struct triangle t = {.name = face->name, .set = face->set};
         bool known = true;
         for (int k = 0; k < 3; k++) {
             size_t n = row_of(m, face->node[k]);
-            t.vertex[k] = n < SIZE_MAX ? vertex[n] : -1;
+            t.vertex[k] = n < SIZE_MAX ? (rg_lid)vertex[n] : -1;
             known = known && t.vertex[k] >= 0;
         }
-        qsort(t.vertex, 3, sizeof *t.vertex, ascending);
+        sort_three(t.vertex);
         list[*count] = t;
         *count += known;
         s->nowhere += !known && t.set >= 0;
@@ -293,7 +316,7 @@ static struct triangle *list_triangles(rg_import *m, const rg_gid *vertex, const
     for (rg_gid slot = 0; slot < 4 * mesh->elements; slot++) {
         struct triangle t = {.name = slot, .set = FACE};
         for (int k = 0; k < 3; k++) {
-            t.vertex[k] = mesh->corner[slot / 4 * 4 + rg_face_node[slot % 4][k]];
+            t.vertex[k] = (rg_lid)mesh->corner[slot / 4 * 4 + rg_face_node[slot % 4][k]];
         }
         list[(*count)++] = t;
     }
@@ -364,7 +387,7 @@ static int64_t take_faces(const struct marks *k, const struct node_set *n, const
         bool again = i > 0 && n->point[i].node == n->point[i - 1].node;
         for (size_t f = v < 0 || again ? s->faces : first_face(s, v);
              f < s->faces && s->face[f].vertex->vertex[0] == v; f++) {
-            const rg_gid *corner = s->face[f].vertex->vertex;
+            const rg_lid *corner = s->face[f].vertex->vertex;
             if (k->mark[corner[1]] == mark && k->mark[corner[2]] == mark) {
                 int32_t *group = &mesh->set[s->face[f].slot];
                 *group = n->set >= 0 ? rg_sets_join(k->joining, *group, n->set) : *group;
@@ -438,13 +461,24 @@ static struct node_set *list_node_sets(rg_import *m) {
 
 /* ---- all faces ---- */
 
+/* The sets of a face of the surface: by name, and by its element. */
+static void put_face(struct marks *k, const struct outer *face, int32_t *group) {
+    const rg_import *m = k->import;
+    int32_t count = 0;
+    const int32_t *skin =
+        m->skin != NULL ? rg_sets_of(&m->skin_sets, &m->skin[face->slot / 4], &count) : NULL;
+    for (size_t i = 0; i < face->named; i++) {
+        *group = rg_sets_join(k->joining, *group, face->vertex[i].set);
+    }
+    for (int32_t s = 0; s < count; s++) {
+        *group = rg_sets_join(k->joining, *group, skin[s]);
+    }
+}
+
 static void put_into_sets(struct marks *k, const struct node_set *sets, const struct surface *s,
                           rg_mesh *mesh) {
     for (size_t f = 0; f < s->faces; f++) {
-        for (size_t i = 0; i < s->face[f].named; i++) {
-            int32_t *group = &mesh->set[s->face[f].slot];
-            *group = rg_sets_join(k->joining, *group, s->face[f].vertex[i].set);
-        }
+        put_face(k, &s->face[f], &mesh->set[s->face[f].slot]);
     }
     for (int32_t i = 0; i < k->import->node_set.count; i++) {
         if (sets[i].set >= 0) {
@@ -492,7 +526,9 @@ rg_mesh *rg_import_finish(rg_import *m) {
     mark_faces(m, vertex, mesh);
     mesh->surface = m->surface;
     mesh->volume = m->volume;
-    rg_sets_joined(&m->joining);
+    rg_sets_joined(&m->volumes);
+    rg_sets_joined(&m->skins);
+    rg_sets_free(&m->skin_sets);
     rg_sets_free(&m->node_set);
     rg_free(vertex);
     rg_free(order);
@@ -504,5 +540,6 @@ rg_mesh *rg_import_finish(rg_import *m) {
     rg_free(m->region);
     rg_free(m->face);
     rg_free(m->point);
+    rg_free(m->skin);
     return mesh;
 }

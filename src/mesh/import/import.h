@@ -14,7 +14,6 @@ typedef struct {
     size_t node[3];
     rg_gid name; /* the input's number for it, for messages */
     int32_t set; /* or RG_IMPORT_UNNAMED */
-    bool skin;   /* it is only meant if it is on the surface */
 } rg_import_face;
 
 /* A node of a set of nodes, which stands for the faces of the surface all of whose corners are in it. */
@@ -38,12 +37,14 @@ typedef struct {
     size_t *corner;  /* [elements][4] rows of nodes */
     rg_gid *name;    /* [elements] numbers */
     int32_t *region; /* [elements] groups of `volume` */
+    int32_t *skin;   /* [elements] groups of `surface` that their outer faces are in; NULL: all in none */
     rg_sets surface, volume;
-    rg_sets_joining joining; /* of volumes */
-    int64_t inverted;        /* elements of negative volume */
-    rg_gid first_inverted;   /* number of one */
-    int64_t middles, bent;   /* mid-nodes, and those off straight */
-    double worst;            /* how far, as a fraction of the edge */
+    rg_sets_joining volumes, skins; /* while they are put into sets */
+    rg_sets skin_sets;              /* those of `surface` and their combinations */
+    int64_t inverted;               /* elements of negative volume */
+    rg_gid first_inverted;          /* number of one */
+    int64_t middles, bent;          /* mid-nodes, and those off straight */
+    double worst;                   /* how far, as a fraction of the edge */
     size_t faces;
     rg_import_face *face;
     rg_sets node_set; /* sets of nodes by their names */
@@ -59,9 +60,11 @@ void rg_import_node(rg_import *m, size_t number, const double x[3]);
  * must be there already; ends the run with a message if they are not. */
 void rg_import_element(rg_import *m, rg_gid name, int nodes, const size_t *node);
 
-/* Puts an element, by its row, into a set of `volume`; those of each element in ascending order, and once all
- * sets are there. */
+/* Puts an element, by its row, into a set of `volume`, once all sets are there. */
 void rg_import_put(rg_import *m, rg_gid element, int32_t set);
+
+/* The same of its faces that are on the surface, if any, and a set of `surface`. */
+void rg_import_put_skin(rg_import *m, rg_gid element, int32_t set);
 
 void rg_import_add_face(rg_import *m, rg_import_face face);
 void rg_import_add_point(rg_import *m, size_t node, int32_t set);

@@ -2,7 +2,6 @@
 
 #include <inttypes.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/error.h"
@@ -106,61 +105,35 @@ static void name_element_sets(building *b) {
     }
 }
 
-static void add_face(building *b, size_t element, const int corner[3], int32_t set, bool skin) {
+static void add_face(building *b, size_t element, const int corner[3], int32_t set) {
     const uint32_t *node = b->model->node + b->model->start[element];
     rg_import_add_face(&b->import, (rg_import_face){{node[corner[0]], node[corner[1]], node[corner[2]]},
                                                     b->model->elements.number[element],
-                                                    set,
-                                                    skin});
+                                                    set});
 }
 
-/* A set of the model and its number in the mesh. */
-struct numbered {
-    int32_t set;
-    size_t of_model;
-};
-
-static int by_set(const void *a, const void *b) {
-    const struct numbered *p = a, *q = b;
-    if (p->set != q->set) {
-        return p->set < q->set ? -1 : 1;
-    }
-    return (p->of_model > q->of_model) - (p->of_model < q->of_model);
-}
-
-static void fill_element_set(building *b, const rg_inp_set *s, int32_t volume, int32_t surface) {
-    static const int all[3] = {0, 1, 2};
-    rg_inp_members found = rg_inp_members_of_set(b->model, s);
-    for (size_t k = 0; k < found.count; k++) {
-        size_t e = found.row[k];
-        if (b->model->kind[e] > 3) {
-            rg_import_put(&b->import, b->element[e], volume);
-        } else if (b->model->kind[e] == 3) {
-            add_face(b, e, all, surface, false);
-        }
-    }
-    rg_free(found.row);
-}
-
-/* In the order of their numbers, as rg_import_put wants them. */
 static void fill_element_sets(building *b) {
+    static const int all[3] = {0, 1, 2};
     char name[RG_SET_NAME];
-    size_t count = 0;
-    struct numbered *list = RG_NEW(struct numbered, b->model->sets + 1);
     for (size_t i = 0; i < b->model->sets; i++) {
         const rg_inp_set *s = &b->model->set[i];
-        if (s->of == RG_INP_ELEMENTS && !s->internal) {
-            name_of(b, RG_INP_ELEMENTS, s->name, s->scope, name);
-            list[count++] = (struct numbered){rg_sets_find(&b->import.volume, name), i};
+        if (s->of != RG_INP_ELEMENTS || s->internal) {
+            continue;
         }
-    }
-    qsort(list, count, sizeof *list, by_set);
-    for (size_t i = 0; i < count; i++) {
-        const rg_inp_set *s = &b->model->set[list[i].of_model];
         name_of(b, RG_INP_ELEMENTS, s->name, s->scope, name);
-        fill_element_set(b, s, list[i].set, rg_sets_find(&b->import.surface, name));
+        int32_t volume = rg_sets_find(&b->import.volume, name),
+                surface = rg_sets_find(&b->import.surface, name);
+        rg_inp_members found = rg_inp_members_of_set(b->model, s);
+        for (size_t k = 0; k < found.count; k++) {
+            size_t e = found.row[k];
+            if (b->model->kind[e] > 3) {
+                rg_import_put(&b->import, b->element[e], volume);
+            } else if (b->model->kind[e] == 3) {
+                add_face(b, e, all, surface);
+            }
+        }
+        rg_free(found.row);
     }
-    rg_free(list);
 }
 
 /* ---- surfaces ---- */
@@ -172,17 +145,17 @@ static void take_face(building *b, const rg_inp_surface *s, const rg_inp_patch *
         return; /* of an element that is left out, and said to be */
     }
     if (p->face == RG_INP_FREE) {
-        for (int f = 0; kind > 3 && f < 4; f++) {
-            add_face(b, e, face_corner[f], set, true);
+        if (kind > 3) {
+            rg_import_put_skin(&b->import, b->element[e], set);
         }
     } else if ((p->face == RG_INP_SIDE) != (kind == 3)) {
         rg_inp_refuse(p->of.at, "*SURFACE, NAME=%s: element %" PRId64 " has no such face", s->name,
                       b->model->elements.number[e]);
     }
     if (kind == 3) {
-        add_face(b, e, all, set, false);
+        add_face(b, e, all, set);
     } else if (p->face >= 0) {
-        add_face(b, e, face_corner[p->face], set, false);
+        add_face(b, e, face_corner[p->face], set);
     }
 }
 
@@ -202,17 +175,21 @@ static void take_patch(building *b, const rg_inp_surface *s, const rg_inp_patch 
     rg_free(found.row);
 }
 
-static void take_surfaces(building *b, rg_inp_of of) {
+static int32_t need_surface(building *b, const rg_inp_surface *s) {
     char name[RG_SET_NAME];
-    for (size_t i = 0; i < b->model->surfaces; i++) {
-        const rg_inp_surface *s = &b->model->surface[i];
-        if (s->of != of) {
-            continue;
-        }
-        name_of(b, RG_INP_ELEMENTS, s->name, s->scope, name);
-        int32_t set = need_set(of == RG_INP_NODES ? &b->import.node_set : &b->import.surface, name);
-        for (size_t k = 0; k < s->count; k++) {
-            take_patch(b, s, &s->patch[k], set);
+    name_of(b, RG_INP_ELEMENTS, s->name, s->scope, name);
+    return need_set(s->of == RG_INP_NODES ? &b->import.node_set : &b->import.surface, name);
+}
+
+/* All names come before all faces: a set is put into combinations of those there are. */
+static void take_surfaces(building *b, rg_inp_of of) {
+    for (int pass = 0; pass < 2; pass++) {
+        for (size_t i = 0; i < b->model->surfaces; i++) {
+            const rg_inp_surface *s = &b->model->surface[i];
+            int32_t set = s->of == of ? need_surface(b, s) : -1;
+            for (size_t k = 0; set >= 0 && pass == 1 && k < s->count; k++) {
+                take_patch(b, s, &s->patch[k], set);
+            }
         }
     }
 }

@@ -157,35 +157,31 @@ static void expect_faces(size_t count, const rg_import_face *list, int status, c
 
 static void test_faces(void **state) {
     (void)state;
-    const rg_import_face surface[] = {
-        {{40, 10, 20}, 7, 1, false}, {{50, 40, 20}, 8, 0, false}, {{20, 10, 40}, 9, 1, false}};
+    const rg_import_face surface[] = {{{40, 10, 20}, 7, 1}, {{50, 40, 20}, 8, 0}, {{20, 10, 40}, 9, 1}};
     expect_faces(3, surface, RG_OK, LEFT X5 "e 1: 0 1 2 3, side at 2\ne 2: 1 2 3 4, top at 1\n");
-    const rg_import_face unnamed[] = {{{40, 10, 20}, 7, RG_IMPORT_UNNAMED, false},
-                                      {{40, 30, 20}, 8, RG_IMPORT_UNNAMED, false}};
+    const rg_import_face unnamed[] = {{{40, 10, 20}, 7, RG_IMPORT_UNNAMED},
+                                      {{40, 30, 20}, 8, RG_IMPORT_UNNAMED}};
     expect_faces(2, unnamed, RG_OK, LEFT X5 "e 1: 0 1 2 3\ne 2: 1 2 3 4\ninner 1 2 3\n");
-    const rg_import_face both[] = {{{40, 10, 20}, 7, RG_IMPORT_UNNAMED, false},
-                                   {{40, 10, 20}, 8, 0, false},
-                                   {{40, 30, 20}, 9, RG_IMPORT_UNNAMED, false},
-                                   {{40, 20, 30}, 10, 1, false}};
+    const rg_import_face both[] = {{{40, 10, 20}, 7, RG_IMPORT_UNNAMED},
+                                   {{40, 10, 20}, 8, 0},
+                                   {{40, 30, 20}, 9, RG_IMPORT_UNNAMED},
+                                   {{40, 20, 30}, 10, 1}};
     expect_faces(4, both, RG_OK,
                  LEFT WARNING "1 " BETWEEN X5 "e 1: 0 1 2 3, top at 2\ne 2: 1 2 3 4\ninner 1 2 3\n");
     /* with node 60, 99 and 5, of which the second is not there and the others are no corners; and behind all
      * faces */
-    const rg_import_face nowhere[] = {{{10, 20, 50}, 7, 0, false},
-                                      {{10, 20, 60}, 8, 0, false},
-                                      {{99, 20, 10}, 9, 1, false},
-                                      {{10, 5, 50}, 10, RG_IMPORT_UNNAMED, false},
-                                      {{10, 30, 50}, 11, RG_IMPORT_UNNAMED, false},
-                                      {{20, 10, 30}, 12, 1, false},
-                                      {{40, 50, 50}, 13, 1, false}};
+    const rg_import_face nowhere[] = {{{10, 20, 50}, 7, 0},
+                                      {{10, 20, 60}, 8, 0},
+                                      {{99, 20, 10}, 9, 1},
+                                      {{10, 5, 50}, 10, RG_IMPORT_UNNAMED},
+                                      {{10, 30, 50}, 11, RG_IMPORT_UNNAMED},
+                                      {{20, 10, 30}, 12, 1},
+                                      {{40, 50, 50}, 13, 1}};
     expect_faces(7, nowhere, RG_OK, LEFT WARNING "4 " NOWHERE X5 "e 1: 0 1 2 3, side at 3\ne 2: 1 2 3 4\n");
-    const rg_import_face two[] = {{{40, 10, 20}, 9, 1, false}, {{20, 10, 40}, 7, 0, false}};
+    const rg_import_face two[] = {{{40, 10, 20}, 9, 1}, {{20, 10, 40}, 7, 0}};
     expect_faces(2, two, RG_OK, LEFT X5 "e 1: 0 1 2 3, top and side at 2\ne 2: 1 2 3 4\n");
-    const rg_import_face inside[] = {{{40, 30, 20}, 7, 1, false}, {{20, 30, 40}, 9, 0, false}};
+    const rg_import_face inside[] = {{{40, 30, 20}, 7, 1}, {{20, 30, 40}, 9, 0}};
     expect_faces(2, inside, RG_OK, LEFT WARNING "1 " BETWEEN X5 "e 1: 0 1 2 3\ne 2: 1 2 3 4\ninner 1 2 3\n");
-    /* what is only meant where it is on the surface is not said to lie inside, nor kept there */
-    const rg_import_face skin[] = {{{40, 30, 20}, 7, 1, true}, {{20, 10, 40}, 9, 1, true}};
-    expect_faces(2, skin, RG_OK, LEFT X5 "e 1: 0 1 2 3, side at 2\ne 2: 1 2 3 4\n");
 }
 
 /* Sets of nodes: faces of the surface all of whose corners are in one. */
@@ -197,7 +193,7 @@ static void add_points(void) {
                 {"side", {50, 40, 30}},        {"inside", {20, 30, 40}}, {"back", {40, 50, 30, 60}}};
     rg_import m = make_pair();
     rg_import_node(&m, 60, (const double[]){0, 0, 0.5});
-    rg_import_add_face(&m, (rg_import_face){{40, 10, 20}, 7, 1, false});
+    rg_import_add_face(&m, (rg_import_face){{40, 10, 20}, 7, 1});
     for (int i = 5; i >= 0; i--) {
         for (int k = 0; k < 5 && sets[i].node[k] > 0; k++) {
             rg_import_add_point(&m, sets[i].node[k], i);
@@ -238,6 +234,28 @@ static void test_many_points(void **state) {
                 "'e', ...\n" X5 "e 1: 0 1 2 3\ne 2: 1 2 3 4\n");
 }
 
+/* Outer faces of elements, beside faces that are named: sets of both, in any order. */
+static void add_skins(void) {
+    rg_import m = make_pair();
+    rg_sets_add(&m.surface, "skin");
+    rg_sets_add(&m.surface, "more");
+    rg_import_add_face(&m, (rg_import_face){{40, 10, 20}, 7, 3});
+    rg_import_add_face(&m, (rg_import_face){{40, 10, 20}, 8, 0});
+    rg_import_add_face(&m, (rg_import_face){{40, 50, 20}, 9, 2});
+    rg_import_put_skin(&m, 0, 2);
+    rg_import_put_skin(&m, 0, 1);
+    rg_import_put_skin(&m, 1, 2);
+    end(&m);
+}
+
+static void test_skins(void **state) {
+    (void)state;
+    expect_said(add_skins, RG_OK,
+                X5
+                "e 1: 0 1 2 3, side and skin at 1, top and side and skin and more at 2, side and skin at 3\n"
+                "e 2: 1 2 3 4, skin at 0, skin at 1, skin at 2\n");
+}
+
 /* Elements in several sets of volumes. */
 static void add_volumes(void) {
     rg_import m = make_pair();
@@ -262,8 +280,8 @@ static void test_memory(void **state) {
     (void)state;
     size_t before = rg_alloc_total();
     rg_import m = make_pair();
-    rg_import_add_face(&m, (rg_import_face){{40, 10, 20}, 7, 1, false});
-    rg_import_add_face(&m, (rg_import_face){{40, 10, 30}, 8, 1, false});
+    rg_import_add_face(&m, (rg_import_face){{40, 10, 20}, 7, 1});
+    rg_import_add_face(&m, (rg_import_face){{40, 10, 30}, 8, 1});
     rg_mesh *mesh = rg_import_finish(&m);
     enum { VERTICES = 5, ELEMENTS = 2, FACES = 2 };
     assert_int_equal(rg_alloc_total() - before,
@@ -278,9 +296,9 @@ static void test_memory(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_turns),   cmocka_unit_test(test_nothing), cmocka_unit_test(test_middles),
-        cmocka_unit_test(test_faces),   cmocka_unit_test(test_points),  cmocka_unit_test(test_many_points),
-        cmocka_unit_test(test_volumes), cmocka_unit_test(test_memory),
+        cmocka_unit_test(test_turns), cmocka_unit_test(test_nothing), cmocka_unit_test(test_middles),
+        cmocka_unit_test(test_faces), cmocka_unit_test(test_points),  cmocka_unit_test(test_many_points),
+        cmocka_unit_test(test_skins), cmocka_unit_test(test_volumes), cmocka_unit_test(test_memory),
     };
     return cmocka_run_group_tests_name("import", tests, NULL, NULL);
 }

@@ -96,10 +96,31 @@ static void test_joining(void **state) {
     rg_sets_free(&s);
 }
 
+/* In the other order: other combinations, but of the right sets, ascending. */
+static void test_joining_backwards(void **state) {
+    (void)state;
+    rg_sets s = make();
+    int32_t group[16];
+    rg_sets_joining join = {.sets = &s};
+    for (int i = 0; i < 16; i++) {
+        group[i] = -1;
+        for (int32_t k = 3; k >= 0; k--) {
+            group[i] = (i >> k & 1) != 0 ? rg_sets_join(&join, group[i], k) : group[i];
+        }
+        group[i] = (i & 1) != 0 ? rg_sets_join(&join, group[i], 2) : group[i];
+    }
+    rg_sets_joined(&join);
+    for (int i = 0; i < 16; i++) {
+        assert_int_equal(bits(&s, group[i]), (unsigned)i | ((i & 1) != 0 ? 4U : 0));
+    }
+    rg_sets_free(&s);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_groups),
         cmocka_unit_test(test_joining),
+        cmocka_unit_test(test_joining_backwards),
     };
     return cmocka_run_group_tests_name("sets", tests, NULL, NULL);
 }
