@@ -16,15 +16,17 @@
 #include "mesh/check.h"
 #include "mesh/file.h"
 #include "mesh/import/inp_read.h"
+#include "mesh/import/vtk_read.h"
 #include "mesh/improve/improve.h"
 #include "mesh/info.h"
 #include "partition/material.h"
 #include "partition/mesh_case.h"
 
 static const char usage[] =
-    "usage: rhegma mesh IN -o OUT.h5 [--scale S] [--improve]   a mesh file from Abaqus (.inp), or from what\n"
-    "                                               Gmsh reads or meshes (.msh .bdf .unv .geo ...); S: m\n"
-    "                                               per unit of IN; --improve makes flat elements less flat\n"
+    "usage: rhegma mesh IN -o OUT.h5 [--scale S] [--improve]   a mesh file from Abaqus (.inp), VTK (.vtk\n"
+    "                                               .vtu), or from what Gmsh reads or meshes (.msh .bdf\n"
+    "                                               .unv .geo .step ...); S: m per unit of IN; --improve\n"
+    "                                               makes flat elements less flat\n"
     "       rhegma mesh CASE.yaml -o OUT.h5 [--set a.b=value]   a mesh file from the mesh of a case\n"
     "       rhegma mesh --info MESH.h5 [--case CASE.yaml]   what a mesh file holds; its time steps with the\n"
     "                                               fastest material of a case, else for waves of 1 m/s\n"
@@ -205,8 +207,11 @@ static int from_case(const rg_mesh_arguments *a) {
     return RG_OK;
 }
 
-static int from_inp(const rg_mesh_arguments *a) {
-    rg_mesh *mesh = rg_inp_read(a->input, a->scale, stdout);
+/* What is read without Gmsh. */
+static int from_text(const rg_mesh_arguments *a) {
+    rg_mesh *mesh = ends_with(a->input, ".vtk")   ? rg_vtk_read(a->input, a->scale)
+                    : ends_with(a->input, ".vtu") ? rg_vtu_read(a->input, a->scale)
+                                                  : rg_inp_read(a->input, a->scale, stdout);
     rg_mesh_finish(mesh, a);
     rg_mesh_free(mesh);
     return RG_OK;
@@ -227,7 +232,8 @@ static int from_gmsh(int argc, char **argv) {
     }
     execv(path, copy);
     rg_fatal(RG_USAGE,
-             "mesh: %s: %s; it reads all but .yaml and .inp, and is built where Gmsh is there (Debian: "
+             "mesh: %s: %s; it reads all but .yaml, .inp, .vtk and .vtu, and is built where Gmsh is there "
+             "(Debian: "
              "libgmsh-dev; then meson configure build -Dgmsh=enabled)",
              path, strerror(errno));
 }
@@ -321,8 +327,8 @@ int rg_mesh_command(int argc, char **argv) {
         status = from_case(&a);
     } else if (ends_with(a.input, ".h5")) {
         complain("a mesh file already, which --info shows", a.input);
-    } else if (ends_with(a.input, ".inp")) { /* Gmsh writes but does not read them */
-        status = from_inp(&a);
+    } else if (ends_with(a.input, ".inp") || ends_with(a.input, ".vtk") || ends_with(a.input, ".vtu")) {
+        status = from_text(&a);
     } else {
         status = from_gmsh(argc, argv);
     }

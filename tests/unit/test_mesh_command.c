@@ -255,7 +255,7 @@ static void test_other_formats(void **state) {
         assert_int_equal(run_child(run_command, said, sizeof said), RG_USAGE);
         assert_true(strncmp(said, "rhegma: mesh: /", 15) == 0);
         assert_non_null(
-            strstr(said, "/tests/rhegma-mesh: No such file or directory; it reads all but .yaml and .inp"));
+            strstr(said, "/tests/rhegma-mesh: No such file or directory; it reads all but .yaml, .inp, .vtk and .vtu"));
     }
 }
 

@@ -1,0 +1,43 @@
+/* An unstructured grid of VTK, whatever file it came in. */
+#ifndef RG_VTK_GRID_H
+#define RG_VTK_GRID_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "mesh/mesh.h"
+
+/* Values of the cells, one each, by a name. */
+typedef struct {
+    char *name;
+    double *value; /* [cells] */
+} rg_vtk_array;
+
+typedef struct {
+    const char *path;
+    size_t points, cells, nodes;
+    double *x;     /* [points][3], in units of the input */
+    double *start; /* [cells + 1] where the nodes of each begin in (numbers as the file has them): */
+    double *node;  /* [nodes] */
+    double *type;  /* [cells] */
+    rg_vtk_array *array;
+    size_t arrays;
+} rg_vtk_grid;
+
+typedef enum { RG_VTK_SIGNED, RG_VTK_UNSIGNED, RG_VTK_FLOAT } rg_vtk_kind;
+
+/* A number of 1 to 8 bytes. */
+double rg_vtk_decode(const unsigned char *from, rg_vtk_kind kind, size_t bytes, bool big_endian);
+
+/* Keeps values[cells] of the cells, which may be the numbers of regions; takes them over, and copies the
+ * name. Ends the run where that is too long for a set. */
+void rg_vtk_add_array(rg_vtk_grid *g, const char *name, double *value);
+
+/* The mesh, with lengths times `scale` in m, and frees the grid. Arrays of whole numbers name sets:
+ * "array.number" is the volume set of the tetrahedra, and the surface set of the triangles, that have this
+ * number. Ends the run where cells are damaged, or solids of another shape. `original` holds the numbers of
+ * the cells, from 0 on. */
+rg_mesh *rg_vtk_mesh(rg_vtk_grid *g, double scale);
+
+#endif

@@ -1,0 +1,21 @@
+/* Meshes from VTK: any bytes as the file, of XML if they begin so; then all that `rhegma mesh` does but
+ * writing. */
+#include <stdio.h>
+
+#include "host.h"
+#include "mesh/check.h"
+#include "mesh/import/vtk_read.h"
+
+static void body(const uint8_t *data, size_t size) {
+    const char *path = rg_fuzz_scratch();
+    FILE *f = fopen(path, "wb");
+    rg_fuzz_require(f != NULL && fwrite(data, 1, size, f) == size && fclose(f) == 0, "the scratch file");
+    rg_mesh *mesh = size > 0 && data[0] == '<' ? rg_vtu_read(path, 1e-3) : rg_vtk_read(path, 1e-3);
+    rg_mesh_check_elements(mesh, path);
+    rg_mesh_sort(mesh);
+    rg_mesh_connect(mesh);
+    rg_mesh_check(mesh, path);
+    rg_mesh_free(mesh);
+}
+
+RG_FUZZ_TARGET(body)
