@@ -11,10 +11,11 @@ ROOMS = {
                 deshpande_evans_kernel cost_model material step test_invariance.py test_contact.py test_friction.py test_viscosity.py
                 test_laws.py test_ceramic.py test_solids.py test_ledger.py test_spall.py"""),
     "mesh/import": (["src/mesh/import/*"],
-                    "mesh mesh_file inp import mesh_command fuzz-inp test_gmsh.py test_mesh_faults.py test_meshes.py"),
+                    """frame inp inp_nodes inp_sets import vtk sets mesh mesh_file mesh_command fuzz-inp fuzz-vtk test_abaqus.py
+                    test_gmsh.py test_mesh_faults.py test_meshes.py"""),
     "mesh/improve": (["src/mesh/improve/*"], "improve test_meshes.py"),
     "mesh": (["src/mesh/*"],
-             """mesh mesh_check mesh_command mesh_damage mesh_info mesh_file tiles part part_read domain
+             """sets mesh mesh_check mesh_command mesh_damage mesh_info mesh_file tiles part part_read domain
              fuzz-mesh test_mesh_faults.py test_meshes.py test_invariance.py
              test_partition.py test_cli.py"""),
     "partition": (["src/partition/*"],
