@@ -48,8 +48,8 @@ ROOMS = {
              test_keys.py test_output.py test_laws.py test_bodies.py test_cli.py
              test_bimaterials.py test_continuous.py test_restart.py"""),
     "base": (["src/*"],
-             """numbers exchange files interrupt run h5_parallel rebalance slab checksum writer fragment verify checkpoint_file fragment_table
-             fragment_twin ledger probe summary test_keys.py test_output.py test_mesh_faults.py test_faults.py test_cli.py
+             """numbers exchange files interrupt run mesh_command h5_parallel rebalance slab checksum writer fragment verify
+             checkpoint_file fragment_table fragment_twin ledger probe summary test_keys.py test_output.py test_mesh_faults.py test_faults.py test_cli.py
              test_fragments.py test_meshes.py test_partition.py test_restart.py"""),
     "plot": (["bench/plot", "bench/drawing.py", "bench/theory.py", "bench/rhegma.py",
               "bench/page.py"],

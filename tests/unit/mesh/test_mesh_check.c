@@ -190,6 +190,28 @@ static void test_changes(void **state) {
     }
 }
 
+/* Three elements on each of two faces: that of the earlier element is told first. */
+static void connect_thrice(void) {
+    static const rg_gid corner[24] = {0, 1, 2, 6, 3, 4, 5, 7,  3, 4, 5, 8,
+                                      3, 4, 5, 9, 0, 1, 2, 10, 0, 1, 2, 11};
+    rg_mesh *m = chain();
+    m->vertices = 12;
+    m->elements = 6;
+    m->corner = RG_NEW(rg_gid, 24);
+    m->neighbour = RG_NEW(rg_gid, 24);
+    m->face = RG_NEW(int8_t, 24);
+    m->original = NULL;
+    memcpy(m->corner, corner, sizeof corner);
+    rg_mesh_connect(m);
+}
+
+static void test_third_element_on_a_face(void **state) {
+    (void)state;
+    expect_said(connect_thrice, RG_USAGE,
+                "rhegma: mesh: elements 0, 4 and 5 share the face with vertices 0, 1 and 2\n"
+                "rhegma: mesh: elements 1, 2 and 3 share the face with vertices 3, 4 and 5\n");
+}
+
 /* Where the chain's number is that of the input itself. */
 static void check_unnumbered(void) {
     rg_mesh *m = chain();
@@ -543,6 +565,7 @@ int main(void) {
         cmocka_unit_test(test_volume_bound),
         cmocka_unit_test(test_corner_order),
         cmocka_unit_test(test_changes),
+        cmocka_unit_test(test_third_element_on_a_face),
         cmocka_unit_test(test_numbers_without_an_input),
         cmocka_unit_test(test_same_place),
         cmocka_unit_test(test_three_at_one_place),
