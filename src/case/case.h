@@ -35,10 +35,19 @@ enum {
     RG_FIELDS_COMMON = 63 | RG_FIELD_FRAGMENT, /* what every run puts out by default */
 };
 
+/* The registry of prescribed motions, of which an entry of `boundary` is one: X(NAME, key, unit, others).
+ * What each does to the nodes: solver/constraint.c. */
+#define RG_PRESCRIBED(X)                                                                                     \
+    X(VELOCITY, "velocity", "m/s", "displacement")                                                           \
+    X(DISPLACEMENT, "displacement", "m", "velocity")
+
+#define RG_PRESCRIBED_ENUM(NAME, key, unit, others) RG_PRESCRIBED_##NAME,
+typedef enum { RG_PRESCRIBED(RG_PRESCRIBED_ENUM) RG_PRESCRIBED_KINDS } rg_prescribed;
+
 typedef struct {
-    char *set;            /* named set of faces */
-    int component;        /* 0, 1, 2 for x, y, z */
-    bool is_displacement; /* prescribed displacement (m), else velocity (m/s) */
+    char *set;     /* named set of faces */
+    int component; /* 0, 1, 2 for x, y, z */
+    rg_prescribed prescribed;
     rg_expr *value;
 } rg_boundary;
 

@@ -39,7 +39,8 @@ static void choice_words(const rg_key *key, char *text, size_t size) {
 static void list_words(const rg_key_table *entry, char *text, size_t size) {
     const char *join = "list of {";
     for (int i = 0; i < entry->keys && !entry->key[i].of_material; i++) {
-        join = entry->key[i].group == RG_GROUP_DISPLACEMENT ? " or " : join;
+        bool another = i > 0 && entry->key[i - 1].group == RG_GROUP_PRESCRIBED;
+        join = another ? " or " : join;
         rg_text_add(text, size, "%s%s", join, entry->key[i].name);
         join = ", ";
     }
@@ -186,10 +187,8 @@ bool rg_key_used(const rg_key *key, const void *base) {
         return ((const rg_case *)base)->interface.weibull.modulus > 0;
     case RG_GROUP_LAW:
         return ((const rg_case *)base)->interface.law == key->law;
-    case RG_GROUP_VELOCITY:
-        return !((const rg_boundary *)base)->is_displacement;
-    case RG_GROUP_DISPLACEMENT:
-        return ((const rg_boundary *)base)->is_displacement;
+    case RG_GROUP_PRESCRIBED:
+        return ((const rg_boundary *)base)->prescribed == key->prescribed;
     case RG_GROUP_ALWAYS:
     case RG_GROUPS:
         break;

@@ -37,19 +37,18 @@ typedef enum {
 /* Keys that are used only in some cases; given in others, they are refused rather than ignored. */
 typedef enum {
     RG_GROUP_ALWAYS,
-    RG_GROUP_BOX,          /* unless mesh.file */
-    RG_GROUP_COHESIVE,     /* unless interface.law is none */
-    RG_GROUP_ENERGY,       /* if the law has a work of separation */
-    RG_GROUP_SHEAR,        /* if the law has an effective opening */
-    RG_GROUP_LAW,          /* if interface.law is the key's `law` */
-    RG_GROUP_FACES,        /* if interface.form is continuous */
-    RG_GROUP_INTERFACE,    /* unless it is, and interface.faces is not given */
-    RG_GROUP_DG,           /* the same, and unless interface.form is intrinsic */
-    RG_GROUP_SWITCH,       /* if points switch from DG to a law: there is one, and DG terms */
-    RG_GROUP_ONSET,        /* ... by the conserving activation */
-    RG_GROUP_WEIBULL,      /* if interface.weibull.modulus is given */
-    RG_GROUP_VELOCITY,     /* boundary entries: one of the two */
-    RG_GROUP_DISPLACEMENT, /* the other */
+    RG_GROUP_BOX,        /* unless mesh.file */
+    RG_GROUP_COHESIVE,   /* unless interface.law is none */
+    RG_GROUP_ENERGY,     /* if the law has a work of separation */
+    RG_GROUP_SHEAR,      /* if the law has an effective opening */
+    RG_GROUP_LAW,        /* if interface.law is the key's `law` */
+    RG_GROUP_FACES,      /* if interface.form is continuous */
+    RG_GROUP_INTERFACE,  /* unless it is, and interface.faces is not given */
+    RG_GROUP_DG,         /* the same, and unless interface.form is intrinsic */
+    RG_GROUP_SWITCH,     /* if points switch from DG to a law: there is one, and DG terms */
+    RG_GROUP_ONSET,      /* ... by the conserving activation */
+    RG_GROUP_WEIBULL,    /* if interface.weibull.modulus is given */
+    RG_GROUP_PRESCRIBED, /* boundary entries: if that is what is prescribed */
     RG_GROUPS,
 } rg_key_group;
 
@@ -67,6 +66,7 @@ typedef struct {
     rg_key_need need;
     rg_key_group group;
     rg_key_alternative alternative;
+    rg_prescribed prescribed;          /* of RG_GROUP_PRESCRIBED */
     bool of_material;                  /* in the block of a material */
     size_t input;                      /* of one that is: offset of its rg_material_input in the structure */
     unsigned models;                   /* materials.h: bits of the models that use it; 0: all */

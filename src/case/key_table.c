@@ -267,15 +267,16 @@ static const rg_key other_material_keys[] = {
 #include "case/material_keys.h"
 };
 
+#define PRESCRIBED(NAME, key, unit_, others)                                                                 \
+    {.name = (key), .unit = (unit_), .type = RG_KEY_EXPR, ELSE(others), ONE_OF, .group = RG_GROUP_PRESCRIBED,  \
+     .prescribed = RG_PRESCRIBED_##NAME, .offset = offsetof(rg_boundary, value), MEANS("prescribed " key)},
+
 static const rg_key boundary_keys[] = {
     {.name = "set", .type = RG_KEY_TEXT, .choice = box_sets, REQUIRED, .offset = offsetof(rg_boundary, set),
      MEANS("a side of the box, or a surface set of the mesh file")},
     {.name = "component", CHOICE(components), REQUIRED, .offset = offsetof(rg_boundary, component),
      MEANS("of the motion that is prescribed")},
-    {.name = "velocity", .unit = "m/s", .type = RG_KEY_EXPR, ELSE("displacement"), ONE_OF, .group = RG_GROUP_VELOCITY,
-     .offset = offsetof(rg_boundary, value), MEANS("prescribed velocity")},
-    {.name = "displacement", .unit = "m", .type = RG_KEY_EXPR, ELSE("velocity"), ONE_OF, .group = RG_GROUP_DISPLACEMENT,
-     .offset = offsetof(rg_boundary, value), MEANS("prescribed displacement")},
+    RG_PRESCRIBED(PRESCRIBED)
 };
 
 #define BODY(member) .offset = offsetof(rg_body_input, member)

@@ -217,19 +217,34 @@ void rg_mass_rule(rg_check *ck, const rg_node *node) {
 /* ---- boundary: one prescribed motion per entry, one entry per set and component ---- */
 
 static bool one_motion(rg_check *ck, const rg_node *item, const char *path, rg_boundary *b) {
-    const rg_node *velocity = rg_node_find(item, "velocity", strlen("velocity"));
-    const rg_node *displacement = rg_node_find(item, "displacement", strlen("displacement"));
-    b->is_displacement = displacement != NULL;
-    if ((velocity == NULL) != (displacement == NULL)) {
-        return true;
+    char allowed[100] = "", missing[100] = "";
+    const char *first = NULL;
+    for (int k = 0; k < rg_boundary_table.keys; k++) {
+        const rg_key *key = &rg_boundary_table.key[k];
+        if (key->group != RG_GROUP_PRESCRIBED) {
+            continue;
+        }
+        rg_text_add(allowed, sizeof allowed, "%s%s", allowed[0] == 0 ? "exactly one of " : ", ", key->name);
+        rg_text_add(missing, sizeof missing, "%s%s", missing[0] == 0 ? "missing " : " or ", key->name);
     }
-    rg_subject subject = {.key = path, .allowed = "exactly one of velocity, displacement"};
-    if (velocity == NULL) {
-        rg_problem_add(ck->problems, item->at, &subject, "missing velocity or displacement");
-    } else {
-        rg_problem_add(ck->problems, displacement->key_at, &subject, "velocity and displacement both given");
+    rg_subject subject = {.key = path, .allowed = allowed};
+    for (int k = 0; k < rg_boundary_table.keys; k++) {
+        const rg_key *key = &rg_boundary_table.key[k];
+        const rg_node *given = rg_node_find(item, key->name, strlen(key->name));
+        if (key->group != RG_GROUP_PRESCRIBED || given == NULL) {
+            continue;
+        }
+        if (first != NULL) {
+            rg_problem_add(ck->problems, given->key_at, &subject, "%s and %s both given", first, key->name);
+            return false;
+        }
+        first = key->name;
+        b->prescribed = key->prescribed;
     }
-    return false;
+    if (first == NULL) {
+        rg_problem_add(ck->problems, item->at, &subject, "%s", missing);
+    }
+    return first != NULL;
 }
 
 static const rg_node *same_motion(const rg_case *c, const rg_node *list, int i) {

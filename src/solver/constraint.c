@@ -164,7 +164,7 @@ static unsigned constrained_nodes(const rg_constraints *k, const uint16_t *on_se
 }
 
 static bool boundary_varies(const rg_boundary *b) {
-    return b->is_displacement || rg_expr_uses_time(b->value);
+    return b->prescribed == RG_PRESCRIBED_DISPLACEMENT || rg_expr_uses_time(b->value);
 }
 
 static void add_entry(rg_constraints *k, double mass, size_t slot, int c, unsigned mask,
@@ -217,9 +217,14 @@ static double value_at(const rg_constraints *k, const entry *e, int i, double ti
     return rg_expr_value(k->input->boundary[e->boundary[i]].value, x, time);
 }
 
+/* Whether the displacement of constrained node i is prescribed, not its velocity alone. */
+static bool is_placed(const rg_constraints *k, const entry *e, int i) {
+    return k->input->boundary[e->boundary[i]].prescribed == RG_PRESCRIBED_DISPLACEMENT;
+}
+
 /* Velocity of constrained node i at `time`; of a prescribed displacement, its difference over a step. */
 static double velocity_at(const rg_constraints *k, const entry *e, int i, double time, double dt) {
-    if (!k->input->boundary[e->boundary[i]].is_displacement) {
+    if (!is_placed(k, e, i)) {
         return value_at(k, e, i, time);
     }
     double half = 0.5 * dt;
@@ -244,10 +249,12 @@ bool rg_constraints_told(const rg_constraints *k, char *words, size_t size, MPI_
     }
     bool found = rg_first_bad_lowest(&bad, comm);
     if (found) {
+#define KEY(NAME, key, unit, others) key,
+        static const char *const key[] = {RG_PRESCRIBED(KEY)};
+#undef KEY
         const rg_boundary *b = &k->input->boundary[bad.which];
         snprintf(words, size, "boundary[%d].%s: %s is not finite at (%g, %g, %g), t = %g s", (int)bad.which,
-                 b->is_displacement ? "displacement" : "velocity", rg_expr_text(b->value), bad.x[0], bad.x[1],
-                 bad.x[2], bad.value);
+                 key[b->prescribed], rg_expr_text(b->value), bad.x[0], bad.x[1], bad.x[2], bad.value);
     }
     return found;
 }
@@ -261,13 +268,12 @@ void rg_constraints_start(rg_constraints *k, const rg_real *u, const rg_real *ve
             e->is.before[i] = velocity[at];
             e->is.displacement[i] = u[at];
             e->is.target[i] = e->is.present[i] = velocity_at(k, e, i, 0, 0);
-            bool placed = k->input->boundary[e->boundary[i]].is_displacement;
             double first = value_at(k, e, i, 0);
             if (!isfinite(first)) {
                 note(k, e, i, 0);
             }
             double volume = k->domain->geom[rg_geom_index((size_t)e->slot, RG_GEOM_VOLUME)];
-            jumps += placed && fabs(first - u[at]) > JUMP * cbrt(volume);
+            jumps += is_placed(k, e, i) && fabs(first - u[at]) > JUMP * cbrt(volume);
         }
     }
     char words[400];
@@ -291,7 +297,7 @@ void rg_constraints_set(rg_constraints *k, double time, double dt, bool moving) 
     for (size_t n = 0; k->varies && n < k->entries; n++) {
         entry *e = &k->entry[n];
         for (int i = 0; e->varies && i < e->pattern->constrained; i++) {
-            if (k->input->boundary[e->boundary[i]].is_displacement) {
+            if (is_placed(k, e, i)) {
                 double next = value_at(k, e, i, time + dt);
                 e->is.target[i] = (next - e->is.displacement[i]) / dt;
                 e->is.displacement[i] = next;
@@ -353,7 +359,7 @@ void rg_constraints_drift(const rg_constraints *k, size_t tile, rg_real *u) {
     for (size_t n = k->tile_begin[tile]; n < k->tile_begin[tile + 1]; n++) {
         const entry *e = &k->entry[n];
         for (int i = 0; i < e->pattern->constrained; i++) {
-            if (k->input->boundary[e->boundary[i]].is_displacement) {
+            if (is_placed(k, e, i)) {
                 u[rg_node_index((size_t)e->slot, e->pattern->node[i], e->component)] =
                     (rg_real)e->is.displacement[i];
             }

@@ -32,7 +32,7 @@ static void test_values(void **state) {
     assert_int_equal(c->boundaries, 1);
     assert_string_equal(c->boundary[0].set, "z+");
     assert_int_equal(c->boundary[0].component, 2);
-    assert_false(c->boundary[0].is_displacement);
+    assert_int_equal(c->boundary[0].prescribed, RG_PRESCRIBED_VELOCITY);
     assert_string_equal(rg_expr_text(c->boundary[0].value), "6.086");
     assert_int_equal(c->output.probes, 1);
     assert_string_equal(c->output.probe[0].name, "p");
@@ -82,7 +82,7 @@ static void test_overrides(void **state) {
     assert_true(c->output.fields == 0 && c->time.steps == 12);
     assert_int_equal(c->boundaries, 1);
     assert_string_equal(c->boundary[0].set, "x-");
-    assert_true(c->boundary[0].component == 1 && c->boundary[0].is_displacement);
+    assert_true(c->boundary[0].component == 1 && c->boundary[0].prescribed == RG_PRESCRIBED_DISPLACEMENT);
     assert_string_equal(rg_expr_text(c->initial.velocity[2]), "-z/2e-3");
     assert_string_equal(rg_expr_text(c->initial.displacement[0]), "1e-6");
     assert_string_equal(c->output.dir, "a=b.c");
@@ -174,7 +174,7 @@ static void same_lists(const rg_case *a, const rg_case *b) {
     for (int i = 0; i < a->boundaries; i++) {
         assert_string_equal(a->boundary[i].set, b->boundary[i].set);
         assert_int_equal(a->boundary[i].component, b->boundary[i].component);
-        assert_int_equal(a->boundary[i].is_displacement, b->boundary[i].is_displacement);
+        assert_int_equal(a->boundary[i].prescribed, b->boundary[i].prescribed);
         same_expr(a->boundary[i].value, b->boundary[i].value);
     }
     same_bodies(a, b);

@@ -122,7 +122,7 @@ static void compare_places(record *r, const rg_solver *s, const twin *w) {
         rg_gid id = s->domain->id[slot];
         for (int k = 0; k < 3 * RG_NODES && id >= 0; k++) {
             int b = w->held[3 * RG_NODES * id + k];
-            if (b >= 0 && w->input->boundary[b].is_displacement) {
+            if (b >= 0 && w->input->boundary[b].prescribed == RG_PRESCRIBED_DISPLACEMENT) {
                 double x[3];
                 rg_node_position(s->domain->corner + 12 * slot, k / 3, x);
                 double there = rg_expr_value(w->input->boundary[b].value, x, s->time);
@@ -299,7 +299,7 @@ static int64_t disturb(twin *w, bool suddenly) {
             int held = w->held[3 * k + (size_t)c];
             w->u[at] = (rg_real)(6e-8 * strength * (2 * rg_hash_uniform(h) - 1));
             w->velocity[at] = (rg_real)(60 * strength * (2 * rg_hash_uniform(rg_hash(h, 1)) - 1));
-            if (held >= 0 && w->input->boundary[held].is_displacement) {
+            if (held >= 0 && w->input->boundary[held].prescribed == RG_PRESCRIBED_DISPLACEMENT) {
                 bool jump = suddenly && h % 2 == 0;
                 double off = w->joined ? 0 : jump ? 1.5 : 0.6;
                 w->u[at] = (rg_real)place_of(w, &w->input->boundary[held], e, n, off);

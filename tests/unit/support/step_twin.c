@@ -78,7 +78,7 @@ static void hold(twin *w, size_t e, int c) {
         if (b == NULL)
             continue;
         any = true;
-        if (b->is_displacement) {
+        if (b->prescribed == RG_PRESCRIBED_DISPLACEMENT) {
             double next = told(w, b, e, n, w->time + w->dt_next);
             target[n] = (next - h->place[n]) / w->dt_next;
             h->place[n] = next;
