@@ -35,14 +35,13 @@ enum {
     RG_FIELDS_COMMON = 63 | RG_FIELD_FRAGMENT, /* what every run puts out by default */
 };
 
-/* The registry of prescribed motions, of which an entry of `boundary` is one: X(NAME, key, unit, others).
- * What each does to the nodes: solver/constraint.c. */
-#define RG_PRESCRIBED(X)                                                                                     \
-    X(VELOCITY, "velocity", "m/s", "displacement")                                                           \
-    X(DISPLACEMENT, "displacement", "m", "velocity")
+/* The registry of prescribed motions, of which an entry of `boundary` is one: X(NAME, key, unit), with `join`
+ * between them. What each does to the nodes: solver/constraint.c. */
+#define RG_PRESCRIBED(X, join) X(VELOCITY, "velocity", "m/s") join X(DISPLACEMENT, "displacement", "m")
 
-#define RG_PRESCRIBED_ENUM(NAME, key, unit, others) RG_PRESCRIBED_##NAME,
-typedef enum { RG_PRESCRIBED(RG_PRESCRIBED_ENUM) RG_PRESCRIBED_KINDS } rg_prescribed;
+#define RG_PRESCRIBED_ENUM(NAME, key, unit) RG_PRESCRIBED_##NAME,
+#define RG_PRESCRIBED_KEY(NAME, key, unit)  key
+typedef enum { RG_PRESCRIBED(RG_PRESCRIBED_ENUM, ) RG_PRESCRIBED_KINDS } rg_prescribed;
 
 typedef struct {
     char *set;     /* named set of faces */

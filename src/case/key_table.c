@@ -267,8 +267,8 @@ static const rg_key other_material_keys[] = {
 #include "case/material_keys.h"
 };
 
-#define PRESCRIBED(NAME, key, unit_, others)                                                                 \
-    {.name = (key), .unit = (unit_), .type = RG_KEY_EXPR, ELSE(others), ONE_OF, .group = RG_GROUP_PRESCRIBED,  \
+#define PRESCRIBED(NAME, key, unit_)                                                                 \
+    {.name = (key), .unit = (unit_), .type = RG_KEY_EXPR, ELSE("another motion"), ONE_OF, .group = RG_GROUP_PRESCRIBED,  \
      .prescribed = RG_PRESCRIBED_##NAME, .offset = offsetof(rg_boundary, value), MEANS("prescribed " key)},
 
 static const rg_key boundary_keys[] = {
@@ -276,7 +276,7 @@ static const rg_key boundary_keys[] = {
      MEANS("a side of the box, or a surface set of the mesh file")},
     {.name = "component", CHOICE(components), REQUIRED, .offset = offsetof(rg_boundary, component),
      MEANS("of the motion that is prescribed")},
-    RG_PRESCRIBED(PRESCRIBED)
+    RG_PRESCRIBED(PRESCRIBED, )
 };
 
 #define BODY(member) .offset = offsetof(rg_body_input, member)

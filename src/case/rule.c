@@ -217,17 +217,8 @@ void rg_mass_rule(rg_check *ck, const rg_node *node) {
 /* ---- boundary: one prescribed motion per entry, one entry per set and component ---- */
 
 static bool one_motion(rg_check *ck, const rg_node *item, const char *path, rg_boundary *b) {
-    char allowed[100] = "", missing[100] = "";
     const char *first = NULL;
-    for (int k = 0; k < rg_boundary_table.keys; k++) {
-        const rg_key *key = &rg_boundary_table.key[k];
-        if (key->group != RG_GROUP_PRESCRIBED) {
-            continue;
-        }
-        rg_text_add(allowed, sizeof allowed, "%s%s", allowed[0] == 0 ? "exactly one of " : ", ", key->name);
-        rg_text_add(missing, sizeof missing, "%s%s", missing[0] == 0 ? "missing " : " or ", key->name);
-    }
-    rg_subject subject = {.key = path, .allowed = allowed};
+    rg_subject subject = {.key = path, .allowed = "exactly one of " RG_PRESCRIBED(RG_PRESCRIBED_KEY, ", ")};
     for (int k = 0; k < rg_boundary_table.keys; k++) {
         const rg_key *key = &rg_boundary_table.key[k];
         const rg_node *given = rg_node_find(item, key->name, strlen(key->name));
@@ -242,7 +233,7 @@ static bool one_motion(rg_check *ck, const rg_node *item, const char *path, rg_b
         b->prescribed = key->prescribed;
     }
     if (first == NULL) {
-        rg_problem_add(ck->problems, item->at, &subject, "%s", missing);
+        rg_problem_add(ck->problems, item->at, &subject, "missing " RG_PRESCRIBED(RG_PRESCRIBED_KEY, " or "));
     }
     return first != NULL;
 }

@@ -249,8 +249,8 @@ bool rg_constraints_told(const rg_constraints *k, char *words, size_t size, MPI_
     }
     bool found = rg_first_bad_lowest(&bad, comm);
     if (found) {
-#define KEY(NAME, key, unit, others) key,
-        static const char *const key[] = {RG_PRESCRIBED(KEY)};
+#define KEY(NAME, key, unit) key,
+        static const char *const key[] = {RG_PRESCRIBED(KEY, )};
 #undef KEY
         const rg_boundary *b = &k->input->boundary[bad.which];
         snprintf(words, size, "boundary[%d].%s: %s is not finite at (%g, %g, %g), t = %g s", (int)bad.which,

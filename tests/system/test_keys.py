@@ -89,7 +89,7 @@ def test_values_as_an_editor_sees_them():
         "maximum": 1}
     assert values("material", "density")["description"] == "reference density (kg/m3); required"
     assert values("initial", "velocity", "z") == {"description": "along z (m/s); default: 0", "type": ["number", "string"]}
-    assert values("boundary", "[]", "velocity")["description"] == "prescribed velocity (m/s); this or displacement"
+    assert values("boundary", "[]", "velocity")["description"] == "prescribed velocity (m/s); this or another motion"
     assert values("boundary", "[]", "set")["anyOf"] == [{"enum": ["x-", "x+", "y-", "y+", "z-", "z+"]}, {"type": "string"}]
     assert values("bodies", "[]", "faces")["minItems"] == 1 and values("bodies", "[]", "faces")["type"] == "array"
     assert values("output", "times")["minItems"] == 1 and values("output", "fields")["uniqueItems"] is True

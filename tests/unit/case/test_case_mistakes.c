@@ -7,8 +7,8 @@
 #define YOUNG    "allowed: number > 0 (Pa)\n"
 #define SETS     "allowed: x-, x+, y-, y+, z-, z+"
 #define MOTION   "allowed: number or expression in x, y, z, t (m/s)\n"
-#define ONE_OF   "allowed: exactly one of velocity, displacement\n"
-#define ENTRIES  "allowed: list of {set, component, velocity or displacement}\n"
+#define ONE_OF   ONE_MOTION
+#define ENTRIES  "allowed: " BOUNDARY_LIST "\n"
 #define INTERVAL "allowed: integer >= 1 (steps), or number > 0 and < 1 (simulated seconds)\n"
 #define FIELDS                                                                                               \
     "allowed: list from displacement, velocity, stress, mean_stress, principal_stress, crack, "              \
@@ -41,7 +41,7 @@ static const mistake mistakes[] = {
     {"mesh:\n", "cells: [1, 1, 1]\nmesh:\n", ":1:1: cells: unknown key; did you mean 'mesh.cells'?\n"},
     {"mesh:\n", "fracture: true\nmesh:\n", ":1:1: fracture: unknown key; " BLOCKS "\n"},
     {"velocity: 6.086", "velocity: 6.086, unit: 1",
-     ":14:46: boundary[0].unit: unknown key; allowed: set, component, velocity, displacement\n"},
+     ":14:46: boundary[0].unit: unknown key; allowed: set, component, " MOTIONS(", ") "\n"},
     {"mesh:\n", "mesh.jitter: 0.1\nmesh:\n",
      ":1:1: mesh.jitter: unknown key: the parts of a dotted key stand on lines of their own\n"},
     {"  density: 3690\n", "  density: 3690\n  density: 3691\n",
@@ -260,7 +260,7 @@ static const mistake mistakes[] = {
     {"set: z+", "set: top", ":14:11: boundary[0].set: top: not one of the allowed words; " SETS "\n"},
     {"component: z", "component: w",
      ":14:26: boundary[0].component: w: not one of the allowed words; allowed: x, y, z\n"},
-    {", velocity: 6.086", "", ":14:5: boundary[0]: missing velocity or displacement; " ONE_OF},
+    {", velocity: 6.086", "", ":14:5: boundary[0]: missing " MOTIONS(" or ") "; " ONE_OF},
     {"velocity: 6.086", "velocity: 6.086, displacement: 1",
      ":14:46: boundary[0]: velocity and displacement both given; " ONE_OF},
     {"time:\n", "  - {set: z+, component: z, displacement: 0}\ntime:\n",

@@ -289,8 +289,7 @@ static const mistake boundary[] = {
      ":19:26: boundary[5].component: q: not one of the allowed words; allowed: x, y, z\n"
      ":20:26: boundary[6].component: q: not one of the allowed words; allowed: x, y, z\n"
      ":21:5: boundary[7].set: missing; allowed: x-, x+, y-, y+, z-, z+\n"
-     ":22:42: boundary[8]: velocity and displacement both given; allowed: exactly one of velocity, "
-     "displacement\n"
+     ":22:42: boundary[8]: velocity and displacement both given; " ONE_MOTION
      ":23:11: boundary[9].set: {a: 1}: not one of the allowed words; allowed: x-, x+, y-, y+, z-, z+\n"
      ":23:30: boundary[9].component: [z]: not one of the allowed words; allowed: x, y, z\n"
      ":23:45: boundary[9].velocity: nx: depends on a normal, which only faces have; allowed: number or "

@@ -116,7 +116,7 @@ static void test_rows(void **state) {
          "    the yield stress goes with the plastic strain to this power\n",
          2},
         {"boundary[].v",
-         "boundary[].velocity\n    number or expression in x, y, z, t (m/s); this or displacement\n    "
+         "boundary[].velocity\n    number or expression in x, y, z, t (m/s); this or another motion\n    "
          "prescribed velocity\n",
          1},
         {"time.end", "time.end\n    number > 0 (s); required\n    end of the run; may change on a restart\n",

@@ -18,6 +18,11 @@
 #include "case/case.h"
 #include "case/read.h"
 #include "case/tree.h"
+
+/* What is allowed of the motions of a boundary. */
+#define MOTIONS(join) RG_PRESCRIBED(RG_PRESCRIBED_KEY, join)
+#define ONE_MOTION    "allowed: exactly one of " MOTIONS(", ") "\n"
+#define BOUNDARY_LIST "list of {set, component, " MOTIONS(" or ") "}"
 #include "cohesive/facts.h"
 
 /* The smallest case; the tests of mistakes change one place of it and know its lines and columns. */
