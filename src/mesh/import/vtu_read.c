@@ -119,6 +119,7 @@ static int digit_of(char c) {
 static bool refill(stream *s) {
     uint32_t bits = 0;
     int digits = 0, padding = 0;
+    s->have = s->used = 0; /* whatever comes */
     while (digits + padding < 4 && s->at < s->end) {
         char c = *s->at++;
         int digit = digit_of(c);
@@ -135,9 +136,9 @@ static bool refill(stream *s) {
     for (int i = 0; i < 3; i++) {
         s->group[i] = (unsigned char)(bits >> (16 - 8 * i));
     }
-    s->have = digits - 1;
-    s->used = 0;
-    return digits + padding == 4;
+    bool whole = digits + padding == 4;
+    s->have = whole ? digits - 1 : 0;
+    return whole;
 }
 
 static bool take_bytes(stream *s, unsigned char *out, size_t count) {

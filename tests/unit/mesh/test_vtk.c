@@ -342,6 +342,9 @@ static void test_binary(void **state) {
 static void test_xml(void **state) {
     (void)state;
     expect_xml(VTU("") PIECE XML_POINTS XML_CELLS XML_END, RG_OK, BARE);
+    expect_xml(VTU("") PIECE XML_POINTS
+               "<Cells>" ARRAY("Int32", "faces", "") "1 2</DataArray></Cells>" XML_CELLS XML_END,
+               RG_OK, BARE);
     expect_xml(VTU("") PIECE "<CellData Scalars='r'>" ARRAY("Int32", "r", "") "3 7 -4</DataArray>" ARRAY(
                    "Float64", "v",
                    "NumberOfComponents='3'") "1 2 3 4 5 6 7 8 9</DataArray></CellData>"
@@ -359,6 +362,9 @@ static void test_xml(void **state) {
         {VTU(" compressor='vtkLZ4DataCompressor'"),
          "vtkLZ4DataCompressor: only vtkZLibDataCompressor can be read"},
         {VTU("") PIECE XML_POINTS XML_END, "points, connectivity, offsets or types of cells are not there"},
+        {VTU("") PIECE XML_POINTS "<Cells>" ARRAY("Int32", "offsets", "") "4 7 11</DataArray>" ARRAY(
+             "UInt8", "types", "") "10 5 10</DataArray></Cells>" XML_END,
+         "points, connectivity, offsets or types of cells are not there"},
         {VTU("") PIECE XML_CELLS XML_END, "points, connectivity, offsets or types of cells are not there"},
         {VTU("") PIECE XML_POINTS XML_CELLS PIECE, "a second Piece: only one can be read"},
         {VTU("") PIECE XML_POINTS XML_POINTS, "Points: it comes twice"},
@@ -384,6 +390,9 @@ static void test_xml(void **state) {
         {VTU("") PIECE
          "<Points>" ARRAY("Float64", "x", "format='appended' offset='999'") "<AppendedData>_1</AppendedData>",
          "Points: its appended data are not there"},
+        {VTU(" compressor='vtkZLibDataCompressor'") PIECE
+         "<Points>" ARRAY("Float64", "x", "format='binary'") "EAAAAA",
+         "Points: its data are damaged"},
         {VTU("") PIECE "<Points>" ARRAY("Float64", "x", "format='binary'") "AA=A",
          "Points: its data are damaged"},
         {VTU("") PIECE "<Points>" ARRAY("Float64", "x", "format='binary'") "CAAAAAAA",
