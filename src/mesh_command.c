@@ -26,7 +26,8 @@ static const char usage[] =
     "usage: rhegma mesh IN -o OUT.h5 [--scale S] [--improve]   a mesh file from Abaqus (.inp), VTK (.vtk\n"
     "                                               .vtu), or from what Gmsh reads or meshes (.msh .bdf\n"
     "                                               .unv .geo .step ...); S: m per unit of IN; --improve\n"
-    "                                               makes flat elements less flat\n"
+    "                                               makes flat elements less flat; --split cuts hexahedra,\n"
+    "                                               wedges and pyramids of Abaqus into tetrahedra\n"
     "       rhegma mesh CASE.yaml -o OUT.h5 [--set a.b=value]   a mesh file from the mesh of a case\n"
     "       rhegma mesh --info MESH.h5 [--case CASE.yaml]   what a mesh file holds; its time steps with the\n"
     "                                               fastest material of a case, else for waves of 1 m/s\n"
@@ -72,6 +73,11 @@ static bool same_file(const char *a, const char *b) {
            of_a.st_ino == of_b.st_ino;
 }
 
+static bool ends_with(const char *text, const char *end) {
+    size_t n = strlen(text), m = strlen(end);
+    return n >= m && strcmp(text + n - m, end) == 0;
+}
+
 static void check_together(const rg_mesh_arguments *a) {
     if (a->input == NULL) {
         complain("nothing to read", "");
@@ -89,6 +95,9 @@ static void check_together(const rg_mesh_arguments *a) {
     if (a->output != NULL && same_file(a->input, a->output)) {
         complain("it would take the place of what it is made from: -o", a->output);
     }
+    if (a->split && !ends_with(a->input, ".inp")) {
+        complain("--split is for Abaqus input; not understood with", a->input);
+    }
     if (a->improve && (a->info || a->partition != NULL)) {
         complain("--improve is for a mesh on its way in; not understood with it",
                  a->info ? "--info" : "--partition");
@@ -105,6 +114,8 @@ rg_mesh_arguments rg_mesh_arguments_read(int argc, char **argv, int first) {
             a.info = true;
         } else if (strcmp(argv[i], "--improve") == 0) {
             a.improve = true;
+        } else if (strcmp(argv[i], "--split") == 0) {
+            a.split = true;
         } else if (argv[i][0] == '-') {
             read_option(&a, argv[i], i + 1 < argc ? argv[i + 1] : NULL);
             i++;
@@ -185,11 +196,6 @@ void rg_mesh_finish(rg_mesh *mesh, const rg_mesh_arguments *a) {
     printf(", %d surface sets, %d volume sets\n", mesh->surface.count, mesh->volume.count);
 }
 
-static bool ends_with(const char *text, const char *end) {
-    size_t n = strlen(text), m = strlen(end);
-    return n >= m && strcmp(text + n - m, end) == 0;
-}
-
 static int from_case(const rg_mesh_arguments *a) {
     if (a->improve) {
         complain("--improve is for imports; not understood with a case", a->input);
@@ -211,7 +217,7 @@ static int from_case(const rg_mesh_arguments *a) {
 static int from_text(const rg_mesh_arguments *a) {
     rg_mesh *mesh = ends_with(a->input, ".vtk")   ? rg_vtk_read(a->input, a->scale)
                     : ends_with(a->input, ".vtu") ? rg_vtu_read(a->input, a->scale)
-                                                  : rg_inp_read(a->input, a->scale, stdout);
+                                                  : rg_inp_read(a->input, a->scale, a->split, stdout);
     rg_mesh_finish(mesh, a);
     rg_mesh_free(mesh);
     return RG_OK;

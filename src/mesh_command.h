@@ -11,6 +11,7 @@ typedef struct {
     const char *material; /* --case: a case file with the material for --info */
     double scale;         /* m per unit of the input */
     bool info;
+    bool split;            /* --split */
     bool improve;          /* --improve */
     const char *partition; /* --partition: numbers of ranks, separated by commas */
     int overrides;

@@ -11,7 +11,8 @@ ROOMS = {
                 deshpande_evans_kernel cost_model material step test_invariance.py test_contact.py test_friction.py test_viscosity.py
                 test_laws.py test_ceramic.py test_solids.py test_ledger.py test_spall.py"""),
     "mesh/import": (["src/mesh/import/*"],
-                    """frame gmsh_errors inp inp_nodes inp_sets import vtk sets mesh mesh_file mesh_command fuzz-inp fuzz-vtk test_abaqus.py
+                    """frame gmsh_errors inp inp_nodes inp_sets inp_split import vtk sets mesh mesh_file mesh_command
+                    fuzz-inp fuzz-vtk test_abaqus.py
                     test_gmsh.py test_mesh_faults.py test_meshes.py"""),
     "mesh/improve": (["src/mesh/improve/*"], "improve test_meshes.py"),
     "mesh": (["src/mesh/*"],

@@ -95,6 +95,8 @@ static void test_mistakes(void **state) {
         {{"a.h5", "-o", "b.h5"}, "a mesh file already, which --info shows: a.h5"},
         {{"box.yaml", "-o", "b.h5", "--improve"},
          "--improve is for imports; not understood with a case: box.yaml"},
+        {{"a.vtk", "-o", "b.h5", "--split"}, "--split is for Abaqus input; not understood with: a.vtk"},
+        {{"box.yaml", "-o", "b.h5", "--split"}, "--split is for Abaqus input; not understood with: box.yaml"},
         {{"box.yaml", "-o", "link.h5"}, "it would take the place of what it is made from: -o: link.h5"},
     };
     assert_int_equal(link("box.yaml", "link.h5"), 0);
@@ -254,8 +256,9 @@ static void test_other_formats(void **state) {
         words = WORDS(names[k], "-o", "b.h5");
         assert_int_equal(run_child(run_command, said, sizeof said), RG_USAGE);
         assert_true(strncmp(said, "rhegma: mesh: /", 15) == 0);
-        assert_non_null(
-            strstr(said, "/tests/rhegma-mesh: No such file or directory; it reads all but .yaml, .inp, .vtk and .vtu"));
+        assert_non_null(strstr(
+            said,
+            "/tests/rhegma-mesh: No such file or directory; it reads all but .yaml, .inp, .vtk and .vtu"));
     }
 }
 

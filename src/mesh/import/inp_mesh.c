@@ -7,14 +7,12 @@
 #include "base/error.h"
 #include "base/mem.h"
 #include "mesh/import/import.h"
-
-/* S1 to S4. */
-static const int face_corner[4][3] = {{0, 1, 2}, {0, 3, 1}, {1, 3, 2}, {2, 3, 0}};
+#include "mesh/import/inp_split.h"
 
 typedef struct {
     rg_inp_model *model;
     rg_import import;
-    rg_gid *element; /* [elements of the model]: that of the import, -1 for none */
+    rg_gid *element; /* [elements of the model + 1]: those of the import begin here, and end with the next */
     int64_t missing; /* members of sets that are not there */
     rg_gid first_missing;
     const char *in;
@@ -29,24 +27,42 @@ static void take_nodes(building *b) {
     }
 }
 
+static void take_tetrahedron(building *b, size_t e) {
+    const rg_inp_model *m = b->model;
+    const uint32_t *from = m->node + m->start[e];
+    size_t node[10];
+    for (int k = 0; k < m->kind[e]; k++) {
+        node[k] = from[k];
+    }
+    if (m->kind[e] == 10) { /* the last two middles stand the other way round */
+        node[8] = from[9];
+        node[9] = from[8];
+    }
+    rg_import_element(&b->import, m->elements.number[e], m->kind[e], node);
+}
+
+static void take_split(building *b, size_t e) {
+    const rg_inp_model *m = b->model;
+    uint32_t tet[RG_INP_TETS][4];
+    int count = rg_inp_split(m->kind[e], m->node + m->start[e], tet);
+    for (int t = 0; t < count; t++) {
+        const size_t node[4] = {tet[t][0], tet[t][1], tet[t][2], tet[t][3]};
+        rg_import_element(&b->import, m->elements.number[e], 4, node);
+    }
+}
+
 static void take_elements(building *b) {
     const rg_inp_model *m = b->model;
     b->element = RG_NEW(rg_gid, m->elements.count + 1);
     for (size_t e = 0; e < m->elements.count; e++) {
-        const uint32_t *from = m->node + m->start[e];
-        size_t node[10];
-        for (int k = 0; k < m->kind[e]; k++) {
-            node[k] = from[k];
-        }
-        if (m->kind[e] == 10) { /* the last two middles stand the other way round */
-            node[8] = from[9];
-            node[9] = from[8];
-        }
-        b->element[e] = m->kind[e] > 3 ? b->import.elements : -1;
-        if (m->kind[e] > 3) {
-            rg_import_element(&b->import, m->elements.number[e], m->kind[e], node);
+        b->element[e] = b->import.elements;
+        if (m->kind[e] == 4 || m->kind[e] == 10) {
+            take_tetrahedron(b, e);
+        } else if (m->kind[e] > 3) {
+            take_split(b, e);
         }
     }
+    b->element[m->elements.count] = b->import.elements;
 }
 
 /* ---- sets ---- */
@@ -105,15 +121,12 @@ static void name_element_sets(building *b) {
     }
 }
 
-static void add_face(building *b, size_t element, const int corner[3], int32_t set) {
-    const uint32_t *node = b->model->node + b->model->start[element];
-    rg_import_add_face(&b->import, (rg_import_face){{node[corner[0]], node[corner[1]], node[corner[2]]},
-                                                    b->model->elements.number[element],
-                                                    set});
+static void add_face(building *b, size_t element, const uint32_t node[3], int32_t set) {
+    rg_import_add_face(
+        &b->import, (rg_import_face){{node[0], node[1], node[2]}, b->model->elements.number[element], set});
 }
 
 static void fill_element_sets(building *b) {
-    static const int all[3] = {0, 1, 2};
     char name[RG_SET_NAME];
     for (size_t i = 0; i < b->model->sets; i++) {
         const rg_inp_set *s = &b->model->set[i];
@@ -127,9 +140,11 @@ static void fill_element_sets(building *b) {
         for (size_t k = 0; k < found.count; k++) {
             size_t e = found.row[k];
             if (b->model->kind[e] > 3) {
-                rg_import_put(&b->import, b->element[e], volume);
+                for (rg_gid tet = b->element[e]; tet < b->element[e + 1]; tet++) {
+                    rg_import_put(&b->import, tet, volume);
+                }
             } else if (b->model->kind[e] == 3) {
-                add_face(b, e, all, surface);
+                add_face(b, e, b->model->node + b->model->start[e], surface);
             }
         }
         rg_free(found.row);
@@ -139,23 +154,28 @@ static void fill_element_sets(building *b) {
 /* ---- surfaces ---- */
 
 static void take_face(building *b, const rg_inp_surface *s, const rg_inp_patch *p, int32_t set, size_t e) {
-    static const int all[3] = {0, 1, 2};
-    int kind = b->model->kind[e];
+    int kind = b->model->kind[e], count = 0;
+    const uint32_t *node = b->model->node + b->model->start[e];
+    uint32_t triangle[2][3];
     if (kind == 0) {
         return; /* of an element that is left out, and said to be */
     }
-    if (p->face == RG_INP_FREE) {
-        if (kind > 3) {
-            rg_import_put_skin(&b->import, b->element[e], set);
-        }
-    } else if ((p->face == RG_INP_SIDE) != (kind == 3)) {
+    if (kind == 3 && (p->face == RG_INP_FREE || p->face == RG_INP_SIDE)) {
+        add_face(b, e, node, set);
+        return;
+    }
+    for (rg_gid tet = b->element[e]; p->face == RG_INP_FREE && tet < b->element[e + 1]; tet++) {
+        rg_import_put_skin(&b->import, tet, set);
+    }
+    if (kind > 3 && p->face >= 0 && p->face < RG_INP_FACES) {
+        count = rg_inp_face(kind, p->face, node, triangle);
+    }
+    for (int t = 0; t < count; t++) {
+        add_face(b, e, triangle[t], set);
+    }
+    if (count == 0 && p->face != RG_INP_FREE) {
         rg_inp_refuse(p->of.at, "*SURFACE, NAME=%s: element %" PRId64 " has no such face", s->name,
                       b->model->elements.number[e]);
-    }
-    if (kind == 3) {
-        add_face(b, e, all, set);
-    } else if (p->face >= 0) {
-        add_face(b, e, face_corner[p->face], set);
     }
 }
 

@@ -50,11 +50,11 @@ typedef struct {
 } rg_inp_set;
 
 /* Faces of a surface. */
-enum { RG_INP_FREE = -1, RG_INP_SIDE = 4 }; /* those that no other element has; the triangle itself */
+enum { RG_INP_FREE = -1, RG_INP_SIDE = 6 }; /* those that no other element has; the triangle itself */
 
 typedef struct {
     rg_inp_entry of; /* elements, or of a surface of nodes: nodes */
-    int face;        /* 0 to 3: S1 to S4; or one of the above */
+    int face;        /* 0 to 5: S1 to S6; or one of the above */
 } rg_inp_patch;
 
 typedef struct {
@@ -80,7 +80,8 @@ typedef struct {
     double *x; /* [nodes][3], in units of the input */
     size_t x_room;
     rg_inp_rows elements;
-    int8_t *kind;  /* [elements] nodes: 4, 10: a tetrahedron; 3: a triangle; 0: left out */
+    int8_t
+        *kind; /* [elements] nodes: 4, 10: a tetrahedron; 3: a triangle; 5, 6, 8: to be split; 0: left out */
     size_t *start; /* [elements] where its nodes begin in: */
     uint32_t *node;
     size_t kind_room, start_room, node_room, node_count;

@@ -43,7 +43,7 @@ typedef struct {
     char nodes_system; /* of *NODE, SYSTEM=: R, C, S */
 
     rg_inp_type type;
-    rg_gid element[11]; /* its number and nodes */
+    rg_gid element[21]; /* its number and nodes */
     int have;
     bool goes_on;           /* the element of another type, in the next line */
     size_t tally;           /* of the type that is left out */
@@ -53,6 +53,7 @@ typedef struct {
     bool generate;
     size_t surface;
 
+    bool split; /* other solids too are read, to be split */
     rg_inp_report report;
 } reader;
 
@@ -137,7 +138,8 @@ static void begin_elements(reader *r) {
     r->have = 0;
     r->goes_on = false;
     r->set = set_to_fill(r, RG_INP_ELEMENTS, "ELSET");
-    bool of_mesh = r->type.shape == RG_INP_TETRAHEDRON || r->type.shape == RG_INP_TRIANGLE;
+    r->type.nodes = r->type.shape == RG_INP_SOLID && !r->split ? 0 : r->type.nodes;
+    bool of_mesh = r->type.nodes > 0;
     if (of_mesh && is_outside(r, r->scope)) {
         rg_inp_refuse(r->lines->at, "*ELEMENT, TYPE=%s in the assembly, outside of its instances", type);
     }
@@ -340,7 +342,9 @@ static void read_element(reader *r) {
         rg_gid number = rg_inp_number(r->lines, field);
         r->element[r->have] = shifted(r, r->have == 0 ? RG_INP_ELEMENTS : RG_INP_NODES, number);
         if (++r->have == r->type.nodes + 1) {
-            end_element(r, r->type.shape == RG_INP_TRIANGLE ? 3 : r->type.nodes);
+            end_element(r, r->type.shape == RG_INP_TRIANGLE ? 3
+                           : r->type.shape == RG_INP_SOLID  ? r->type.corners
+                                                            : r->type.nodes);
         }
     }
 }
@@ -384,15 +388,16 @@ static void read_set(reader *r, rg_inp_of of) {
 }
 
 static void read_surface(reader *r) {
-    static const char *const labels[] = {"S1", "S2", "S3", "S4", "SPOS", "SNEG", ""};
-    static const int faces[] = {0, 1, 2, 3, RG_INP_SIDE, RG_INP_SIDE, RG_INP_FREE};
+    static const char *const labels[] = {"S1", "S2", "S3", "S4", "S5", "S6", "SPOS", "SNEG", ""};
+    static const int faces[] = {0, 1, 2, 3, 4, 5, RG_INP_SIDE, RG_INP_SIDE, RG_INP_FREE};
+    enum { NONE = 8 };
     rg_inp_surface *s = &r->here->surface[r->surface];
     const char *of = rg_inp_field(r->lines), *label = rg_inp_field(r->lines);
-    int i = label == NULL || s->of == RG_INP_NODES ? 6 : 0;
-    for (; i < 6 && strcasecmp(label, labels[i]) != 0; i++) {
+    int i = label == NULL || s->of == RG_INP_NODES ? NONE : 0;
+    for (; i < NONE && strcasecmp(label, labels[i]) != 0; i++) {
     }
-    if (of[0] == '\0' || (i == 6 && label != NULL && label[0] != '\0' && s->of == RG_INP_ELEMENTS)) {
-        rg_inp_refuse(r->lines->at, "*SURFACE: 'element or set, S1 to S4' is expected");
+    if (of[0] == '\0' || (i == NONE && label != NULL && label[0] != '\0' && s->of == RG_INP_ELEMENTS)) {
+        rg_inp_refuse(r->lines->at, "*SURFACE: 'element or set, S1 to S6' is expected");
     }
     rg_inp_add_patch(s, (rg_inp_patch){read_entry(r, s->of, of), faces[i]});
 }
@@ -560,8 +565,9 @@ static rg_inp_model *choose_model(reader *r) {
     return r->whole;
 }
 
-rg_mesh *rg_inp_read(const char *path, double scale, FILE *out) {
-    reader r = {.lines = rg_inp_open(path), .whole = rg_inp_model_make(), .section = RG_INP_UNKNOWN};
+rg_mesh *rg_inp_read(const char *path, double scale, bool split, FILE *out) {
+    reader r = {
+        .lines = rg_inp_open(path), .whole = rg_inp_model_make(), .section = RG_INP_UNKNOWN, .split = split};
     leave_part(&r);
     read_lines(&r);
     rg_inp_report_judge(&r.report, path);

@@ -53,7 +53,7 @@ void rg_inp_report_judge(const rg_inp_report *r, const char *path) {
             rg_inp_refuse(
                 r->type[i].at,
                 "*ELEMENT, TYPE=%s: only tetrahedra are possible (C3D4, C3D10 and their kin), but there "
-                "are other solids: %s",
+                "are other solids: %s; --split cuts hexahedra, wedges and pyramids",
                 r->type[i].name, list_types(r, true, list, sizeof list));
         }
     }

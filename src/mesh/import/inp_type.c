@@ -19,6 +19,14 @@ static const char *const solid[] = {"C3D",  "DC3D",  "AC3D",  "FC3D", "EMC3D", "
 enum { WITH_TETRAHEDRA = 6 }; /* so many of these, the first */
 
 static const struct {
+    const char *nodes;
+    rg_inp_type type;
+} of_corners[] = {{"4", {RG_INP_TETRAHEDRON, 4, 0}}, {"10", {RG_INP_TETRAHEDRON, 10, 0}},
+                  {"8", {RG_INP_SOLID, 8, 8}},       {"20", {RG_INP_SOLID, 20, 8}},
+                  {"6", {RG_INP_SOLID, 6, 6}},       {"15", {RG_INP_SOLID, 15, 6}},
+                  {"5", {RG_INP_SOLID, 5, 5}},       {"13", {RG_INP_SOLID, 13, 5}}};
+
+static const struct {
     const char *begin;
     int nodes;
 } triangle[] = {{"S3", 3},   {"STRI3", 3}, {"STRI65", 6}, {"S6", 6},     {"CPS3", 3},
@@ -29,7 +37,7 @@ static const struct {
 rg_inp_type rg_inp_type_of(const char *name) {
     for (size_t i = 0; i < sizeof triangle / sizeof *triangle; i++) {
         if (is(name, triangle[i].begin)) {
-            return (rg_inp_type){RG_INP_TRIANGLE, triangle[i].nodes};
+            return (rg_inp_type){RG_INP_TRIANGLE, triangle[i].nodes, 0};
         }
     }
     for (size_t i = 0; i < sizeof solid / sizeof *solid; i++) {
@@ -37,9 +45,14 @@ rg_inp_type rg_inp_type_of(const char *name) {
         if (strncasecmp(name, solid[i], length) != 0) {
             continue;
         }
-        bool linear = is(name + length, "4"), tetrahedron = linear || is(name + length, "10");
-        return i < WITH_TETRAHEDRA && tetrahedron ? (rg_inp_type){RG_INP_TETRAHEDRON, linear ? 4 : 10}
-                                                  : (rg_inp_type){RG_INP_SOLID, 0};
+        for (size_t k = 0; k < sizeof of_corners / sizeof *of_corners; k++) {
+            size_t digits = strlen(of_corners[k].nodes);
+            bool variable = strncasecmp(name + length + digits, "V", 1) == 0; /* C3D15V: in its nodes */
+            if (i < WITH_TETRAHEDRA && !variable && is(name + length, of_corners[k].nodes)) {
+                return of_corners[k].type;
+            }
+        }
+        return (rg_inp_type){RG_INP_SOLID, 0, 0};
     }
-    return (rg_inp_type){RG_INP_OTHER, 0};
+    return (rg_inp_type){RG_INP_OTHER, 0, 0};
 }

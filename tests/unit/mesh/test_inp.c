@@ -111,6 +111,7 @@ static void test_line_mistakes(void **state) {
         {"*NODE\n10, 1, 2, 3x\n", ":2: '3x' is not a coordinate"},
         {"*NODE\n10, y, 2, 3\n", ":2: 'y' is not a coordinate"},
         {"*NODE\n10, 1e999, 2, 3\n", ":2: '1e999' is not a coordinate"},
+        {"*NODE\n10, 1-2, 2, 3\n", ":2: '1-2' is not a coordinate"},
         {"*NODE\n10, nan, 2, 3\n", ":2: 'nan' is not a coordinate"},
         {"*NODE\n10, 0x1, 2, 3\n", ":2: '0x1' is not a coordinate"},
         {"*NODE\n10, -, 2, 3\n", ":2: '-' is not a coordinate"},
@@ -154,8 +155,8 @@ static void test_line_mistakes(void **state) {
         {"*ELSET, ELSET=a, GENERATE\n5, 1\n", ":2: GENERATE from 5 to 1, which is less"},
         {"*SURFACE, TYPE=ELEMENT\n", ":1: *SURFACE without NAME"},
         {"*SURFACE, NAME=s, COMBINE=UNION\n", ":1: *SURFACE has no parameter 'COMBINE' that is known here"},
-        {"*SURFACE, NAME=s\n1, S5\n", ":2: *SURFACE: 'element or set, S1 to S4' is expected"},
-        {"*SURFACE, NAME=s\n, S1\n", ":2: *SURFACE: 'element or set, S1 to S4' is expected"},
+        {"*SURFACE, NAME=s\n1, S7\n", ":2: *SURFACE: 'element or set, S1 to S6' is expected"},
+        {"*SURFACE, NAME=s\n, S1\n", ":2: *SURFACE: 'element or set, S1 to S6' is expected"},
         {"*PART, NAME=a\n*PART, NAME=A\n", ":2: *PART, NAME=A is there already, in line 1"},
         {"*PART, NAME=a\n1\n", ":2: *PART has no data lines"},
         {"*INSTANCE, NAME=i, PART=a\n", ":1: there is no *PART, NAME=a so far"},
@@ -187,6 +188,7 @@ static void test_line_mistakes(void **state) {
         {NODES SOLIDS ONE "*SURFACE, NAME=s\n2, S1\n", ":10: *SURFACE, NAME=s: there is no element 2"},
         {NODES SOLIDS ONE "*SURFACE, NAME=s, TYPE=NODE\n2\n", ":10: *SURFACE, NAME=s: there is no node 2"},
         {NODES SOLIDS ONE "*SURFACE, NAME=s\n1, SPOS\n", ":10: *SURFACE, NAME=s: element 1 has no such face"},
+        {NODES SOLIDS ONE "*SURFACE, NAME=s\n1, S5\n", ":10: *SURFACE, NAME=s: element 1 has no such face"},
         {NODES SOLIDS ONE "*ELEMENT, TYPE=S3\n2, 10, 20, 30\n*SURFACE, NAME=s\n2, S4\n",
          ":12: *SURFACE, NAME=s: element 2 has no such face"},
     };
@@ -239,7 +241,7 @@ static void test_types(void **state) {
             snprintf(
                 said, sizeof said,
                 ":13: *ELEMENT, TYPE=%s: only tetrahedra are possible (C3D4, C3D10 and their kin), but there "
-                "are other solids: 2 %s",
+                "are other solids: 2 %s; --split cuts hexahedra, wedges and pyramids",
                 known[i].name, known[i].name);
             expect_refused(words, said);
         } else if (known[i].nodes == 4) {
@@ -314,7 +316,7 @@ static void test_report(void **state) {
         "*ELEMENT, TYPE=B31\n7, 1, 2\n*ELEMENT, TYPE=C3D8\n*ELEMENT, TYPE=C3D6\n8, 1, 2, "
         "3, 4, 5, 6\n*ELEMENT, TYPE=C3D20\n9, 1,\n2\n10, 3\n",
         ":13: *ELEMENT, TYPE=C3D6: only tetrahedra are possible (C3D4, C3D10 and their kin), but there are "
-        "other solids: 1 C3D6, 2 C3D20");
+        "other solids: 1 C3D6, 2 C3D20; --split cuts hexahedra, wedges and pyramids");
 }
 
 /* A name of 63 bytes is a name, one of 64 is too long; of sets there may be any number. */
@@ -344,7 +346,7 @@ static void test_limits(void **state) {
     }
     write_input(many);
     FILE *nowhere = fopen("/dev/null", "w");
-    rg_mesh *mesh = rg_inp_read("a.inp", 1, nowhere);
+    rg_mesh *mesh = rg_inp_read("a.inp", 1, false, nowhere);
     fclose(nowhere);
     assert_int_equal(mesh->surface.count, 1000);
     assert_int_equal(mesh->volume.count, 1000);

@@ -41,6 +41,7 @@ static void test_systems(void **state) {
         {"*SYSTEM\n1, 0, 0, 0\n*NODE\n1, 1, 2, 3\n", "0 -2 3"}, /* its axis points to the origin */
         {"*SYSTEM\n10, 20, 30, 10, 27, 30\n*NODE, SYSTEM=C\n1, 2, 90, 3\n", "8 20 33"},
         {"*PART, NAME=p\n*SYSTEM\n10, 20, 30\n*END PART\n*NODE\n1, 1, 2, 3\n", "1 2 3"},
+        {"*SYSTEM\n10, 20, 30\n*PART, NAME=p\n*NODE\n1, 1, 2, 3\n", "1 2 3"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         char words[1000], said[1000];

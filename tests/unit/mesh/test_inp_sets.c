@@ -121,7 +121,7 @@ static void test_surface_sets(void **state) {
                 "*SURFACE, NAME=a\n1, S1\n*SURFACE, NAME=b\n1, S2\n*SURFACE, NAME=b\n2, S2\n"
                 "*SURFACE, NAME=a\n2, S3\n");
     FILE *nowhere = fopen("/dev/null", "w");
-    rg_mesh *mesh = rg_inp_read("a.inp", 1, nowhere);
+    rg_mesh *mesh = rg_inp_read("a.inp", 1, false, nowhere);
     fclose(nowhere);
     assert_int_equal(mesh->surface.count, 2);
     rg_mesh_free(mesh);
@@ -230,6 +230,15 @@ static void test_instances(void **state) {
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         expect_refused(cases[i].words, cases[i].said);
     }
+    /* a message has the number of the file */
+    expect_refused("*PART, NAME=a\n" NODES SOLIDS ONE
+                   "*PART, NAME=b\n*INSTANCE, NAME=i, PART=a\n*INSTANCE, NAME=j, PART=b\n" SOLIDS
+                   "7, 10, 20\n",
+                   ":15: element 7 has 2 of 4 nodes");
+    expect_refused("*PART, NAME=a\n" NODES SOLIDS ONE
+                   "*PART, NAME=b\n*INSTANCE, NAME=i, PART=a\n*INSTANCE, NAME=j, PART=b\n" SOLIDS
+                   "7, 10, 20, 30, 40\n7, 10, 20, 30, 40\n",
+                   ":15: element 7 is defined twice");
 }
 
 int main(void) {

@@ -12,15 +12,16 @@
 #include "support/mesh_text.h"
 
 static double scale;
+static bool split;
 
 static inline void read_and_print(void) {
     FILE *nowhere = fopen("/dev/null", "w");
-    rg_mesh *m = rg_inp_read("a.inp", scale, nowhere);
+    rg_mesh *m = rg_inp_read("a.inp", scale, split, nowhere);
     print_mesh(m, stderr);
 }
 
 static inline void read_and_report(void) {
-    rg_mesh_free(rg_inp_read("a.inp", scale, stderr));
+    rg_mesh_free(rg_inp_read("a.inp", scale, split, stderr));
 }
 
 static inline void write_input(const char *words) {
