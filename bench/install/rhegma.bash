@@ -13,7 +13,7 @@ _rhegma() {
     esac
     case $command in
     run) options+=" --restart --overwrite --walltime" ;;
-    mesh) options="-o --scale --improve --set --info --case --partition --help" ;;
+    mesh) options="-o --scale --split --improve --set --info --case --partition --help" ;;
     keys) options="--markdown --schema --help" ;;
     verify) options="--help" ;;
     esac

@@ -77,6 +77,9 @@ static void test_legacy(void **state) {
     for (size_t i = 0; i < sizeof same / sizeof *same; i++) {
         expect_legacy(same[i], RG_OK, BARE);
     }
+    /* without data a triangle between tetrahedra is a place that stays */
+    expect_legacy(HEAD("4.2") POINTS "CELLS 3 14\n4 0 1 2 3\n3 3 2 1\n4 1 2 3 4\n" TYPES, RG_OK,
+                  BARE "inner 1 2 3\n");
     static const char *const regions[] = {
         GRID "CELL_DATA 3\nSCALARS r int\nLOOKUP_TABLE default\n3 7 -4\n",
         GRID "CELL_DATA 3\nSCALARS r double 1\nLOOKUP_TABLE default\n3.0 7 -4e0\n",
