@@ -164,11 +164,12 @@ static bool take_collection(text *to, const char *document, const char *name, in
     snprintf(head, sizeof head, "<Grid Name=\"%s\" GridType=\"Collection\"", name);
     const char *at = length == 0 ? NULL : strstr(document, head);
     at = at == NULL ? NULL : strchr(at, '\n');
-    if (at == NULL || (int64_t)strlen(at + 1) < length) {
+    if (at == NULL) {
         return length == 0;
     }
     append(to, "%.*s", (int)length, at + 1);
-    return length >= (int64_t)strlen(end) && strcmp(to->bytes + length - strlen(end), end) == 0;
+    return (int64_t)to->length == length && to->length >= strlen(end) &&
+           strcmp(to->bytes + to->length - strlen(end), end) == 0;
 }
 
 bool rg_xdmf_resume(rg_xdmf *x, const char *path, int64_t volume, int64_t crack) {

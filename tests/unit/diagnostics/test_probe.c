@@ -6,6 +6,7 @@
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "base/error.h"
@@ -151,6 +152,11 @@ static const char header[] = "time,a_ux,a_uy,a_uz,a_vx,a_vy,a_vz,a_sxx,a_syy,a_s
                              "ball_vy,ball_vz,ball_fx,ball_fy,ball_fz,wall_x,wall_y,wall_z,wall_vx,wall_vy,"
                              "wall_vz,wall_fx,wall_fy,wall_fz\n";
 
+static int64_t table_size(void) {
+    struct stat s;
+    return stat(in("history.csv"), &s) == 0 ? s.st_size : -1;
+}
+
 /* Whether history.csv has the header, and a line of these values; rank 0. */
 static bool table_good(const double wanted[COLUMNS]) {
     FILE *f = fopen(in("history.csv"), "r");
@@ -212,6 +218,7 @@ static void check_probes(void) {
     MPI_Allreduce(MPI_IN_PLACE, &length, 1, MPI_INT64_T, MPI_MAX, MPI_COMM_WORLD);
     rg_probes_next(p, 7); /* a line that the run which goes on does not have */
     rg_probes_close(p);
+    report(rank != 0 || table_size() > length, "probes", "the end of a run keeps what it has sampled");
     p = rg_probes_find(r.solver);
     rg_probes_reopen(p, r.solver, length);
     for (int k = 1; k < SAMPLES; k++) { /* more than are kept at a time */

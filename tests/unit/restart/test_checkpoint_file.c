@@ -451,25 +451,26 @@ static void flip_byte(const char *path, long at) {
     fclose(f);
 }
 
-/* Of two or three the newest that is whole is taken. */
+/* The newest that is whole is taken; all that are newer are set aside. */
 static bool check_older(run *x) {
-    char path[3][500], dir[400];
+    char path[4][500], dir[400];
     snprintf(dir, sizeof dir, "%s", in("older"));
     point_to(x, dir);
-    for (int k = 0; k < 3; k++) {
+    for (int k = 0; k < 4; k++) {
         draw(x, (uint64_t)(k + 1));
         rg_checkpoint_write(&x->k, 5);
         snprintf(path[k], sizeof path[k], "%s/checkpoints/step-%012d.h5", dir, 101 + k);
     }
     flip_byte(path[2], 5000);
+    flip_byte(path[3], 5000);
     draw(x, 9);
     run *wanted = make_run(dir, 0, NULL, MPI_COMM_SELF);
     draw(wanted, 2);
     bool good =
-        good_of(!load_refused(x) && warnings == 1 && strstr(warned, "step-000000000103.h5: ") != NULL &&
+        good_of(!load_refused(x) && warnings == 2 && strstr(warned, "step-000000000103.h5: ") != NULL &&
                     strstr(warned, "its checksum is wrong: it is damaged") != NULL,
                 "newest damaged");
-    good = same_state(x, wanted) && names_are(dir, "101 102 103! ") && good;
+    good = same_state(x, wanted) && names_are(dir, "101 102 103! 104! ") && good;
     flip_byte(path[1], 100);
     char blocked[600];
     snprintf(blocked, sizeof blocked, "%s.damaged/x", path[1]);
