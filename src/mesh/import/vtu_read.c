@@ -386,7 +386,7 @@ static void read_tag(reader *r, const tag *t) {
         }
         r->grid.points = count_of(r, t, "NumberOfPoints", 0);
         r->grid.cells = count_of(r, t, "NumberOfCells", 0);
-    } else if (has_name(t, "DataArray") && r->pieces > 0) {
+    } else if (has_name(t, "DataArray")) {
         take_array(r, t);
     }
     for (part p = POINTS; p <= CELL_DATA; p++) {

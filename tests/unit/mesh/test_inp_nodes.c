@@ -166,21 +166,38 @@ static void expect_elements(const char *words, int count, const expected_element
 static void test_generated_elements(void **state) {
     (void)state;
     static char words[1 << 16];
-    expected_element e[12];
+    expected_element e[24];
     int count = 0;
-    /* rows of 3, 2 rows, 2 layers */
-    for (int layer = 0; layer < 2; layer++) {
+    /* rows of 3, 2 rows, 4 layers */
+    for (int layer = 0; layer < 4; layer++) {
         for (int row = 0; row < 2; row++) {
             for (int i = 0; i < 3; i++) {
-                int n = 1 + 2 * i + 7 * row + 40 * layer;
+                int n = 1 + 2 * i + 7 * row + 20 * layer;
                 e[count++] = (expected_element){
                     9 + 10 * i + 100 * row + 1000 * layer, {n, n + 1, n + 3, n + 4}, " in g"};
             }
         }
     }
     strcpy(write_nodes(words, 80),
-           SOLIDS "9, 1, 2, 4, 5\n*ELGEN, ELSET=g\n9, 3, 2, 10, 2, 7, 100, 2, 40, 1000\n");
+           SOLIDS "9, 1, 2, 4, 5\n*ELGEN, ELSET=g\n9, 3, 2, 10, 2, 7, 100, 4, 20, 1000\n");
     expect_elements(words, count, e);
+    /* in an instance of its own, whose numbers begin behind those of the first: nodes from 100, elements from
+     * 10 on */
+    strcpy(words, "*PART, NAME=a\n");
+    strcpy(write_nodes(words + strlen(words), 80),
+           SOLIDS "1, 1, 2, 3, 4\n*PART, NAME=b\n*INSTANCE, NAME=i, PART=a\n*INSTANCE, NAME=j, "
+                  "PART=b\n*NODE, NSET=low\n"
+                  "1, 101, 10201, 1030301\n3, 103, 10609, 1092727\n*NODE, NSET=high\n5, 105, 11025, 1157625\n"
+                  "7, 107, 11449, 1225043\n*NGEN\n1, 3\n*NFILL, NSET=n\nlow, high, 2, 10\n*NODE\n2, 102, "
+                  "10404, 1061208\n"
+                  "11, 111, 12321, 1367631\n13, 113, 12769, 1442897\n" SOLIDS
+                  "1, 1, 2, 3, 5\n2, 2, 3, 11, 13\n*ELGEN, ELSET=g\n"
+                  "1, 2, 2, 20\n*NODE\n4, 104, 10816, 1124864\n");
+    const expected_element own[] = {{1, {1, 2, 3, 4}, ""},
+                                    {11, {101, 102, 103, 105}, " in j.g, j.n at 1"},
+                                    {12, {102, 103, 111, 113}, ", j.n at 0"},
+                                    {31, {103, 104, 105, 107}, " in j.g, j.n at 1"}};
+    expect_elements(words, 4, own);
     /* what is left out is 1 */
     e[1] = (expected_element){10, {2, 3, 5, 6}, ""};
     e[0].sets = "";

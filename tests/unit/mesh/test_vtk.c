@@ -83,6 +83,7 @@ static void test_legacy(void **state) {
     static const char *const regions[] = {
         GRID "CELL_DATA 3\nSCALARS r int\nLOOKUP_TABLE default\n3 7 -4\n",
         GRID "CELL_DATA 3\nSCALARS r double 1\nLOOKUP_TABLE default\n3.0 7 -4e0\n",
+        GRID "CELL_DATA 3\nSCALARS\tr\tdouble\t1\n3.0\t7\t-4e0\n",
         GRID
         "CELL_DATA 3\nFIELD d 2\nr 1 3 short\n3 7 -4\nMETADATA\nINFORMATION 0\n\nv 2 3 int\n1 1 2 2 3 3\n",
         GRID "CELL_DATA 3\nSCALARS r int\n3 7 -4\nPOINT_DATA 5\nSCALARS x int\n1 2 3 4 5\n",
@@ -127,6 +128,11 @@ static void test_regions(void **state) {
         assert_int_equal(run_child(read_legacy, found, sizeof found), RG_OK);
         assert_int_equal(strstr(found, "name no sets") != NULL, cells < 22);
         assert_int_equal(strstr(found, "in n.0") != NULL, cells == 22);
+        if (cells == 22) {
+            rg_mesh *m = rg_vtk_read("a.vtk", 1);
+            assert_int_equal(m->volume.count, 11);
+            rg_mesh_free(m);
+        }
     }
     /* few cells may all have regions of their own */
     expect_legacy(GRID "CELL_DATA 3\nSCALARS r int\n3 7 -4\n", RG_OK, IN_SETS);
@@ -218,6 +224,14 @@ static void test_legacy_mistakes(void **state) {
         char said[600];
         snprintf(said, sizeof said, "rhegma: a.vtk%s\n", cases[i].said);
         expect_legacy(cases[i].words, RG_USAGE, said);
+    }
+    char word[2][600];
+    for (int k = 0; k < 2; k++) {
+        snprintf(word[k], sizeof word[k], "%s%0*d\n", HEAD("4.2"), 255 + k, 0);
+        write_bytes("a.vtk", word[k], strlen(word[k]));
+        char found[600];
+        assert_int_equal(run_child(read_legacy, found, sizeof found), RG_USAGE);
+        assert_int_equal(strcmp(found, "rhegma: a.vtk:5: a word of more than 255 bytes\n") == 0, k);
     }
     unlink("a.vtk");
     expect_said(read_legacy, RG_USAGE, "rhegma: a.vtk: cannot be read: No such file or directory\n");
