@@ -179,7 +179,8 @@ static void take_face(building *b, const rg_inp_surface *s, const rg_inp_patch *
     }
 }
 
-static void take_patch(building *b, const rg_inp_surface *s, const rg_inp_patch *p, int32_t set) {
+/* Returns how many nodes or elements it names. */
+static size_t take_patch(building *b, const rg_inp_surface *s, const rg_inp_patch *p, int32_t set) {
     rg_inp_members found = rg_inp_members_of_entry(b->model, s->of, &p->of);
     if (p->of.name == NULL && found.missing > 0) {
         rg_inp_refuse(p->of.at, "*SURFACE, NAME=%s: there is no %s %" PRId64, s->name,
@@ -193,6 +194,7 @@ static void take_patch(building *b, const rg_inp_surface *s, const rg_inp_patch 
         }
     }
     rg_free(found.row);
+    return found.count;
 }
 
 static int32_t need_surface(building *b, const rg_inp_surface *s) {
@@ -207,8 +209,12 @@ static void take_surfaces(building *b, rg_inp_of of) {
         for (size_t i = 0; i < b->model->surfaces; i++) {
             const rg_inp_surface *s = &b->model->surface[i];
             int32_t set = s->of == of ? need_surface(b, s) : -1;
+            size_t named = 0;
             for (size_t k = 0; set >= 0 && pass == 1 && k < s->count; k++) {
-                take_patch(b, s, &s->patch[k], set);
+                named += take_patch(b, s, &s->patch[k], set);
+            }
+            if (set >= 0 && pass == 1 && named == 0) {
+                rg_warn("%s: *SURFACE, NAME=%s names no face at all", b->import.path, s->name);
             }
         }
     }

@@ -116,6 +116,10 @@ static void test_surface_sets(void **state) {
     expect(NODES SOLIDS ONE TWO
            "*SURFACE, NAME=a\np,\n*SURFACE, NAME=b\n2\n*SURFACE, NAME=c\np, S1\n*ELSET, ELSET=p\n1\n",
            X5 "e 1: 0 1 2 3 in p, a at 1, a at 2, a and c at 3\ne 2: 1 2 3 4, b at 0, b at 1, b at 2\n");
+    expect(NODES SOLIDS ONE TWO
+           "*ELSET, ELSET=p, INTERNAL\n*SURFACE, NAME=a\np, S1\n*SURFACE, NAME=b\n*SURFACE, NAME=c\n1, S1\n",
+           WARNING ": *SURFACE, NAME=a names no face at all\n" WARNING
+                   ": *SURFACE, NAME=b names no face at all\n" X5 "e 1: 0 1 2 3, c at 3\ne 2: 1 2 3 4\n");
     /* A name is one set, however often it comes. */
     write_input(NODES SOLIDS ONE TWO
                 "*SURFACE, NAME=a\n1, S1\n*SURFACE, NAME=b\n1, S2\n*SURFACE, NAME=b\n2, S2\n"
