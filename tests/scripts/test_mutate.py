@@ -1,5 +1,7 @@
 """The planting of single faults: where each kind can be planted, what is left alone, and that a place is found again."""
 
+import importlib.machinery
+import importlib.util
 import sys
 
 import pytest
@@ -106,6 +108,38 @@ def test_a_test_that_no_row_names_touches_all_of_src():
     assert not touches("test_count.py", "src/diagnostics/ledger.c")
     assert touches("step_limiter", "src/solver/step_limiter.c") and not touches("step_limiter", "src/case/case.c")
     assert touches("test_plot.py", "bench/plot") and not touches("newcomer", "bench/plot")
+
+
+class FakeBench:
+    """A tree of one file, whose fault `a - c` one test notices; another one fails whatever the file holds."""
+
+    def __init__(self, tree):
+        self.tree, self.runs = tree, []
+
+    def compiles(self):
+        return True
+
+    def tests_of(self, path):
+        return ["broken", "sees"]
+
+    def run(self, name, limit):
+        self.runs.append(name)
+        return name == "sees" and "a + c" in (self.tree / "src/a.c").read_text(), 1.0, ""
+
+
+def test_a_test_that_fails_without_a_fault_kills_none(tmp_path):
+    loader = importlib.machinery.SourceFileLoader("mutate", str(ROOT / "tests" / "mutate"))
+    mutate = importlib.util.module_from_spec(importlib.util.spec_from_loader("mutate", loader))
+    loader.exec_module(mutate)
+    (tmp_path / "src").mkdir()
+    (tmp_path / "src/a.c").write_text("{\n    b = a + c;\n}\n")
+    campaign, bench = mutate.Campaign(tmp_path / "none", {}, {}), FakeBench(tmp_path)
+    fault = faults_of("src/a.c", (tmp_path / "src/a.c").read_text())["sign"][0]
+    for _ in range(2):
+        result = mutate.attempt(bench, campaign, "base", fault, 900)
+        assert (result["verdict"], result["by"]) == ("killed", "sees")
+    assert bench.runs.count("broken") == 2 and bench.runs.count("sees") == 3
+    assert "a + c" in (tmp_path / "src/a.c").read_text()
 
 
 def test_shares_add_up():
