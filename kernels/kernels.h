@@ -174,7 +174,7 @@ typedef struct {
 } rg_kinetic_args;
 
 /* Parts of the energy; contact: of closed points, with what they store while friction holds them. */
-enum { RG_E_PENALTY, RG_E_COHESIVE, RG_E_CONTACT, RG_E_DISSIPATED, RG_E_INTERFACE };
+enum { RG_E_PENALTY, RG_E_COHESIVE, RG_E_CONTACT, RG_E_DISSIPATED, RG_E_UNRESOLVED, RG_E_INTERFACE };
 
 typedef struct {
     const rg_interface_args *interface;

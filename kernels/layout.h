@@ -83,7 +83,9 @@ enum { /* crack state of one interface point; meaningful only where the point's 
                                 less its onset */
        RG_CRACK_ORIGIN = 1,  /* jump from which the opening is measured, 3 components (m) */
        RG_CRACK_TIME = 4,    /* time at which the point switched, in the intrinsic form separated (s) */
-       RG_CRACK = 5,
+       RG_CRACK_GIVEN = 5,   /* of a conserving activation: energy set free at the switch, over area and
+                                strength (m) */
+       RG_CRACK = 6,
 };
 
 enum {                          /* friction at one interface point (cohesive/friction.h) */

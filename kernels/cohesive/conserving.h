@@ -12,11 +12,18 @@
  * back beyond its state at the switch has given more than it took.
  *
  * A point that switches leaves the lift of its elements (Ten Eyck & Lew 2006) and the penalty. What they held
- * by its jump comes free, sigma_c g, g = (t . [u] + [u] . Q [u]/2)/sigma_c: t is the part of the traction
- * that the law takes over, scaled to the strength, Q the penalty less the lift's own answer to the jump, by
- * RG_LIFT/beta_s of it. The point starts where the law has stored and dissipated just that. A jump along the
- * traction (g > 0) has opened it already, to d_0 with W(d_0) = sigma_c g, delta_0 = eps + d_0; one against it
- * leaves it on the way back, at d_0 = 0, delta_0 = sqrt(eps^2 + 2 eps g), or 0, at less than the strength.
+ * by its jump comes free, of which contact takes what it stores at the pressure that it goes on with:
+ *     sigma_c g = t . [u] + [u] . Q [u]/2 - (c/2) w_p^2,   c w_p = min(0, t_n);
+ * t is the whole DG traction, whether the law goes on with all of it or not, Q the penalty less the lift's
+ * own answer to the jump, by RG_LIFT/beta_s of it. The point starts where the law has stored and dissipated
+ * just that. A jump along the traction (g > 0) has opened it already, to d_0 with W(d_0) = sigma_c g, delta_0
+ * = eps + d_0; one against it leaves it on the way back, at d_0 = 0, delta_0 = sqrt(eps^2 + 2 eps g), at less
+ * than the strength. Two clips are left, of which neither loses energy:
+ *   g < -eps/2          the point owes more than its onset can hold: it gets one of its own, eps = -2 g
+ *   g > W(delta_c)/sigma_c   no law can take it: the rest is booked, as `unresolved`
+ * so each point keeps its g. What remains is of the time step: a traction that changes at a switch by Delta t
+ * does so half a step late or early, by Delta t . Delta[u]/2, which the first onset and the last step of
+ * opening make small where the mesh resolves the cohesive zone.
  *
  * Serves laws that unload to the origin, whose secant falls only while the largest opening grows, and whose
  * envelope of slow opening is sigma_c (1 - d/delta_c) (RG_ENVELOPE): they are asked at d in place of both
@@ -45,6 +52,16 @@ RG_INLINE rg_vec rg_conserving_first(rg_vec given, rg_vec opening) {
 RG_INLINE rg_vec rg_conserving_start(rg_vec given, rg_vec first, rg_vec onset) {
     rg_vec back = rg_max(1.0 + 2.0 * given / onset, rg_splat(0.0));
     return rg_select(given < 0.0, onset * rg_sqrt(back), onset + first);
+}
+
+/* Onset of a point of its own: one that owes more than the common onset can take back gets a larger one. */
+RG_INLINE rg_vec rg_conserving_onset(rg_vec given, rg_vec onset) {
+    return rg_max(onset, -2.0 * given);
+}
+
+/* What was set free beyond the work of separation, which no law can take (J per area and strength, m). */
+RG_INLINE rg_vec rg_conserving_unresolved(rg_vec given, rg_vec opening) {
+    return rg_max(given - 0.5 * opening, rg_splat(0.0));
 }
 
 /* From the law's answer at d to that at delta: T(d)/d becomes T(d)/delta_max. */

@@ -185,6 +185,9 @@ RG_INLINE void broken_energy(const interface *s, int q, const vec3 n, rg_mask br
     sum[RG_E_COHESIVE] += weight * rg_select(broken & unlinked, e.stored, zero);
     sum[RG_E_CONTACT] += weight * contact_energy(s, &o, broken);
     sum[RG_E_DISSIPATED] += weight * rg_select(broken, e.dissipated, zero);
+    if (activation == RG_ACTIVATION_CONSERVING) {
+        sum[RG_E_UNRESOLVED] += weight * rg_select(broken, unresolved_energy(s, q), zero);
+    }
 }
 
 RG_INLINE void crack_energy(interface *s, rg_vec sum[RG_E_INTERFACE], law_functions law,

@@ -62,34 +62,51 @@ RG_INLINE rg_vec onset(const interface *s, rg_activation activation) {
     return rg_splat(share * law->strength) * s->strong_area / normal_penalty(s);
 }
 
-/* g of cohesive/conserving.h: what lift and penalty held at a point that breaks, over its strength (m). */
-RG_INLINE rg_vec given_back(const interface *s, int q, const vec3 n, const cauchy *t) {
-    const rg_cohesive *law = &s->args->law;
-    rg_vec slid = rg_splat(law->beta > 0 ? 1.0 : 0.0) * rg_dot(t->tau, s->jump[q]);
+/* Closed opening at which contact goes on with the pressure of the DG traction, at most 0 (m). */
+RG_INLINE rg_vec pressed_at_switch(const interface *s, int q, const vec3 n) {
+    return rg_min(rg_dot(s->mean[q], n), rg_splat(0.0)) / s->contact;
+}
+
+/* g of cohesive/conserving.h: what comes free at a point that breaks, over its area and strength (m). */
+RG_INLINE rg_vec given_free(const interface *s, int q, rg_vec pressed) {
     rg_vec along = rg_dot(s->normal, s->jump[q]);
     rg_vec penalty = s->pen_iso * rg_dot(s->jump[q], s->jump[q]) + s->pen_norm * along * along;
-    double kept = law->beta_s > RG_LIFT ? 0.5 * (1 - RG_LIFT / law->beta_s) : 0;
-    return (slid + t->tension * rg_dot(n, s->jump[q])) / t->effective +
-           rg_splat(kept) * penalty / (s->area * s->strength);
+    double beta_s = s->args->law.beta_s, kept = beta_s > RG_LIFT ? 0.5 * (1 - RG_LIFT / beta_s) : 0;
+    rg_vec free =
+        rg_dot(s->mean[q], s->jump[q]) + rg_splat(kept) * penalty - 0.5 * s->contact * pressed * pressed;
+    return free / (s->area * s->strength);
+}
+
+/* eps of a broken point, of a conserving activation its own. */
+RG_INLINE rg_vec point_onset(const interface *s, int q, rg_activation activation) {
+    rg_vec common = onset(s, activation);
+    if (activation != RG_ACTIVATION_CONSERVING) {
+        return common;
+    }
+    return rg_conserving_onset(rg_load(crack_state(s, q, RG_CRACK_GIVEN)), common);
 }
 
 /* Activation of the points that break now: their first state.
  *   total       the opening is [u]
  *   continuous  [u] - ([u]_s - eps d), d = (tau/beta^2 + <t_n> n)/sigma_s along the traction: so that the
  *               cohesive traction continues the one at the switch in direction and size (Papoulia et al.)
- *   conserving  [u] - ([u]_s - delta_0 d), of which d_0 is damage already (cohesive/conserving.h) */
+ *   conserving  [u] - ([u]_s - delta_0 d - w_p n), of which d_0 is damage already and w_p what contact is
+ *               pressed by, so that pressure goes on, too (cohesive/conserving.h) */
 RG_INLINE void activate(const interface *s, int q, const vec3 n, const cauchy *t, rg_mask now,
                         rg_activation activation) {
-    rg_vec start = onset(s, activation), first = start;
+    rg_vec start = onset(s, activation), first = start, pressed = rg_splat(0.0);
     if (activation == RG_ACTIVATION_CONSERVING) {
-        rg_vec given = given_back(s, q, n, t);
+        pressed = pressed_at_switch(s, q, n);
+        rg_vec given = given_free(s, q, pressed);
+        store_where(crack_state(s, q, RG_CRACK_GIVEN), now, given);
+        start = rg_conserving_onset(given, start);
         first = rg_conserving_first(given, s->opening);
         start = rg_conserving_start(given, first, start);
     }
     bool total = s->args->law.activation == RG_ACTIVATION_TOTAL;
     for (int c = 0; c < 3; c++) {
         rg_vec d = (t->shear * t->tau[c] + t->tension * n[c]) / t->effective;
-        rg_vec origin = total ? rg_splat(0.0) : s->jump[q][c] - start * d;
+        rg_vec origin = total ? rg_splat(0.0) : s->jump[q][c] - start * d - pressed * n[c];
         store_where(crack_state(s, q, RG_CRACK_ORIGIN + c), now, origin);
     }
     store_where(crack_state(s, q, RG_CRACK_OPENING), now, first);

@@ -62,7 +62,7 @@ RG_INLINE void note_separation(const interface *s, int q, rg_mask acting, rg_vec
 RG_INLINE void cohesive_traction(const interface *s, int q, const point_opening *o, rg_mask acting,
                                  law_functions law, rg_activation activation, rg_law_response *r) {
     bool conserving = activation == RG_ACTIVATION_CONSERVING;
-    rg_vec before = rg_load(crack_state(s, q, RG_CRACK_OPENING)), eps = onset(s, activation);
+    rg_vec before = rg_load(crack_state(s, q, RG_CRACK_OPENING)), eps = point_onset(s, q, activation);
     rg_vec reached = conserving ? rg_conserving_damage(o->effective, eps) : o->effective;
     rg_law_state state = {.largest = grow(s, q, acting, reached, before)};
     if (s->args->law.form == RG_FORM_INTRINSIC) {
@@ -92,8 +92,15 @@ RG_INLINE void cohesive_energy(const interface *s, int q, const point_opening *o
     }
     law.energy(&p, &state, e);
     if (conserving) {
-        rg_conserving_energy(state.largest, onset(s, activation), o->effective, e);
+        rg_conserving_energy(state.largest, point_onset(s, q, activation), o->effective, e);
     }
+}
+
+/* What came free where a point broke by a conserving activation beyond what its law can take (J, of the whole
+ * face). */
+RG_INLINE rg_vec unresolved_energy(const interface *s, int q) {
+    rg_vec given = rg_load(crack_state(s, q, RG_CRACK_GIVEN));
+    return s->area * s->strength * rg_conserving_unresolved(given, s->opening);
 }
 
 #endif

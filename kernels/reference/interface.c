@@ -182,32 +182,42 @@ static double onset(const rg_cohesive *law, const point *p) {
     return share[law->activation] * p->strength * p->area / (p->iso + p->norm);
 }
 
-/* What lift and penalty give back to a point that switches, over its strength (m). In the law's own terms the
- * traction it takes over is beta^2 d_t + d_n n. */
-static double given_back(const rg_cohesive *law, const point *p, const double direction[3]) {
-    double across = rg_reference_dot(direction, p->normal), work = 0, penalty = 0;
+/* That of a point which has switched: one that owes more than the common onset holds has a longer one. */
+static double point_onset(const rg_cohesive *law, const point *p, const crack *k) {
+    double common = onset(law, p);
+    return law->activation == RG_ACTIVATION_CONSERVING ? fmax(common, -2 * *k->state[RG_CRACK_GIVEN])
+                                                       : common;
+}
+
+/* What comes free at a point that switches, over its area and strength (m): what lift and penalty held by the
+ * jump, less what contact holds from now on, which goes on with the pressure. */
+static double given_free(const rg_cohesive *law, const point *p, double pressed) {
+    double free = -p->contact * pressed * pressed / 2;
     for (int c = 0; c < 3; c++) {
-        double along = direction[c] - across * p->normal[c];
-        work += (law->beta * law->beta * along + across * p->normal[c]) * p->jump[c];
-        penalty += (p->dg[c] - p->traction[c]) * p->jump[c] / p->area;
+        double penalty = p->dg[c] - p->traction[c];
+        free += (p->traction[c] + fmax(0, 1 - 1.5 / law->beta_s) * penalty / 2) * p->jump[c];
     }
-    return work + fmax(0, 1 - 1.5 / law->beta_s) * penalty / 2 / p->strength;
+    return free / (p->area * p->strength);
 }
 
 /* First crack state of a point. */
 static void activate(const rg_interface_args *args, const point *p, const double direction[3],
                      const crack *k) {
-    double start = onset(&args->law, p), first = start;
+    double start = onset(&args->law, p), first = start, pressed = 0;
     if (args->law.activation == RG_ACTIVATION_CONSERVING) {
-        double given = given_back(&args->law, p, direction);
+        pressed = fmin(0, rg_reference_dot(p->traction, p->normal)) / p->contact;
+        double given = given_free(&args->law, p, pressed);
         double left = sqrt(fmax(0, 1 - 2 * fmax(0, given) / p->opening)); /* of the strength */
         first = fmax(RG_REFERENCE_NOTHING, p->opening * (1 - left));
-        start = given > 0 ? start + first : start * sqrt(fmax(0, 1 + 2 * given / start));
+        double eps = fmax(start, -2 * given);
+        start = given > 0 ? eps + first : eps * sqrt(fmax(0, 1 + 2 * given / eps));
+        *k->state[RG_CRACK_GIVEN] = (rg_real)given;
     }
     *k->state[RG_CRACK_OPENING] = (rg_real)first;
     bool total = args->law.activation == RG_ACTIVATION_TOTAL;
     for (int c = 0; c < 3; c++)
-        *k->state[RG_CRACK_ORIGIN + c] = total ? 0 : (rg_real)(p->jump[c] - start * direction[c]);
+        *k->state[RG_CRACK_ORIGIN + c] =
+            total ? 0 : (rg_real)(p->jump[c] - start * direction[c] - pressed * p->normal[c]);
     *k->state[RG_CRACK_TIME] = (rg_real)args->time;
 }
 
@@ -245,8 +255,9 @@ static rg_law_answer ask(const rg_interface_args *args, const point *p, const op
     for (int m = 0; m < memory; m++)
         state[1 + m] = *k->memory[m];
     bool conserving = law->activation == RG_ACTIVATION_CONSERVING;
-    rg_law_answer answer = conserving ? rg_reference_conserving(law->law, &query, onset(law, p), state)
-                                      : rg_reference_law(law->law, &query, state);
+    rg_law_answer answer = conserving
+                               ? rg_reference_conserving(law->law, &query, point_onset(law, p, k), state)
+                               : rg_reference_law(law->law, &query, state);
     for (int m = 0; m < memory && advance; m++)
         *k->memory[m] = (rg_real)state[1 + m];
     return answer;
@@ -261,7 +272,8 @@ typedef struct {
 static traction cohesive_traction(const rg_interface_args *args, const point *p, const opening *o,
                                   const crack *k) {
     const rg_cohesive *law = &args->law;
-    double start = law->activation == RG_ACTIVATION_CONSERVING ? onset(law, p) : 0; /* counts as no damage */
+    double start =
+        law->activation == RG_ACTIVATION_CONSERVING ? point_onset(law, p, k) : 0; /* counts as no damage */
     double before = *k->state[RG_CRACK_OPENING], largest = fmax(before, o->effective - start);
     double parts = p->opening * (law->separation / law->opening);
     *k->state[RG_CRACK_OPENING] = (rg_real)largest;
@@ -453,6 +465,9 @@ static void point_energy(const rg_interface_args *args, size_t i, int q, double 
         energy[RG_E_CONTACT] += p.weight * p.iso * stretch * stretch / 2;
     }
     energy[RG_E_DISSIPATED] += p.weight * p.area * a.dissipated;
+    if (law->activation == RG_ACTIVATION_CONSERVING)
+        energy[RG_E_UNRESOLVED] +=
+            p.weight * p.area * p.strength * fmax(0, *k.state[RG_CRACK_GIVEN] - p.opening / 2);
 }
 
 void rg_reference_interface_state(const rg_interface_state_args *args, size_t begin, size_t end) {

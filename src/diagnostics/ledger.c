@@ -13,9 +13,11 @@
 
 enum {
     KINETIC,
+    HALF_KICK,
     BULK,
     INTERFACE,
     DISSIPATED = INTERFACE + RG_E_DISSIPATED,
+    UNRESOLVED = INTERFACE + RG_E_UNRESOLVED,
     EXTERNAL,
     RELEASED,
     VISCOUS = RELEASED + RG_RELEASED,
@@ -28,7 +30,7 @@ enum {
     PARTS = ANGULAR + 3 /* those of material m: from PARTS + PART * m on */
 };
 
-enum { ROW = 24 }; /* values of a row, but for the parts of the materials */
+enum { ROW = 26 }; /* values of a row, but for the parts of the materials */
 
 enum { PART_KINETIC, PART_BULK, PART_DISSIPATED, PART };
 
@@ -80,16 +82,28 @@ static void add_released(rg_exact_sum *sum, const rg_solver *s, size_t slot) {
     }
 }
 
-static void kinetic_energies(const rg_solver *s, const rg_tile *t, double *energy) {
-    rg_kinetic_args kinetic = {.mass = s->input->mass,
-                               .geom = s->domain->geom + t->begin * RG_GEOM_BLOCK,
-                               .velocity = s->step_velocity + t->begin * RG_NODE_BLOCK};
+/* Of a tile, by a velocity of its elements: energy[blocks * RG_LANES] (J). */
+static void kinetic_energies(const rg_solver *s, const rg_tile *t, const rg_real *velocity, double *energy) {
+    rg_kinetic_args kinetic = {
+        .mass = s->input->mass, .geom = s->domain->geom + t->begin * RG_GEOM_BLOCK, .velocity = velocity};
     for (size_t begin = 0, end; begin < rg_tile_eblocks(t); begin = end) {
         end = rg_run_end(s->domain, t, begin);
         kinetic.density = rg_block_material(s, t, begin)->density;
         kinetic.energy = energy + begin * RG_LANES;
         s->kernels->kinetic(&kinetic, begin, end);
     }
+}
+
+/* The kinetic energy of what the velocity changes by from the time of the state to the middle of the step to
+ * come, dt a/2. */
+static void add_half_kick(rg_exact_sum *sum, const rg_solver *s, const rg_tile *t, rg_real *change,
+                          double *energy) {
+    size_t first = t->begin * RG_NODE_BLOCK, count = rg_tile_eblocks(t) * RG_NODE_BLOCK;
+    for (size_t i = 0; i < count; i++) {
+        change[i] = s->velocity[first + i] - s->step_velocity[first + i];
+    }
+    kinetic_energies(s, t, change, energy);
+    add_all(&sum[HALF_KICK], energy, rg_tile_eblocks(t) * RG_LANES);
 }
 
 /* Energies of the elements of a tile, to sum `all` and to that of their materials. */
@@ -102,11 +116,12 @@ static void add_elements(rg_exact_sum *sum, const rg_solver *s, const rg_tile *t
 }
 
 static void element_energies(rg_solver *s, const rg_tile *t, const rg_workspace *w, double *energy,
-                             rg_exact_sum *sum) {
+                             rg_real *change, rg_exact_sum *sum) {
     rg_tile_state(s, t, w, energy, NULL, NULL);
     add_elements(sum, s, t, energy, BULK, PART_BULK);
-    kinetic_energies(s, t, energy);
+    kinetic_energies(s, t, s->step_velocity + t->begin * RG_NODE_BLOCK, energy);
     add_elements(sum, s, t, energy, KINETIC, PART_KINETIC);
+    add_half_kick(sum, s, t, change, energy);
     for (size_t slot = t->begin * RG_LANES; slot < t->end * RG_LANES; slot++) {
         if (s->domain->id[slot] >= 0) {
             add_released(sum, s, slot);
@@ -182,13 +197,15 @@ static void sum_up(rg_solver *s, rg_exact_sum *sum) {
         rg_exact_sum *mine = RG_NEW(rg_exact_sum, sums(s));
         rg_workspace *w = &s->work[omp_get_thread_num()];
         double *energy = RG_NEW(double, most *RG_LANES);
+        rg_real *change = RG_NEW(rg_real, d->tile_blocks * RG_NODE_BLOCK);
 #pragma omp for schedule(static) nowait
         for (size_t t = 0; t < d->tiles; t++) {
             rg_tile_receive(s, &d->tile[t], w);
-            element_energies(s, &d->tile[t], w, energy, mine);
+            element_energies(s, &d->tile[t], w, energy, change, mine);
             interface_energies(s, &d->tile[t], w, energy, mine);
             rg_bodies_energy(s->bodies, t, s->u, &mine[INTERFACE + RG_E_CONTACT]);
         }
+        rg_free(change);
         rg_free(energy);
 #pragma omp critical
         for (size_t k = 0; k < sums(s); k++) {
@@ -217,11 +234,13 @@ static rg_energy energy_of(const rg_solver *s, const double *v) {
                    .time = s->time,
                    .kinetic = v[KINETIC],
                    .bodies = bodies.kinetic,
+                   .half_kick = v[HALF_KICK],
                    .bulk = v[BULK],
                    .penalty = part[RG_E_PENALTY],
                    .cohesive = part[RG_E_COHESIVE],
                    .contact = part[RG_E_CONTACT],
                    .dissipated = part[RG_E_DISSIPATED],
+                   .unresolved = part[RG_E_UNRESOLVED],
                    .plastic = v[RELEASED + RG_RELEASED_PLASTIC],
                    .damage = v[RELEASED + RG_RELEASED_DAMAGE],
                    .viscous = v[VISCOUS],
@@ -253,8 +272,9 @@ const rg_energy *rg_ledger_take(rg_ledger *l, rg_solver *s) {
     values(s, v);
     rg_energy *e = &l->last;
     *e = energy_of(s, v);
-    double stored = e->kinetic + e->bodies + e->bulk + e->penalty + e->cohesive + e->contact + e->spent;
-    e->total = stored - e->external;
+    double stored =
+        e->kinetic + e->bodies + e->bulk + e->penalty + e->cohesive + e->contact + e->unresolved + e->spent;
+    e->total = stored - e->half_kick - e->external;
     if (!l->begun) {
         *l = (rg_ledger){.begun = true, .start = e->total, .last = *e};
     }
@@ -316,6 +336,7 @@ void rg_energy_header(rg_csv *t, const rg_solver *s) {
     char *columns = NULL;
     FILE *f = open_memstream(&columns, &length);
     fputs("step,time,kinetic,bodies,bulk,penalty,cohesive,contact,dissipated,plastic,damage,viscous,friction,"
+          "unresolved,half_kick,"
           "external_work,total,error_rel,error_dissipated,broken_area,failed_area,momentum_x,momentum_y,"
           "momentum_z,angular_x,angular_y,angular_z",
           f);
@@ -343,6 +364,8 @@ void rg_energy_row(rg_csv *t, const rg_ledger *l, const rg_solver *s) {
                                                  e->damage,
                                                  e->viscous,
                                                  e->friction,
+                                                 e->unresolved,
+                                                 e->half_kick,
                                                  e->external,
                                                  e->total,
                                                  e->error,

@@ -18,6 +18,8 @@ typedef struct {
     double viscous;     /* dissipated by bulk viscosity (J) */
     double friction;    /* dissipated where closed cracks slide (J); what they store while they stick is
                          * part of contact */
+    double unresolved;  /* set free where points switched, beyond what their law can take (J) */
+    double half_kick;   /* dt^2/8 a . M a: by so much what a central difference keeps is below the sum (J) */
     double external;    /* work done by prescribed motions (J) */
     double total;       /* sum of the parts less the external work (J) */
     double error;       /* change of the total since the start, over the largest energy seen (or what

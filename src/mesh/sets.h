@@ -41,8 +41,9 @@ int32_t rg_sets_combine(rg_sets *s, int32_t count, const int32_t *set);
 rg_sets rg_sets_copy(const rg_sets *s);
 void rg_sets_free(rg_sets *s);
 
-/* Puts things into sets one after the other, once all sets are there: group = rg_sets_join(&join, group, set).
- * A set again changes nothing. Things that come to the same sets in the same order get the same group. */
+/* Puts things into sets one after the other, once all sets are there: group = rg_sets_join(&join, group,
+ * set). A set again changes nothing. Things that come to the same sets in the same order get the same group.
+ */
 typedef struct {
     rg_sets *sets;
     int32_t group, set, joined; /* the last */

@@ -31,12 +31,12 @@ static double cohesive_zone(const rg_case *c, const rg_solver *s) {
            (c->interface.strength * c->interface.strength);
 }
 
-/* A point that has just switched by the conserving activation unloads 1/onset times as stiffly as a closed
- * one bears contact, sliding beta^2 times that. In all directions alike, at all faces at once, that stiffness
- * is taken to add up to 1.2 times what the normal one does, so that up to this safety no state that a face
- * can take is unstable. */
-static double steady_safety(const rg_cohesive *law) {
-    return (1 + 1e-9) * sqrt(law->onset / (1.2 * fmax(1, law->beta * law->beta)));
+/* A point that has just switched by the conserving activation unloads 1/interface.onset times as stiffly as a
+ * closed one bears contact, in the stiffer of opening and sliding. In all directions alike, at all faces at
+ * once, that stiffness is taken to add up to 1.2 times what the normal one does, so that up to this safety no
+ * state that a face can take is unstable. */
+static double steady_safety(const rg_case *c) {
+    return (1 + 1e-9) * sqrt(c->interface.onset / 1.2);
 }
 
 static double largest_edge(const rg_solver *s) {
@@ -214,13 +214,12 @@ void rg_estimate_print(const rg_solver *s, const rg_estimate *e, FILE *out) {
     if (e->seconds > 30.0 * DAY) {
         fprintf(out, "warning: it would run for months: is time.end in seconds, and the mesh in metres?\n");
     }
-    if (s->model->law.activation == RG_ACTIVATION_CONSERVING &&
-        c->time.safety > steady_safety(&s->model->law)) {
+    if (s->model->law.activation == RG_ACTIVATION_CONSERVING && c->time.safety > steady_safety(c)) {
         fprintf(out,
                 "warning: with interface.onset %.3g no step of time.safety above %.2g follows points that "
                 "have just "
                 "switched; the energy will show it\n",
-                s->model->law.onset, steady_safety(&s->model->law));
+                c->interface.onset, steady_safety(c));
     }
     if (isfinite(e->cohesive_zone) && e->largest_edge > 0) {
         double ratio = e->cohesive_zone / e->largest_edge;

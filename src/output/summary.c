@@ -80,6 +80,7 @@ static void write_physics(FILE *f, const rg_summary *m, const rg_ledger *l) {
     rg_json_number(f, "damage_J", l->last.damage);
     rg_json_number(f, "viscous_J", l->last.viscous);
     rg_json_number(f, "friction_J", l->last.friction);
+    rg_json_number(f, "unresolved_J", l->last.unresolved);
     rg_json_number(f, "first_fracture_time_s", m->first_fracture);
     rg_json_number(f, "broken_area_m2", l->last.broken_area);
     rg_json_number(f, "failed_area_m2", l->last.failed_area);
@@ -139,6 +140,12 @@ void rg_summary_print(const rg_summary *m, const rg_solver *s, const rg_ledger *
         fprintf(out, "; %.2g of all that was dissipated, %.4g J", rg_ledger_share(l), l->last.spent);
     }
     fputc('\n', out);
+    if (l->last.unresolved > 0) {
+        fprintf(out,
+                "%.3g J came free where faces broke beyond what their law can take: the mesh does not "
+                "resolve them\n",
+                l->last.unresolved);
+    }
     if (isfinite(m->first_fracture)) {
         fprintf(out, "first fracture at %.5g s; failed %.4g m2, broken %.4g m2, dissipated %.4g J\n",
                 m->first_fracture, l->last.failed_area, l->last.broken_area, l->last.dissipated);

@@ -292,8 +292,7 @@ void rg_constraints_start(rg_constraints *k, const rg_real *u, const rg_real *ve
     }
 }
 
-void rg_constraints_set(rg_constraints *k, double time, double dt, bool moving) {
-    k->moving = moving;
+void rg_constraints_set(rg_constraints *k, double time, double dt) {
     for (size_t n = 0; k->varies && n < k->entries; n++) {
         entry *e = &k->entry[n];
         for (int i = 0; e->varies && i < e->pattern->constrained; i++) {
@@ -348,7 +347,7 @@ void rg_constraints_kick(rg_constraints *k, size_t tile, rg_real *velocity, rg_r
     for (size_t n = k->tile_begin[tile]; n < k->tile_begin[tile + 1]; n++) {
         entry *e = &k->entry[n];
         if (now != NULL) {
-            e->is.work_now = e->is.work + (k->moving ? correct(e, e->is.present, now) : 0);
+            e->is.work_now = e->is.work + correct(e, e->is.present, now);
         }
         e->is.work += correct(e, e->is.target, velocity);
         memcpy(e->is.before, e->is.target, sizeof e->is.before);

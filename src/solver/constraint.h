@@ -33,9 +33,9 @@ void rg_constraints_start(rg_constraints *k, const rg_real *u, const rg_real *ve
 bool rg_constraints_told(const rg_constraints *k, char *words, size_t size, MPI_Comm comm);
 
 /* Evaluates what is prescribed for a step `dt` (> 0) from `time`: velocities in its middle, displacements at
- * its end, and, `moving`, velocities at `time` itself (at the start they are the initial ones). One thread.
- */
-void rg_constraints_set(rg_constraints *k, double time, double dt, bool moving);
+ * its end, and velocities at `time` itself (at the start: those after it, with the work of getting there).
+ * One thread. */
+void rg_constraints_set(rg_constraints *k, double time, double dt);
 
 /* Corrects the velocities of tile `tile` after its kick; before that those at the present time, unless `now`
  * is NULL. Both are whole fields. Keeps account of the work. */

@@ -30,7 +30,7 @@ rg_cohesive rg_law_make(const rg_case *c) {
                        .beta = c->interface.beta,
                        .form = c->interface.form,
                        .activation = c->interface.activation,
-                       .onset = c->interface.onset,
+                       .onset = c->interface.onset * fmax(1, c->interface.beta * c->interface.beta),
                        .beta_s = c->interface.beta_s,
                        .contact = c->interface.contact,
                        .sliding = c->interface.friction > 0 ? RG_SLIDING_COULOMB : RG_SLIDING_FREE,

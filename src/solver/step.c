@@ -438,7 +438,7 @@ static impulse prepare(rg_solver *s, double dt) {
     for (int m = 0; s->dt > 0 && m < s->model->materials; m++) {
         rg_material_prepare(&s->stepper->material[m], s->dt);
     }
-    rg_constraints_set(s->constraints, s->time, dt, s->step > 0);
+    rg_constraints_set(s->constraints, s->time, dt);
     return (impulse){
         .velocity = s->velocity, .dt = 0.5 * (s->dt + dt), .constrain = true, .advance = s->dt > 0};
 }

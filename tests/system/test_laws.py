@@ -53,7 +53,7 @@ PULLED = {"mesh.cells": [2, 2, 6], "mesh.size": [0.2e-3, 0.2e-3, 0.6e-3], "mesh.
 LEDGERS = {"linear": 0.03, "rate": 0.027, "fatigue": 0.03, "free": 0.03,
            "exponential": 3.5e-4, "bilinear": 6e-4, "tvergaard": 5e-4,
            "polynomial": 1.6e-4, "needleman": 2.5e-4, "xu-needleman": 2e-4,
-           "linear conserving": 6e-4, "rate conserving": 4e-4}
+           "linear conserving": 9e-4, "rate conserving": 4e-4}
 
 
 @pytest.mark.parametrize("law", LEDGERS)
@@ -84,7 +84,7 @@ def test_step_follows_the_opening(run, figure):
     figure("bilinear law: smallest step for twice the steps an opening, over that for once", twice.min() / once.min(),
            theory=0.5, bound=2e-12, why=ROUNDING)
     assert pulled(60).summary["broken_area_m2"] > 0
-    for steps, bound in ((0, 1.5e-4), (60, 3e-5)):
+    for steps, bound in ((0, 2.5e-4), (60, 3e-5)):
         figure(f"bilinear law, {steps} steps an opening: energy error", pulled(steps).summary["energy_error_rel"],
                bound=bound)
 

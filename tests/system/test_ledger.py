@@ -40,15 +40,16 @@ def test_stored_energies_are_not_negative(energy):
 
 def test_total_is_the_sum_of_its_parts(energy, figure):
     parts = sum(energy[name] for name in ("kinetic", "bodies", "bulk", "penalty", "cohesive", "contact", "dissipated"))
+    parts += energy["unresolved"]
     scale = np.abs(energy["external_work"]).max() + parts.max()
     figure("ledger: total against the sum of its parts",
-           np.abs(parts - energy["external_work"] - energy["total"]).max() / scale, bound=1e-15, why=ROUNDING)
+           np.abs(parts - energy["half_kick"] - energy["external_work"] - energy["total"]).max() / scale, bound=1e-15, why=ROUNDING)
     error = (energy["total"] - energy["total"][0])[1:] / np.maximum.accumulate(parts)[1:]
     figure("ledger: relative error against that of the total", np.abs(energy["error_rel"][1:] - error).max(), bound=1e-15,
            why=ROUNDING)
 
 
-@pytest.mark.parametrize("jitter, velocity, bounds", [(0, 15, (1.0, 0.02)), (0.12, 15, (0.3, 0.014)), (0, 40, (0.3, 0.2))])
+@pytest.mark.parametrize("jitter, velocity, bounds", [(0, 15, (1.0, 0.04)), (0.12, 15, (0.3, 0.014)), (0, 40, (0.3, 0.2))])
 def test_conserving_activation_keeps_the_energy_of_a_violent_break(run, figure, jitter, velocity, bounds):
     """The first 500 steps of the bars of bench/examples/endurance, undamped; bounds in %: the default is worse, the other better."""
     sets = {"mesh.jitter": jitter, "initial.velocity": {"z": f"-{velocity}*cos(pi*z/4e-3)"}, "time.steps": 500,
@@ -77,7 +78,7 @@ def test_work_of_the_ends_is_accounted_for(run, figure, name, bound, later):
     first = change[1:3].mean()  # what the sudden start of the ends costs, of order (omega dt)^2; nothing is added to it
     figure(f"spall, {mesh}: energy error until it breaks, but for the first output", np.abs(change[1:] - first).max() / largest,
            bound=later)
-    assert whole["time"][0] == whole["external_work"][0] == whole["total"][0] == 0
+    assert whole["time"][0] == 0 and whole["kinetic"][0] == pytest.approx(whole["external_work"][0], rel=1e-12)  # of the jump
 
 
 @pytest.mark.parametrize("velocity, bound", [(15, 0.03), (40, 0.012)])

@@ -44,7 +44,7 @@ FORMS = {
 }
 
 
-@pytest.mark.parametrize("form, bound", [("incomplete", 0.01), ("intrinsic", 2e-4), ("continuous", 3e-3)])
+@pytest.mark.parametrize("form, bound", [("incomplete", 0.01), ("intrinsic", 4e-4), ("continuous", 3e-3)])
 @pytest.mark.parametrize("solid", EACH)
 def test_every_form_takes_every_solid(run, figure, solid, form, bound):
     sets = {**SHORT, "mesh.cells": [1, 1, 10], "time.end": 0.2e-6, **SOLIDS[solid],
@@ -158,7 +158,7 @@ def test_ledger_of_a_plastic_wave(run, figure):
     energy = run(PLASTIC).energy
     assert energy["plastic"][-1] > 0.05 * energy["kinetic"].max() and (energy["damage"] == 0).all()
     assert (np.diff(energy["plastic"]) >= 0).all()
-    figure("plastic wave: energy error", np.abs(energy["error_rel"]).max(), bound=9e-6)
+    figure("plastic wave: energy error", np.abs(energy["error_rel"]).max(), bound=2.5e-5)
     parts = ("kinetic", "bulk", "penalty", "cohesive", "contact", "dissipated", "plastic", "damage")
     assert np.allclose(sum(energy[name] for name in parts) - energy["external_work"], energy["total"], rtol=1e-12)
 

@@ -44,8 +44,8 @@ def test_the_step_leaves_room_for_the_damping(run, figure, linear, bound):
 def test_ledger_of_a_collision(run, figure):
     sets = {**BOTH, "material": STANDING["material"], "time.end": 0.1e-6, "initial.velocity.z": "-200*tanh(z/0.1e-3)"}
     energy = run(CASES / "ceramic.yaml", sets=sets).energy
-    assert energy["viscous"][-1] > 0.02 * energy["kinetic"][0] and (np.diff(energy["viscous"]) >= 0).all()
-    figure("halves that collide, with viscosity: energy error", np.abs(energy["error_rel"]).max(), bound=4.5e-5)
+    assert energy["viscous"][-1] > 0.01 * energy["kinetic"][0] and (np.diff(energy["viscous"]) >= 0).all()
+    figure("halves that collide, with viscosity: energy error", np.abs(energy["error_rel"]).max(), bound=1.6e-4)
 
 
 def test_the_same_bits_on_any_layout(run):

@@ -519,20 +519,23 @@ static void test_energy_table(void **state) {
                                   .damage = 10,
                                   .viscous = 11,
                                   .friction = 12,
-                                  .external = 13,
-                                  .total = 14,
-                                  .error = 15,
+                                  .unresolved = 13,
+                                  .half_kick = 14,
+                                  .external = 15,
+                                  .total = 16,
+                                  .error = 17,
                                   .share = NAN,
-                                  .broken_area = 16,
-                                  .failed_area = 17,
-                                  .momentum = {18, 19, 20},
-                                  .angular_momentum = {21, 22, 23}},
-                         .material = {{24, 25, 26}, {27, 28, 29}}};
+                                  .broken_area = 18,
+                                  .failed_area = 19,
+                                  .momentum = {20, 21, 22},
+                                  .angular_momentum = {23, 24, 25}},
+                         .material = {{26, 27, 28}, {29, 30, 31}}};
     static const char header[] =
         "step,time,kinetic,bodies,bulk,penalty,cohesive,contact,dissipated,plastic,damage,viscous,friction,"
-        "external_work,total,error_rel,error_dissipated,broken_area,failed_area,momentum_x,momentum_y,"
+        "unresolved,half_kick,external_work,total,error_rel,error_dissipated,broken_area,failed_area,"
+        "momentum_x,momentum_y,"
         "momentum_z,angular_x,angular_y,angular_z";
-    static const char row[] = "41,1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,nan,16,17,18,19,20,21,22,23";
+    static const char row[] = "41,1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16,17,nan,18,19,20,21,22,23,24,25";
     char wanted[1000];
     for (int two = 0; two < 2; two++) {
         rg_csv *t = rg_csv_open(".", "e.csv", 0);
@@ -543,7 +546,7 @@ static void test_energy_table(void **state) {
         snprintf(wanted, sizeof wanted, "%s%s\n%s%s\n", header,
                  two ? ",kinetic_glass,bulk_glass,dissipated_glass,kinetic_steel,bulk_steel,dissipated_steel"
                      : "",
-                 row, two ? ",24,25,26,27,28,29" : "");
+                 row, two ? ",26,27,28,29,30,31" : "");
         expect_file("e.csv", wanted);
         remove("e.csv");
     }

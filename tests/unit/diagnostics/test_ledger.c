@@ -42,18 +42,20 @@ static const double gauss_w[4] = {0.17392742256872693, 0.32607257743127307, 0.32
                                   0.17392742256872693};
 
 typedef struct {
-    double kinetic, of[2] /* materials */, volume, momentum[3], angular[3];
+    double kinetic, of[2] /* materials */, half_kick, volume, momentum[3], angular[3];
 } integrals;
 
-static void at_point(const double x[4][3], rg_gid id, const double l[4], double place[3], double v[3]) {
+static void at_point(const double x[4][3], rg_gid id, const double l[4], double place[3], double v[3],
+                     double kick[3]) {
     double N[RG_NODES];
     rg_shape(l, N);
     for (int c = 0; c < 3; c++) {
         place[c] = l[0] * x[0][c] + l[1] * x[1][c] + l[2] * x[2][c] + l[3] * x[3][c];
-        v[c] = 0;
+        v[c] = kick[c] = 0;
         for (int n = 0; n < RG_NODES; n++) {
             place[c] += N[n] * drawn_u(SEED, id, n, c);
             v[c] += N[n] * drawn_now(SEED, id, n, c);
+            kick[c] += N[n] * (drawn_velocity(SEED, id, n, c) - drawn_now(SEED, id, n, c));
         }
     }
 }
@@ -79,10 +81,11 @@ static void integrate(const random_state *r, rg_gid id, integrals *sum) {
         double l[4] = {a, (1 - a) * b, (1 - a) * (1 - b) * c, (1 - a) * (1 - b) * (1 - c)};
         double w = 6 * volume * density * gauss_w[k % 4] * gauss_w[k / 4 % 4] * gauss_w[k / 16] * (1 - a) *
                    (1 - a) * (1 - b);
-        double place[3], v[3], turn[3];
-        at_point((const double(*)[3])x, id, l, place, v);
+        double place[3], v[3], turn[3], kick[3];
+        at_point((const double(*)[3])x, id, l, place, v, kick);
         rg_reference_cross(place, v, turn);
         sum->kinetic += 0.5 * w * rg_reference_dot(v, v);
+        sum->half_kick += 0.5 * w * rg_reference_dot(kick, kick);
         sum->of[mesh_material(r, id)] += 0.5 * w * rg_reference_dot(v, v);
         for (int i = 0; i < 3; i++) {
             sum->momentum[i] += w * v[i];
@@ -247,8 +250,10 @@ static void check_energies(random_state *r) {
                near(e->contact, part[RG_E_CONTACT], part[RG_E_CONTACT]) &&
                touch > 1e-6 * part[RG_E_CONTACT] &&
 
-               near(e->dissipated, part[RG_E_DISSIPATED], part[RG_E_DISSIPATED]),
+               near(e->dissipated, part[RG_E_DISSIPATED], part[RG_E_DISSIPATED]) && e->unresolved == 0 &&
+               part[RG_E_UNRESOLVED] == 0,
            "ledger", "energies of the interfaces");
+    report(near(e->half_kick, whole.half_kick, whole.half_kick), "ledger", "half a kick");
     report(near(e->plastic, sum.plastic, sum.plastic) && near(e->damage, sum.damage, sum.damage), "ledger",
            "set free in the bulk");
     report(near(e->viscous, sum.heat, sum.heat) && near(e->friction, sum.friction, sum.friction), "ledger",
@@ -269,8 +274,8 @@ static void check_energies(random_state *r) {
                fabs(bodies.angular_momentum[c]) > 100 * EXACT * turn && good;
     }
     report(good, "ledger", "momentum and angular momentum");
-    double stored = e->kinetic + e->bodies + bulk + part[0] + part[1] + part[2] + part[3] + sum.plastic +
-                    sum.damage + sum.heat + sum.friction;
+    double stored = e->kinetic + e->bodies + bulk + part[0] + part[1] + part[2] + part[3] + part[4] +
+                    sum.plastic + sum.damage + sum.heat + sum.friction;
     double spent = part[RG_E_DISSIPATED] + sum.plastic + sum.damage + sum.heat + sum.friction;
     report(near(e->spent, spent, spent), "ledger", "all that was dissipated");
     for (int m = 0; m < 2; m++) {
@@ -281,17 +286,43 @@ static void check_energies(random_state *r) {
                    in.bulk_of[m] > 0.05 * bulk && in.dissipated_of[m] > 0.01 * part[RG_E_DISSIPATED],
                "ledger", m == 0 ? "of the first material" : "of the second material");
     }
-    report(near(e->total, stored - work, stored) && e->error == 0 && rg_ledger_worst(&ledger) == 0 &&
-               ledger.begun && ledger.start == e->total && near(ledger.largest, stored, stored),
+    report(near(e->total, stored - whole.half_kick - work, stored) && e->error == 0 &&
+               rg_ledger_worst(&ledger) == 0 && ledger.begun && ledger.start == e->total &&
+               near(ledger.largest, stored, stored),
            "ledger", "total");
     report(rg_first_fracture(r->solver) == sum.first, "ledger", "first fracture");
     report(memcmp(&ledger.last, e, sizeof *e) == 0, "ledger", "the last one is kept");
 }
 
-/* Times `factor` all velocities, which only the kinetic energy knows. */
+/* What came free at switches beyond the work of separation, 34 J/m2 at 400 MPa. */
+static void check_unresolved(void) {
+    const char *change[] = {"interface.activation=conserving"};
+    random_state r = random_state_make(1, change, MPI_COMM_WORLD);
+    random_state_draw(&r, SEED);
+    rg_ledger ledger = {0};
+    double wanted = 0, strength = 400e6, opening = 2 * 34 / strength;
+    for (rg_gid face = 0; face < 4 * r.mesh->elements; face++) {
+        for (int q = 0; q < RG_POINTS && r.mesh->neighbour[face] > face / 4; q++) {
+            double l[3], share = face_area(r.mesh, face) * rg_reference_face_point(q, l);
+            double given = (rg_real)(drawn(SEED, DRAW_GIVEN, face, q) * opening);
+            bool broken = drawn_broken(SEED, face) >> q & 1;
+            wanted += broken ? share * strength * fmax(0, given - opening / 2) : 0;
+        }
+    }
+    const rg_energy *e = rg_ledger_take(&ledger, r.solver);
+    report(near(e->unresolved, wanted, wanted) && wanted > 0, "ledger", "what no law can take");
+    double parts = e->kinetic + e->bodies + e->bulk + e->penalty + e->cohesive + e->contact + e->spent;
+    report(near(e->total, parts + e->unresolved - e->half_kick - e->external, parts) &&
+               wanted > 1e3 * EXACT * parts,
+           "ledger", "total with what no law can take");
+    random_state_free(&r);
+}
+
+/* Times `factor` all velocities, which only the kinetic energy knows; no step follows. */
 static void scale_velocity(rg_solver *s, double factor) {
     for (size_t i = 0; i < s->domain->blocks * RG_NODE_BLOCK; i++) {
         s->step_velocity[i] = (rg_real)(factor * s->step_velocity[i]);
+        s->velocity[i] = s->step_velocity[i];
     }
 }
 
@@ -329,6 +360,7 @@ static void check_limits(const random_state *r, const rg_ledger *l, double error
 
 static void check_errors(random_state *r) {
     rg_ledger ledger = {0};
+    scale_velocity(r->solver, 1);
     rg_energy first = *rg_ledger_take(&ledger, r->solver);
     double stored = first.total + first.external;
     scale_velocity(r->solver, 2);
@@ -368,6 +400,7 @@ static void heat_up(rg_solver *s, double each) {
 static void check_share(void) {
     random_state r = random_state_make(0, NULL, MPI_COMM_WORLD);
     random_state_draw(&r, SEED);
+    scale_velocity(r.solver, 1);
     memset(r.solver->u, 0, r.solver->domain->blocks * RG_NODE_BLOCK * sizeof *r.solver->u);
     rg_ledger ledger = {0};
     rg_energy first = *rg_ledger_take(&ledger, r.solver);
@@ -416,6 +449,7 @@ static void check_rest(void) {
             r.solver->step_velocity[rg_node_index(slot, n, 1)] = (rg_real)1e-4;
         }
     }
+    scale_velocity(r.solver, 1);
     e = *rg_ledger_take(&ledger, r.solver);
     report(e.kinetic > 0 && near(e.error, e.kinetic / ledger.largest, 1e-3), "ledger", "an error of that");
     for (size_t slot = 0; slot < r.solver->domain->blocks * RG_LANES; slot++) {
@@ -423,6 +457,7 @@ static void check_rest(void) {
             r.solver->step_velocity[rg_node_index(slot, n, 1)] = 10;
         }
     }
+    scale_velocity(r.solver, 1);
     memset(&ledger, 0, sizeof ledger);
     rg_ledger_take(&ledger, r.solver);
     scale_velocity(r.solver, 0.1);
@@ -684,6 +719,7 @@ int main(int argc, char **argv) {
     random_state r = random_state_make(0, NULL, MPI_COMM_WORLD);
     random_state_draw(&r, SEED);
     check_energies(&r);
+    check_unresolved();
     check_cracks(&r);
     check_element_hash(&r);
     check_body_hash(&r);

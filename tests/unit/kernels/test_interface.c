@@ -23,7 +23,8 @@ enum { ALL = 63, MINUS_FACE = 3, PLUS_FACE = 1 };
 #define FIRST (1 - EPS / DELTA)          /* traction just after the switch, in strengths */
 #define GC    (SIGMA * DELTA / 2)
 #define ONSET (0.3 * SIGMA / STIFF) /* first opening of a conserving activation of onset 0.3 (m) */
-#define LEFT  0.86602540378443865   /* sqrt(1 - 2 * 2e-8/DELTA) */
+#define LEFT  0.8659099260315706    /* sqrt(1 - 2 * 2.0016e-8/DELTA) */
+#define EASED 0.40824829046386296   /* sqrt(1 - 0.25/0.3) */
 #define TIME  2.5e-7
 
 /* Vectors are (normal, tangential); tractions and energies per area. */
@@ -37,6 +38,7 @@ typedef struct {
         beta_s; /* of a conserving activation; where lift and penalty are alike it gives back t . [u] alone */
     bool broken, unlinked;     /* before */
     double opening, origin[2]; /* before */
+    double given;              /* at the switch of a conserving activation (m) */
     double pull[2], jump[2];   /* what the point feels */
     double traction[2];        /* expected from here on */
     bool is_broken, is_unlinked;
@@ -134,29 +136,28 @@ static const scenario scenarios[] = {
      .is_broken = true,
      .is_unlinked = true,
      .new_origin = {0, -ONSET / 2}},
-    {.name = "conserving activation, jump along the traction", /* W(1e-8) = SIGMA g */
+    {.name = "conserving activation, jump along the traction", /* W(1e-8) = 1.001 SIGMA u */
      .beta = 1,
      .activation = RG_ACTIVATION_CONSERVING,
      .pull = {1.001 * SIGMA, 0},
-     .jump = {1e-8 * (1 - 0.5e-8 / DELTA), 3e-9},
+     .jump = {1e-8 * (1 - 0.5e-8 / DELTA) / 1.001, 3e-9},
      .traction = {SIGMA * (1 - 1e-8 / DELTA), 0},
      .is_broken = true,
      .is_unlinked = true,
      .new_opening = 1e-8,
-     .new_origin = {1e-8 * (1 - 0.5e-8 / DELTA) - 1e-8 - ONSET, 3e-9},
+     .new_origin = {1e-8 * (1 - 0.5e-8 / DELTA) / 1.001 - 1e-8 - ONSET, 3e-9},
      .energy = {0, SIGMA *(1 - 1e-8 / DELTA) * 1e-8 / 2, 0, GC * 1e-8 / DELTA}},
     {.name = "conserving activation, jump against the traction", /* delta_0 = onset/2 */
      .beta = 1,
      .activation = RG_ACTIVATION_CONSERVING,
      .pull = {1.001 * SIGMA, 0},
-     .jump = {-0.375 * ONSET, 0},
+     .jump = {-0.375 * ONSET / 1.001, 0},
      .traction = {SIGMA / 2, 0},
      .is_broken = true,
      .is_unlinked = true,
-     .new_origin = {-0.875 * ONSET, 0},
+     .new_origin = {-0.375 * ONSET / 1.001 - ONSET / 2, 0},
      .energy = {0, -SIGMA * 0.375 * ONSET, 0, 0}},
-    {.name =
-         "conserving activation, penalty given back", /* g = 1.6e-8 + 0.3125 STIFF 1.6e-8^2/SIGMA = 2e-8 */
+    {.name = "conserving activation, penalty given back", /* g = 1.6016e-8 + 0.3125 STIFF 1.6e-8^2/SIGMA */
      .beta = 1,
      .activation = RG_ACTIVATION_CONSERVING,
      .beta_s = 4,
@@ -177,7 +178,7 @@ static const scenario scenarios[] = {
      .is_unlinked = true,
      .new_opening = DELTA,
      .new_origin = {-0.4 * DELTA - ONSET, 0},
-     .energy = {0, 0, 0, GC}},
+     .energy = {0, 0, 0, GC, SIGMA *(0.6006 - 0.5) * DELTA}},
     {.name = "conserving activation, jump far against the traction",
      .beta = 1,
      .activation = RG_ACTIVATION_CONSERVING,
@@ -186,7 +187,27 @@ static const scenario scenarios[] = {
      .is_broken = true,
      .is_unlinked = true,
      .new_origin = {-2 * ONSET, 0},
-     .energy = {0, -SIGMA *ONSET / 2, 0, 0}},
+     .energy = {0, -SIGMA * 2.002 * ONSET, 0, 0}},          /* an onset of its own, 4.004 ONSET */
+    {.name = "conserving activation, shear under pressure", /* g = -(SIGMA/2)^2/(2 STIFF SIGMA) */
+     .beta = 1,
+     .activation = RG_ACTIVATION_CONSERVING,
+     .pull = {-0.5 * SIGMA, 1.001 * SIGMA},
+     .traction = {-0.5 * SIGMA, SIGMA *EASED},
+     .is_broken = true,
+     .is_unlinked = true,
+     .new_origin = {0.5 * SIGMA / STIFF, -ONSET *EASED},
+     .energy = {0, -SIGMA * 0.125 * SIGMA / STIFF, 0.125 * SIGMA *SIGMA / STIFF, 0}},
+    {.name = "conserving activation, normal criterion: shear that is dropped opens",
+     .beta = 0,
+     .activation = RG_ACTIVATION_CONSERVING,
+     .pull = {1.001 * SIGMA, 2 * SIGMA},
+     .jump = {0, 0.5e-8 * (1 - 0.5e-8 / DELTA)},
+     .traction = {SIGMA * (1 - 1e-8 / DELTA), 0},
+     .is_broken = true,
+     .is_unlinked = true,
+     .new_opening = 1e-8,
+     .new_origin = {-1e-8 - ONSET, 0.5e-8 * (1 - 0.5e-8 / DELTA)},
+     .energy = {0, SIGMA *(1 - 1e-8 / DELTA) * 1e-8 / 2, 0, GC * 1e-8 / DELTA}},
     {.name = "conserving, loading",
      .beta = 1,
      .activation = RG_ACTIVATION_CONSERVING,
@@ -194,6 +215,19 @@ static const scenario scenarios[] = {
      .unlinked = true,
      .opening = 3e-8,
      .jump = {4e-8 + ONSET, 0},
+     .traction = {SIGMA * 0.75, 0},
+     .is_broken = true,
+     .is_unlinked = true,
+     .new_opening = 4e-8,
+     .energy = {0, SIGMA * 0.75 * 4e-8 / 2, 0, GC / 4}},
+    {.name = "conserving, loading from an onset of its own", /* 2 ONSET */
+     .beta = 1,
+     .activation = RG_ACTIVATION_CONSERVING,
+     .broken = true,
+     .unlinked = true,
+     .opening = 3e-8,
+     .given = -ONSET,
+     .jump = {4e-8 + 2 * ONSET, 0},
      .traction = {SIGMA * 0.75, 0},
      .is_broken = true,
      .is_unlinked = true,
@@ -229,11 +263,12 @@ static const scenario scenarios[] = {
      .broken = true,
      .unlinked = true,
      .opening = 1e-8,
+     .given = 0.7 * DELTA,
      .jump = {DELTA + ONSET, 0},
      .is_broken = true,
      .is_unlinked = true,
      .new_opening = DELTA,
-     .energy = {0, 0, 0, GC}},
+     .energy = {0, 0, 0, GC, SIGMA * 0.2 * DELTA}},
     {.name = "total activation",
      .beta = 1,
      .activation = RG_ACTIVATION_TOTAL,
@@ -531,6 +566,7 @@ static void check_scenario(const rg_kernels *set, const scenario *s, double up, 
     for (size_t k = 0; k < RG_LANES * RG_POINTS; k++) {
         rg_real *crack = &b.crack[rg_crack_index(k / RG_POINTS, (int)(k % RG_POINTS), 0)];
         crack[RG_CRACK_OPENING * RG_LANES] = (rg_real)s->opening;
+        crack[RG_CRACK_GIVEN * RG_LANES] = (rg_real)s->given;
         crack[RG_CRACK_ORIGIN * RG_LANES] = (rg_real)s->origin[1];
         crack[(RG_CRACK_ORIGIN + 2) * RG_LANES] = (rg_real)(up * s->origin[0]);
     }

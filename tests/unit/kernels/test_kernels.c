@@ -37,12 +37,23 @@ typedef struct {
 enum { FIELDS = 17, TRACTION_FIELD = 1, TURN_FIELD = 8, CRACK_FIELD = 15 };
 
 static const field fields[FIELDS] = {
-    FIELD(force, 30, 1, true),         FIELD(traction, 36, 1, true), FIELD(stiffening, 1, 1, true),
-    FIELD(energy, 1, 1, true),         FIELD(cauchy, 24, 1, true),   FIELD(kinetic, 1, 1, true),
-    FIELD(lumped_kinetic, 1, 1, true), FIELD(iforce, 18, 1, false),  FIELD(turn, 18, 1, false),
-    FIELD(velocity, 30, 1, true),      FIELD(u, 30, 1, true),        FIELD(lumped_velocity, 30, 1, true),
-    FIELD(lumped_u, 30, 1, true),      FIELD(now, 30, 1, true),      FIELD(lumped_now, 30, 1, true),
-    FIELD(crack, 30, 5, false),        FIELD(ienergy, 4, 4, false),
+    FIELD(force, 30, 1, true),
+    FIELD(traction, 36, 1, true),
+    FIELD(stiffening, 1, 1, true),
+    FIELD(energy, 1, 1, true),
+    FIELD(cauchy, 24, 1, true),
+    FIELD(kinetic, 1, 1, true),
+    FIELD(lumped_kinetic, 1, 1, true),
+    FIELD(iforce, 18, 1, false),
+    FIELD(turn, 18, 1, false),
+    FIELD(velocity, 30, 1, true),
+    FIELD(u, 30, 1, true),
+    FIELD(lumped_velocity, 30, 1, true),
+    FIELD(lumped_u, 30, 1, true),
+    FIELD(now, 30, 1, true),
+    FIELD(lumped_now, 30, 1, true),
+    FIELD(crack, RG_POINTS *RG_CRACK, RG_CRACK, false),
+    FIELD(ienergy, RG_E_INTERFACE, RG_E_INTERFACE, false),
 };
 
 static void *values(const output *out, int f) {

@@ -236,7 +236,7 @@ typedef struct {
 } account;
 
 static void keep_account(account *a, const rg_ledger *l, const twin *w) {
-    double stored = l->last.total + l->last.external, mu = 0, volume = 0;
+    double stored = l->last.total + l->last.half_kick + l->last.external, mu = 0, volume = 0;
     for (size_t e = 0; e < w->elements; e++) {
         mu = fmax(mu, w->material[w->of[e]].mu);
         volume += w->geom[rg_geom_index(w->slot[e], RG_GEOM_VOLUME)];
@@ -382,6 +382,12 @@ static bool same(const void *a, const void *b, size_t bytes) {
 }
 
 /* All that the two have in common has the same bits. */
+/* But for the error: the lone ledger has seen more states, among which the largest energy may be. */
+static bool same_energies(rg_energy a, rg_energy b) {
+    a.error = b.error = a.share = b.share = 0;
+    return same(&a, &b, sizeof a);
+}
+
 static bool same_bits(const rg_solver *s, const lone *one) {
     const rg_solver *o = one->solver;
     bool good = s->stiffening_anywhere == o->stiffening_anywhere && s->opening_rate == o->opening_rate;
@@ -499,7 +505,7 @@ static record follow(const rg_case *c, const rg_mesh *mesh, bool suddenly) {
             rg_solver_kick(s, dt);
             compare_energies(&r, *rg_ledger_take(&ledger, s), twin_energy(w));
             keep_account(&account_of, &ledger, w);
-            r.energies += !same(&ledger.last, &one.ledger.last, sizeof ledger.last);
+            r.energies += !same_energies(ledger.last, one.ledger.last);
             compare_elements(&r, s, w, true);
             rg_solver_drift(s);
         }
@@ -649,7 +655,7 @@ static void check_told(void) {
         char words[400] = "";
         rg_solver_start(s);
         for (int k = 0; k < 8; k++)
-            rg_constraints_set(s->constraints, k * 1e-10, 1e-10, true);
+            rg_constraints_set(s->constraints, k * 1e-10, 1e-10);
         bool any = rg_constraints_told(s->constraints, words, sizeof words, s->comm);
         if (strcmp(words, cases[i].told) != 0)
             printf("# rank %d: %s\n", rank, words);

@@ -265,6 +265,8 @@ void input_break_point(input *in, size_t i, int q, const double w[2], double lar
         in->crack[rg_crack_index(s, q, RG_CRACK_ORIGIN + c)] =
             (rg_real)(jump[c] - in->law.opening * (w[0] * n[c] + w[1] * m[c]));
     in->crack[rg_crack_index(s, q, RG_CRACK_TIME)] = (rg_real)1e-7;
+    in->crack[rg_crack_index(s, q, RG_CRACK_GIVEN)] =
+        (rg_real)(noise(in, KEY_BREAK, i, (uint64_t)q + 2 * RG_POINTS) * in->law.opening);
 }
 
 void input_break(input *in, double probability) {

@@ -75,6 +75,10 @@ double drawn_u(uint64_t seed, rg_gid id, int node, int component) {
     return narrow(8e-6 * drawn(seed, DRAW_U, id, 3 * node + component) + (component == 1 ? 3e-5 : 0));
 }
 
+double drawn_velocity(uint64_t seed, rg_gid id, int node, int component) {
+    return narrow(20 * drawn(seed, DRAW_VELOCITY, id, 3 * node + component));
+}
+
 double drawn_now(uint64_t seed, rg_gid id, int node, int component) {
     return narrow(20 * drawn(seed, DRAW_NOW, id, 3 * node + component) + 5 * component - 7);
 }
@@ -142,7 +146,7 @@ static void draw_element(rg_solver *s, size_t slot, uint64_t seed) {
         size_t at = rg_node_index(slot, k / 3, k % 3);
         s->u[at] = (rg_real)drawn_u(seed, id, k / 3, k % 3);
         s->step_velocity[at] = (rg_real)drawn_now(seed, id, k / 3, k % 3);
-        s->velocity[at] = (rg_real)(20 * drawn(seed, DRAW_VELOCITY, id, k));
+        s->velocity[at] = (rg_real)drawn_velocity(seed, id, k / 3, k % 3);
     }
     int values = rg_material_history(rg_material_of(s, slot)->model), rows = (int)rg_history_rows(values);
     for (int row = 0; row < rows; row++) {
@@ -160,6 +164,8 @@ static void draw_interface(rg_solver *s, size_t i, rg_gid face, uint64_t seed) {
     for (int q = 0; q < RG_POINTS; q++) {
         *rg_crack_value(s, i, q, RG_CRACK_OPENING) =
             (rg_real)(drawn_damage(seed, face, q) * rg_separation(s, i));
+        *rg_crack_value(s, i, q, RG_CRACK_GIVEN) =
+            (rg_real)(drawn(seed, DRAW_GIVEN, face, q) * rg_separation(s, i));
         for (int c = 0; c < 3; c++) {
             *rg_crack_value(s, i, q, RG_CRACK_ORIGIN + c) =
                 (rg_real)(1e-8 * drawn(seed, DRAW_ORIGIN, face, 3 * q + c));

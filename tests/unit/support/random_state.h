@@ -43,14 +43,17 @@ typedef enum {
     DRAW_CONSTRAINT,
     DRAW_BODY,
     DRAW_RUN,
+    DRAW_GIVEN,
     DRAW_OTHER
 } draw_kind;
 double drawn(uint64_t seed, draw_kind kind, int64_t of, int64_t number);
 
-/* As they are drawn: displacement (m) and velocities (m/s) of a node; value `row` (layout.h) of the history
- * of a material with so many values per point; heat (J); broken points of a face as bits, damage of a point,
- * time (s) at which it switched, value k (layout.h) of its friction. */
+/* As they are drawn: displacement (m) and velocities (m/s) of a node, in the middle of the step and at its
+ * time; value `row` (layout.h) of the history of a material with so many values per point; heat (J); broken
+ * points of a face as bits, damage of a point, time (s) at which it switched, value k (layout.h) of its
+ * friction. */
 double drawn_u(uint64_t seed, rg_gid id, int node, int component);
+double drawn_velocity(uint64_t seed, rg_gid id, int node, int component);
 double drawn_now(uint64_t seed, rg_gid id, int node, int component);
 double drawn_history(uint64_t seed, rg_gid id, int values, int row);
 double drawn_heat(uint64_t seed, rg_gid id);

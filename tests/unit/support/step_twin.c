@@ -89,7 +89,7 @@ static void hold(twin *w, size_t e, int c) {
         }
     }
     if (any) {
-        h->work_now = h->work + (w->step > 0 ? correct(w, e, c, h->before, present, w->step_velocity) : 0);
+        h->work_now = h->work + correct(w, e, c, h->before, present, w->step_velocity);
         h->work += correct(w, e, c, h->before, target, w->velocity);
         memcpy(h->before, target, sizeof target);
     }
@@ -334,11 +334,19 @@ static void add_released(const twin *w, size_t e, rg_energy *sum) {
 }
 
 static void add_elements(const twin *w, rg_energy *sum) {
-    double *bulk = RG_NEW(double, w->blocks *RG_LANES), *kinetic = RG_NEW(double, w->blocks *RG_LANES);
+    double *bulk = RG_NEW(double, w->blocks *RG_LANES), *kinetic = RG_NEW(double, w->blocks *RG_LANES),
+           *kick = RG_NEW(double, w->blocks *RG_LANES);
+    rg_real *change = RG_NEW(rg_real, w->blocks * RG_NODE_BLOCK);
     twin_bulk_energies(w, bulk);
     rg_kinetic_args args = {1, w->input->mass, w->geom, w->step_velocity, kinetic};
     rg_reference_kinetic(&args, 0, w->blocks);
+    for (size_t i = 0; i < w->blocks * RG_NODE_BLOCK; i++)
+        change[i] = w->velocity[i] - w->step_velocity[i];
+    args.velocity = change;
+    args.energy = kick;
+    rg_reference_kinetic(&args, 0, w->blocks);
     for (size_t e = 0; e < w->elements; e++) {
+        sum->half_kick += w->material[w->of[e]].density * kick[w->slot[e]];
         sum->bulk += bulk[w->slot[e]];
         sum->kinetic += w->material[w->of[e]].density * kinetic[w->slot[e]];
         sum->viscous += w->heat == NULL ? 0 : w->heat[w->slot[e]];
@@ -346,6 +354,8 @@ static void add_elements(const twin *w, rg_energy *sum) {
     }
     rg_free(bulk);
     rg_free(kinetic);
+    rg_free(kick);
+    rg_free(change);
 }
 
 static void add_momentum(const twin *w, rg_energy *sum) {
@@ -369,7 +379,7 @@ static void add_cracks(const twin *w, rg_energy *sum) {
     double *energy = RG_NEW(double, w->iblocks *RG_E_INTERFACE *RG_LANES);
     rg_interface_args interface = interface_args(w);
     rg_reference_interface_state(&(rg_interface_state_args){&interface, energy}, 0, w->iblocks);
-    double *part[] = {&sum->penalty, &sum->cohesive, &sum->contact, &sum->dissipated};
+    double *part[] = {&sum->penalty, &sum->cohesive, &sum->contact, &sum->dissipated, &sum->unresolved};
     for (size_t k = 0; k < w->iblocks * RG_E_INTERFACE * RG_LANES; k++)
         *part[k / RG_LANES % RG_E_INTERFACE] += energy[k];
     for (size_t e = 0; e < w->elements; e++)
@@ -429,6 +439,7 @@ rg_energy twin_energy(const twin *w) {
         }
     }
     sum.total = sum.kinetic + sum.bodies + sum.bulk + sum.penalty + sum.cohesive + sum.contact +
-                sum.dissipated + sum.plastic + sum.damage + sum.viscous + sum.friction - sum.external;
+                sum.dissipated + sum.plastic + sum.damage + sum.viscous + sum.friction + sum.unresolved -
+                sum.half_kick - sum.external;
     return sum;
 }
