@@ -56,7 +56,7 @@ RG_INLINE rg_vec rg_conserving_start(rg_vec given, rg_vec first, rg_vec onset) {
 
 /* Onset of a point of its own: one that owes more than the common onset can take back gets a larger one. */
 RG_INLINE rg_vec rg_conserving_onset(rg_vec given, rg_vec onset) {
-    return rg_max(onset, -2.0 * given);
+    return rg_max(onset, rg_splat(-2.0) * given);
 }
 
 /* What was set free beyond the work of separation, which no law can take (J per area and strength, m). */

@@ -18,7 +18,9 @@ static void check_sets(const rg_case *c) {
     const rg_sets *sets = &rg_mesh_file_header(f)->surface;
     const char **names = RG_NEW(const char *, (size_t)sets->count + 1);
     char all[1024];
-    memcpy(names, sets->name, (size_t)sets->count * sizeof *names);
+    for (int32_t i = 0; i < sets->count; i++) {
+        names[i] = sets->name[i];
+    }
     for (int b = 0; b < c->boundaries; b++) {
         const char *set = c->boundary[b].set;
         if (rg_sets_find(sets, set) < 0) {

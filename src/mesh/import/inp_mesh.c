@@ -155,11 +155,11 @@ static void fill_element_sets(building *b) {
 
 static void take_face(building *b, const rg_inp_surface *s, const rg_inp_patch *p, int32_t set, size_t e) {
     int kind = b->model->kind[e], count = 0;
-    const uint32_t *node = b->model->node + b->model->start[e];
     uint32_t triangle[2][3];
     if (kind == 0) {
-        return; /* of an element that is left out, and said to be */
+        return; /* of an element that is left out, and said to be: it has no nodes here */
     }
+    const uint32_t *node = b->model->node + b->model->start[e];
     if (kind == 3 && (p->face == RG_INP_FREE || p->face == RG_INP_SIDE)) {
         add_face(b, e, node, set);
         return;

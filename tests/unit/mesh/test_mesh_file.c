@@ -123,11 +123,11 @@ static void test_overlapping(void **state) {
         }
         if (volumes) {
             rg_sets_combine(&m->volume, 2, (const int32_t[]){0, 126});
-            rg_sets_combine(&m->volume, 127 - 3, m->volume.member); /* replaced below */
-            m->volume.start[2] = m->volume.start[1] + 124;
-            for (int32_t s = 0; s < 124; s++) {
-                m->volume.member[2 + s] = s + 3;
+            int32_t many[124];
+            for (int32_t k = 0; k < 124; k++) {
+                many[k] = k + 3;
             }
+            rg_sets_combine(&m->volume, 124, many);
         } else {
             rg_sets_combine(&m->surface, 3, (const int32_t[]){1, 3, 4});
         }
