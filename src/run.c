@@ -27,11 +27,12 @@ enum { EXCHANGES = 6 };
 /* From this stiffening on an element may turn inside out in a step. */
 #define CAREFUL 2
 
-/* The ledger is taken at least every so many steps, and at the powers of two before: some 0.3 % of a run. It
- * is judged from the first of them on: a body that is set in motion at once has little energy in its first
- * steps, and of that the error of the time integration, of order (omega dt)^2, is a good part. */
+/* The ledger is taken at least every so many steps, and before that each time the steps since the start are
+ * four times as many: it takes as long as some four steps. It is judged from the first of them on: a body
+ * that is set in motion at once has little energy in its first steps, and of that the error of the time
+ * integration, of order (omega dt)^2, is a good part. */
 #define FIRST_LOOK 16
-#define LOOK       512
+#define LOOK       2048
 
 typedef struct {
     const rg_case *input;
@@ -101,11 +102,11 @@ static bool output_due(run *r) {
     return true;
 }
 
-/* Whether the energy of the present state is to be looked at, outputs or not: at powers of two because what
- * grows without bound does so soon. */
+/* Whether the energy of the present state is to be looked at though no output has done so for long: soon at
+ * first, because what grows without bound does so soon. */
 static bool look_due(const run *r) {
-    int64_t step = r->solver->step;
-    return step % LOOK == 0 || (step >= FIRST_LOOK && (step & (step - 1)) == 0);
+    int64_t last = r->ledger.last.step, since = r->solver->step - last, wait = 3 * last;
+    return since >= (wait < FIRST_LOOK ? FIRST_LOOK : wait > LOOK ? LOOK : wait);
 }
 
 /* Whether fields of the present state are to be written. */
