@@ -267,6 +267,11 @@ static double rounding(const rg_solver *s, double volume) {
     return 1e3 * DBL_EPSILON * mu * volume;
 }
 
+/* A change of the total (J) over what has been dissipated, once that is enough to judge by. */
+static double over_spent(const rg_ledger *l, double change) {
+    return l->last.spent > RG_JUDGED * l->largest ? change / l->last.spent : NAN;
+}
+
 const rg_energy *rg_ledger_take(rg_ledger *l, rg_solver *s) {
     double *v = RG_NEW(double, sums(s));
     values(s, v);
@@ -285,7 +290,7 @@ const rg_energy *rg_ledger_take(rg_ledger *l, rg_solver *s) {
     double change = e->total - l->start;
     l->largest = fmax(fmax(l->largest, fabs(stored)), rounding(s, v[VOLUME]));
     e->error = change == 0 ? 0 : change / l->largest;
-    e->share = e->spent > RG_JUDGED * l->largest ? change / e->spent : NAN;
+    e->share = over_spent(l, change);
     l->change = isnan(change) ? INFINITY : fmax(l->change, fabs(change));
     rg_free(v);
     return e;
@@ -296,7 +301,7 @@ double rg_ledger_worst(const rg_ledger *l) {
 }
 
 double rg_ledger_share(const rg_ledger *l) {
-    return l->last.spent > RG_JUDGED * l->largest ? l->change / l->last.spent : NAN;
+    return over_spent(l, l->change);
 }
 
 bool rg_ledger_off(const rg_ledger *l, const rg_case *c, char *why, size_t size) {

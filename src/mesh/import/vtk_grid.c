@@ -1,5 +1,6 @@
 #include "mesh/import/vtk_grid.h"
 
+#include <errno.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdbool.h>
@@ -8,6 +9,7 @@
 #include <string.h>
 
 #include "base/error.h"
+#include "base/files.h"
 #include "base/mem.h"
 #include "mesh/import/import.h"
 #include "mesh/rows.h"
@@ -259,4 +261,21 @@ rg_mesh *rg_vtk_mesh(rg_vtk_grid *g, double scale) {
     rg_free(b.element);
     free_grid(g);
     return rg_import_finish(&b.import);
+}
+
+bool rg_vtk_load(const char *path, char **text, size_t *size) {
+    FILE *f = rg_open_input(path);
+    if (f == NULL) {
+        rg_fatal(RG_USAGE, "%s: cannot be read: %s", path, strerror(errno));
+    }
+    size_t room = 0, got;
+    do {
+        *text = rg_grow(*text, &room, *size + (1 << 16), 1);
+        got = fread(*text + *size, 1, room - *size - 1, f);
+        *size += got;
+    } while (got > 0);
+    bool whole = ferror(f) == 0;
+    fclose(f);
+    (*text)[*size] = '\0';
+    return whole;
 }

@@ -40,4 +40,9 @@ void rg_vtk_add_array(rg_vtk_grid *g, const char *name, double *value);
  * the cells, from 0 on. */
 rg_mesh *rg_vtk_mesh(rg_vtk_grid *g, double scale);
 
+/* Reads a whole file into text[size + 1], which begins as NULL and 0 and ends with a zero byte; the caller
+ * frees it. Ends the run with a message (RG_USAGE) if it cannot be opened; false if it cannot be read to its
+ * end. */
+bool rg_vtk_load(const char *path, char **text, size_t *size);
+
 #endif

@@ -1,7 +1,6 @@
 #include "mesh/import/vtk_read.h"
 
 #include <ctype.h>
-#include <errno.h>
 #include <stdarg.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -10,7 +9,6 @@
 #include <strings.h>
 
 #include "base/error.h"
-#include "base/files.h"
 #include "base/mem.h"
 #include "mesh/import/vtk_grid.h"
 
@@ -47,20 +45,7 @@ static void refuse(const reader *r, const char *format, ...) {
 /* ---- words and lines ---- */
 
 static void load(reader *r) {
-    FILE *f = rg_open_input(r->path);
-    if (f == NULL) {
-        rg_fatal(RG_USAGE, "%s: cannot be read: %s", r->path, strerror(errno));
-    }
-    size_t room = 0, got;
-    do {
-        r->text = rg_grow(r->text, &room, r->size + (1 << 16), 1);
-        got = fread(r->text + r->size, 1, room - r->size - 1, f);
-        r->size += got;
-    } while (got > 0);
-    bool failed = ferror(f) != 0;
-    fclose(f);
-    r->text[r->size] = '\0';
-    if (failed) {
+    if (!rg_vtk_load(r->path, &r->text, &r->size)) {
         refuse(r, "the file cannot be read to its end");
     }
 }

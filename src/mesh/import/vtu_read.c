@@ -1,5 +1,4 @@
 #include <ctype.h>
-#include <errno.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -7,7 +6,6 @@
 #include <zlib.h>
 
 #include "base/error.h"
-#include "base/files.h"
 #include "base/mem.h"
 #include "mesh/import/vtk_grid.h"
 #include "mesh/import/vtk_read.h"
@@ -328,20 +326,7 @@ static void take_array(reader *r, const tag *t) {
 /* ---- the whole ---- */
 
 static void load(reader *r) {
-    FILE *f = rg_open_input(r->path);
-    if (f == NULL) {
-        rg_fatal(RG_USAGE, "%s: cannot be read: %s", r->path, strerror(errno));
-    }
-    size_t room = 0, got;
-    do {
-        r->text = rg_grow(r->text, &room, r->size + (1 << 16), 1);
-        got = fread(r->text + r->size, 1, room - r->size - 1, f);
-        r->size += got;
-    } while (got > 0);
-    bool failed = ferror(f) != 0;
-    fclose(f);
-    r->text[r->size] = '\0';
-    if (failed) {
+    if (!rg_vtk_load(r->path, &r->text, &r->size)) {
         refuse(r, "cannot be read to its end", "");
     }
 }
