@@ -39,7 +39,7 @@ def half_period(energy):
 def test_energy_stays_for_20000_steps(run, figure):
     bar = run(example("free-bar.yaml"), sets=BAR)
     assert bar.summary["steps"] == 20000
-    figure("free bar, 20,000 steps: energy error", bar.summary["energy_error_rel"], bound=5e-5)
+    figure("free bar, 20,000 steps: energy error", bar.summary["energy_error_rel"], bound=2.5e-9)
 
 
 @pytest.mark.parametrize("mass, bound", [("consistent", 7e-7), ("lumped", 1.4e-3)])
