@@ -5,6 +5,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "case/curve.h"
 #include "case/expr.h"
 #include "kernels.h"
 #include "materials.h"
@@ -102,6 +103,7 @@ typedef struct {
 typedef struct {
     char *path; /* as given on the command line */
     char *name; /* its file name without directory and extension */
+    rg_curves tables;
     struct {
         int64_t cells[3];
         double size[3], origin[3];

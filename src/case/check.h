@@ -39,6 +39,9 @@ bool rg_value_read(rg_check *ck, const rg_key *key, const rg_node *node, const c
 void rg_value_wrong(rg_check *ck, const rg_key *key, const rg_node *node, const char *path,
                     const char *nearest, const char *what);
 
+/* A path that the case gives relative to its own file. Free with rg_free. */
+char *rg_path_beside_case(const rg_check *ck, const char *path);
+
 /* Makes mesh.file, given relative to the case file, a path that holds anywhere; reports a file that cannot be
  * read. */
 void rg_mesh_file_rule(rg_check *ck, const rg_node *node);

@@ -5,6 +5,7 @@
 #include "case/echo.h"
 #include "case/expr.h"
 #include "case/key.h"
+#include "case/table.h"
 
 /* Double quotes, because only they can hold any text. */
 static void write_text(FILE *out, const char *text) {
@@ -114,6 +115,9 @@ void rg_key_write(FILE *out, const rg_key *key, const void *base) {
     case RG_KEY_INTERVAL:
         write_interval(out, base);
         break;
+    case RG_KEY_TABLES:
+        rg_tables_write(out, value);
+        break;
     case RG_KEY_LIST:
         break;
     }
@@ -141,6 +145,9 @@ bool rg_key_present(const rg_key *key, const void *base) {
     }
     if (key->type == RG_KEY_TEXT || key->type == RG_KEY_EXPR) {
         return rg_pointer_get(value) != NULL;
+    }
+    if (key->type == RG_KEY_TABLES) {
+        return ((const rg_curves *)(const void *)value)->count > 0;
     }
     if (key->type == RG_KEY_TEXTS || key->type == RG_KEY_REALS) {
         return list_length(key, base) > 0;

@@ -32,12 +32,14 @@ const rg_expr_word rg_expr_words[] = {
     {"rint(a)", "nearest integer"},
     {"min(a, ...) max(a, ...)", "least and largest of one or more"},
     {"sum(a, ...) avg(a, ...)", "sum and mean of one or more"},
+    {"name(a)", "the function that `tables` gives by that name"},
     {NULL, NULL},
 };
 /* clang-format on */
 
 struct rg_expr {
     char *text;
+    const rg_curves *tables; /* that it may call; NULL: none */
     muParserHandle_t parser; /* NULL: a number */
     double *variable;        /* read by the parser */
     double constant;         /* the value if no variable is used */
@@ -91,6 +93,17 @@ static void find_variables(rg_expr *e) {
     }
 }
 
+static double table_value(void *curve, double argument) {
+    return rg_curve_value(curve, argument);
+}
+
+static void define_tables(rg_expr *e) {
+    for (int i = 0; e->tables != NULL && i < e->tables->count; i++) {
+        rg_curve *c = &e->tables->curve[i];
+        mupDefineFunUserData1(e->parser, c->name, table_value, c, 1);
+    }
+}
+
 /* Sets the parser up and evaluates once, which is when muParser parses. Returns what is wrong, or NULL. */
 static char *parse(rg_expr *e) {
     static const char *const name[VARIABLES] = {"x", "y", "z", "t", "nx", "ny", "nz"};
@@ -100,6 +113,7 @@ static char *parse(rg_expr *e) {
     for (int i = 0; i < VARIABLES; i++) {
         mupDefineVar(e->parser, name[i], &e->variable[i]);
     }
+    define_tables(e);
     mupSetExpr(e->parser, e->text);
     int values = 0;
     const double *value = mupError(e->parser) ? NULL : mupEvalMulti(e->parser, &values);
@@ -126,9 +140,14 @@ static char *check(const rg_expr *e) {
 }
 
 rg_expr *rg_expr_new(const char *text, char **message) {
+    return rg_expr_with(text, NULL, message);
+}
+
+rg_expr *rg_expr_with(const char *text, const rg_curves *tables, char **message) {
     rg_expr *e = RG_NEW(rg_expr, 1);
     bool integer = false;
     *message = NULL;
+    e->tables = tables;
     e->text = rg_text_copy(text, strlen(text));
     if (rg_is_number(text, &integer)) {
         e->constant = strtod(text, NULL);
@@ -149,7 +168,7 @@ rg_expr *rg_expr_new(const char *text, char **message) {
 
 rg_expr *rg_expr_copy(const rg_expr *e) {
     char *message = NULL;
-    return e == NULL ? NULL : rg_expr_new(e->text, &message);
+    return e == NULL ? NULL : rg_expr_with(e->text, e->tables, &message);
 }
 
 void rg_expr_free(rg_expr *e) {

@@ -5,6 +5,8 @@
 
 #include <stdbool.h>
 
+#include "case/curve.h"
+
 typedef struct rg_expr rg_expr;
 
 /* What expressions know, as one writes it and in words; the last one is {NULL, NULL}. */
@@ -19,6 +21,9 @@ bool rg_is_number(const char *text, bool *integer);
 /* Expression from its text: a number, or an expression for muParser in x, y, z, t and the constant pi. NULL
  * if it is none; then *message tells why. Free the message with rg_free. */
 rg_expr *rg_expr_new(const char *text, char **message);
+
+/* The same of an expression that may call these functions too; keeps a reference to them. */
+rg_expr *rg_expr_with(const char *text, const rg_curves *tables, char **message);
 
 /* Another one of the same text, for another thread; NULL for NULL. Free with rg_expr_free. */
 rg_expr *rg_expr_copy(const rg_expr *e);

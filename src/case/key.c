@@ -80,6 +80,11 @@ static void type_words(const rg_key *key, char *text, size_t size) {
     case RG_KEY_INTERVAL:
         rg_text_add(text, size, "integer >= 1 (steps), or number > 0 and < 1 (simulated seconds)");
         break;
+    case RG_KEY_TABLES:
+        rg_text_add(text, size,
+                    "mapping of names to: list of [argument, value], ascending; path of a CSV file; "
+                    "or {points or file, smooth: true or false}");
+        break;
     case RG_KEY_LIST:
         list_words(key->entry, text, size);
         break;
@@ -340,6 +345,8 @@ void rg_keys_free(const rg_key_table *table, void *base) {
             free_list(key, base);
         } else if (key->type == RG_KEY_TEXTS) {
             free_texts(key, base);
+        } else if (key->type == RG_KEY_TABLES) {
+            rg_curves_free(value);
         }
     }
 }

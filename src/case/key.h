@@ -25,6 +25,7 @@ typedef enum {
     RG_KEY_REALS,    /* double *: list of any length */
     RG_KEY_EXPR,     /* rg_expr *: number or expression */
     RG_KEY_INTERVAL, /* output.interval: steps or seconds, by the kind of number */
+    RG_KEY_TABLES,   /* rg_curves: mapping of names to tables */
     RG_KEY_LIST,     /* array of mappings with the keys of `entry` */
 } rg_key_type;
 

@@ -112,6 +112,9 @@ static const char *const fragments_meaning[] = {
     { .name = (name_), .unit = (unit_), .type = RG_KEY_EXPR, ELSE("0"), .no_time = true, CASE(initial.member), MEANS(words) }
 
 static const rg_key case_keys[] = {
+    {.name = "tables", .type = RG_KEY_TABLES, ELSE("none"), CASE(tables),
+     MEANS("functions of one variable that expressions may call: straight lines between the points, or smooth, a monotone cubic; constant beyond the ends")},
+
     {.name = "mesh.file", .type = RG_KEY_TEXT, ELSE("the box"), MAY_CHANGE, CASE(mesh.file),
      MEANS("mesh file that `rhegma mesh` made, in place of the box; relative to the case file")},
     {.name = "mesh.cells", INTEGER3, FROM_TO(1, 100000), REQUIRED, BOX, CASE(mesh.cells),

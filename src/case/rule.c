@@ -10,11 +10,15 @@
 
 /* ---- mesh.file: relative to the case file, which case.yaml in the output directory is not ---- */
 
+char *rg_path_beside_case(const rg_check *ck, const char *path) {
+    const char *file = ck->problems->file, *slash = strrchr(file, '/');
+    int folder = path[0] == '/' || slash == NULL ? 0 : (int)(slash - file) + 1;
+    return rg_text_format("%.*s%s", folder, file, path);
+}
+
 void rg_mesh_file_rule(rg_check *ck, const rg_node *node) {
     char *file = ck->c->mesh.file, here[4096];
-    const char *slash = strrchr(ck->problems->file, '/');
-    int folder = file[0] == '/' || slash == NULL ? 0 : (int)(slash - ck->problems->file) + 1;
-    char *path = rg_text_format("%.*s%s", folder, ck->problems->file, file);
+    char *path = rg_path_beside_case(ck, file);
     if (access(path, R_OK) != 0) {
         rg_subject subject = {
             .key = "mesh.file", .value = file, .allowed = "path of a mesh file, relative to the case file"};

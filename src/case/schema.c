@@ -119,6 +119,48 @@ static void put_interval(writer *w) {
     close_group(w, ']');
 }
 
+/* [argument, value], two or more. */
+static void put_points(writer *w, const char *name) {
+    open_group(w, name, '{');
+    put_text(w, "type", "array");
+    put_number(w, "minItems", 2);
+    open_group(w, "items", '{');
+    put_text(w, "type", "array");
+    put_number(w, "minItems", 2);
+    put_number(w, "maxItems", 2);
+    open_group(w, "items", '{');
+    put_text(w, "type", "number");
+    close_group(w, '}');
+    close_group(w, '}');
+    close_group(w, '}');
+}
+
+/* Of any name: points, a path, or one of them with `smooth`. */
+static void put_tables(writer *w) {
+    put_text(w, "type", "object");
+    open_group(w, "additionalProperties", '{');
+    open_group(w, "anyOf", '[');
+    put_points(w, NULL);
+    open_group(w, NULL, '{');
+    put_text(w, "type", "string");
+    close_group(w, '}');
+    open_group(w, NULL, '{');
+    put_text(w, "type", "object");
+    open_group(w, "properties", '{');
+    put_points(w, "points");
+    open_group(w, "file", '{');
+    put_text(w, "type", "string");
+    close_group(w, '}');
+    open_group(w, "smooth", '{');
+    put_text(w, "type", "boolean");
+    close_group(w, '}');
+    close_group(w, '}');
+    put_false(w, "additionalProperties");
+    close_group(w, '}');
+    close_group(w, ']');
+    close_group(w, '}');
+}
+
 static void put_table(writer *w, const rg_key_table *table, const char *section);
 
 /* Of one entry where the key takes a list. */
@@ -144,6 +186,9 @@ static void put_single(writer *w, const rg_key *key) {
         break;
     case RG_KEY_INTERVAL:
         put_interval(w);
+        break;
+    case RG_KEY_TABLES:
+        put_tables(w);
         break;
     case RG_KEY_LIST:
         put_table(w, key->entry, "");

@@ -9,6 +9,7 @@
 
 #include "base/mem.h"
 #include "case/expr.h"
+#include "case/table.h"
 
 void rg_value_wrong(rg_check *ck, const rg_key *key, const rg_node *node, const char *path,
                     const char *nearest, const char *what) {
@@ -237,7 +238,7 @@ static bool read_expr(rg_check *ck, const rg_key *key, const rg_node *node, cons
         return false;
     }
     char *message = NULL;
-    rg_expr *e = rg_expr_new(node->text, &message);
+    rg_expr *e = rg_expr_with(node->text, &ck->c->tables, &message);
     if (e == NULL) {
         rg_value_wrong(ck, key, node, path, NULL, message);
         rg_free(message);
@@ -299,6 +300,8 @@ bool rg_value_read(rg_check *ck, const rg_key *key, const rg_node *node, const c
         return read_expr(ck, key, node, path, value);
     case RG_KEY_INTERVAL:
         return read_interval(ck, key, node, path, base);
+    case RG_KEY_TABLES:
+        return rg_tables_read(ck, key, node, path, value);
     case RG_KEY_LIST:
         break;
     }

@@ -49,13 +49,18 @@ static const struct {
     {"max(a, ...)", "max(x, z, y)", 2.5},
     {"sum(a, ...)", "sum(x, y, z)", 3.5},
     {"avg(a, ...)", "avg(x, y, z)", 3.5 / 3},
+    {"name(a)", "name(t) + 10*name(z)", 22.75},
 };
+
+static double straight[2][2] = {{1, 3}, {2, 2}}; /* the table `name` */
+static rg_curve curve = {.name = (char[]){"name"}, .points = 2, .point = straight};
+static const rg_curves tables = {1, &curve};
 
 static void test_values(void **state) {
     (void)state;
     for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
         char *message = NULL;
-        rg_expr *e = rg_expr_new(known[i].text, &message);
+        rg_expr *e = rg_expr_with(known[i].text, &tables, &message);
         if (e == NULL) {
             fail_msg("%s: %s", known[i].text, message);
         }
@@ -108,7 +113,7 @@ static void test_all_that_is_listed(void **state) {
         assert_true(listed);
         calls += known[i].name != NULL && strchr(known[i].name, '(') != NULL ? 1 : 0;
     }
-    assert_true(lines > 0 && calls == 26);
+    assert_true(lines > 0 && calls == 27);
 }
 
 /* The normal of a face, nx, ny, nz. */
