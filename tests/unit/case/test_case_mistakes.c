@@ -14,7 +14,8 @@
     "allowed: list from displacement, velocity, stress, mean_stress, principal_stress, crack, "              \
     "damage, regime, plastic_strain, triaxiality, rank, fragment, material"
 #define BLOCKS                                                                                               \
-    "allowed: mesh, material, materials, interface, viscosity, mass, initial, boundary, bodies, time, "      \
+    "allowed: tables, mesh, material, materials, interface, viscosity, mass, initial, boundary, bodies, "    \
+    "time, "                                                                                                 \
     "output, checkpoint"
 #define CERAMIC        ": not used, because material.model is neo-hookean; it belongs to deshpande-evans\n"
 #define NAMES          "allowed: letters, digits, _ and -; unique among bodies and probes\n"

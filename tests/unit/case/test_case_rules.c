@@ -358,7 +358,8 @@ static const mistake materials[] = {
      ":18:11: output.fields: damage: no material has such a field\n"
      ":18:11: output.fields: regime: no material has such a field\n"
      ":18:11: output.fields: plastic_strain: no material has such a field\n"
-     ":20:1: x: unknown key; allowed: mesh, material, materials, interface, viscosity, mass, initial, "
+     ":20:1: x: unknown key; allowed: tables, mesh, material, materials, interface, viscosity, mass, "
+     "initial, "
      "boundary, bodies, time, output, checkpoint\n"},
     {"  model: neo-hookean\n",
      "  model: rubber\n"
