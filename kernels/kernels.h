@@ -114,7 +114,8 @@ typedef struct {
     const rg_real *geom;    /* interface geometry */
     const rg_real *scale; /* NULL: all faces alike; else [block][2][lane]: strength and critical opening over
                              those of the law */
-    uint8_t *broken;      /* [interface] in/out: bit q set where point q has switched */
+    const rg_real *beta, *friction; /* NULL: the law's; else [block][lane], of each face */
+    uint8_t *broken;                /* [interface] in/out: bit q set where point q has switched */
     uint8_t *unlinked; /* [interface] in/out: bit q set where point q has no DG terms (never set for a closed
                           point under flux contact) */
     uint8_t *active;   /* [block] in/out: not 0 where some lane of the block has a broken point */

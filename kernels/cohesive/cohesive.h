@@ -23,6 +23,7 @@ typedef struct {
     double step;                       /* time since the state before (s) */
     rg_vec area;                       /* of the face (m^2); what a law returns carries it as a factor */
     rg_vec strength, opening, inverse; /* sigma_c (Pa), delta_c (m), 1/delta_c (1/m) at this point */
+    rg_vec beta2;                      /* weight of shear, squared; of form intrinsic law->beta all over */
     rg_vec normal;                     /* normal opening D_n (m), < 0: closed */
     rg_vec sliding_square;             /* |D_t|^2 (m^2) */
     rg_vec effective;                  /* sqrt(beta^2 |D_t|^2 + max(0, D_n)^2) (m) */
@@ -46,7 +47,7 @@ typedef struct {
 /* T = s delta in the direction of (beta^2 D_t, max(0, D_n)) (3.19). */
 RG_INLINE void rg_law_by_secant(const rg_law_point *p, rg_vec secant, rg_law_response *r) {
     r->shear = p->area * secant;
-    r->weight = rg_splat(p->law->beta * p->law->beta);
+    r->weight = p->beta2;
     r->normal = r->shear * rg_max(p->normal, rg_splat(0.0));
 }
 

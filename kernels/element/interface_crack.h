@@ -43,6 +43,11 @@ RG_INLINE rg_vec scale(const interface *s, int k) {
     return rg_load(s->args->scale + (s->block * 2 + (size_t)k) * RG_LANES + s->lane);
 }
 
+/* A property of these faces: of each, or, without a field of it, the same for all. */
+RG_INLINE rg_vec of_face(const interface *s, const rg_real *field, double all) {
+    return field == NULL ? rg_splat(all) : rg_load(field + s->block * RG_LANES + s->lane);
+}
+
 /* Parameters of the law on these faces. */
 RG_INLINE void load_law(interface *s) {
     const rg_cohesive *law = &s->args->law;
@@ -52,6 +57,11 @@ RG_INLINE void load_law(interface *s) {
     s->opening = rg_splat(law->opening);
     s->inverse = rg_splat(1.0 / law->opening);
     s->contact = normal_penalty(s);
+    s->beta2 = rg_splat(law->beta * law->beta);
+    if (s->args->beta != NULL) {
+        rg_vec beta = of_face(s, s->args->beta, 0);
+        s->beta2 = beta * beta;
+    }
     if (law->slope > 0 && s->args->scale == NULL) {
         s->contact = rg_max(s->contact, s->area * rg_splat(law->slope));
     }
@@ -85,9 +95,8 @@ RG_INLINE void crack_opening(const interface *s, int q, const vec3 n, point_open
     for (int c = 0; c < 3; c++) {
         o->tangential[c] = w[c] - o->normal * n[c];
     }
-    rg_vec beta2 = rg_splat(s->args->law.beta * s->args->law.beta);
     rg_vec open = rg_max(o->normal, rg_splat(0.0));
-    o->effective = rg_sqrt(beta2 * rg_dot(o->tangential, o->tangential) + open * open);
+    o->effective = rg_sqrt(s->beta2 * rg_dot(o->tangential, o->tangential) + open * open);
 }
 
 #endif

@@ -9,8 +9,12 @@
 /* The Piola traction below which a point is not tested: half the strength, as an area-weighted square. */
 RG_INLINE rg_vec test_bound(const interface *s) {
     double beta = s->args->law.beta, strength = s->args->law.strength;
-    double reach = beta > 0 && beta < 1 ? 1 / (beta * beta) : 1;
+    double reach = s->args->beta == NULL && beta > 0 && beta < 1 ? 1 / (beta * beta) : 1;
     rg_vec bound = rg_splat(0.25 * strength * strength / reach) * s->area_square;
+    if (s->args->beta != NULL) {
+        rg_vec one = rg_splat(1.0), each = of_face(s, s->args->beta, 0);
+        bound *= rg_select(each > 0.0, rg_min(each * each, one), one);
+    }
     if (s->args->scale != NULL) {
         bound *= scale(s, 0) * scale(s, 0);
     }
@@ -32,13 +36,20 @@ typedef struct {
     rg_vec effective;      /* sqrt(<t_n>^2 + |tau|^2/beta^2) */
 } cauchy;
 
+RG_INLINE rg_vec shear_weight(const interface *s) {
+    double beta = s->args->law.beta;
+    if (s->args->beta == NULL) {
+        return rg_splat(beta > 0 ? 1 / (beta * beta) : 0);
+    }
+    return rg_select(s->beta2 > 0.0, 1.0 / s->beta2, rg_splat(0.0));
+}
+
 RG_INLINE void cauchy_traction(const interface *s, int q, const vec3 n, rg_vec area, cauchy *t) {
-    const rg_cohesive *law = &s->args->law;
     vec3 all;
     for (int c = 0; c < 3; c++) {
         all[c] = s->mean[q][c] / rg_max(area, rg_splat(RG_NO_AREA));
     }
-    t->shear = rg_splat(law->beta > 0 ? 1 / (law->beta * law->beta) : 0);
+    t->shear = shear_weight(s);
     rg_vec tn = rg_dot(all, n);
     t->tension = rg_max(tn, rg_splat(0.0));
     for (int c = 0; c < 3; c++) {
@@ -59,7 +70,11 @@ RG_INLINE rg_vec onset(const interface *s, rg_activation activation) {
     double share = activation == RG_ACTIVATION_TOTAL        ? 0.0
                    : activation == RG_ACTIVATION_CONSERVING ? law->onset
                                                             : RG_ONSET;
-    return rg_splat(share * law->strength) * s->strong_area / normal_penalty(s);
+    rg_vec eps = rg_splat(share * law->strength) * s->strong_area / normal_penalty(s);
+    if (activation == RG_ACTIVATION_CONSERVING && s->args->beta != NULL) { /* the law's is for its own beta */
+        eps *= rg_max(s->beta2, rg_splat(1.0)) * rg_splat(1 / (law->beta > 1 ? law->beta * law->beta : 1));
+    }
+    return eps;
 }
 
 /* Closed opening at which contact goes on with the pressure of the DG traction, at most 0 (m). */

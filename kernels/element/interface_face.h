@@ -24,6 +24,7 @@ typedef struct {
     vec3 mean[RG_POINTS];                                    /* <P> A */
     vec3 total[RG_POINTS];                                   /* traction that acts */
     rg_vec strength, strong_area, opening, inverse, contact; /* damaged faces: the law here (load_law) */
+    rg_vec beta2;
 } interface;
 
 RG_INLINE const int32_t *side(const interface *s, int k) {

@@ -33,7 +33,8 @@ RG_INLINE rg_vec friction_limit(const interface *s, int q, const point_opening *
         damage = rg_min(rg_load(crack_state(s, q, RG_CRACK_OPENING)) / separation(s), damage);
     }
     rg_vec pressure = s->contact * rg_max(-o->normal, rg_splat(0.0));
-    return rg_select(broken_before, rg_splat(law->friction) * damage * pressure, rg_splat(0.0));
+    return rg_select(broken_before, of_face(s, s->args->friction, law->friction) * damage * pressure,
+                     rg_splat(0.0));
 }
 
 /* The elastic predictor and the return to |t_t| <= mu D p (cohesive/friction.h). */

@@ -20,6 +20,7 @@ RG_INLINE rg_law_point law_point(const interface *s, const point_opening *o, rg_
                           .strength = s->strength,
                           .opening = s->opening,
                           .inverse = s->inverse,
+                          .beta2 = s->beta2,
                           .normal = o->normal,
                           .sliding_square = rg_dot(o->tangential, o->tangential),
                           .effective = o->effective,

@@ -8,6 +8,7 @@
 /* One quadrature point, gathered. */
 typedef struct {
     double strength, opening, contact; /* of the law here; stiffness of closed points, area-weighted */
+    double beta, friction;
     double weight, shape[RG_FNODES];
     double area, iso, norm; /* reference area and the two penalty factors, area-weighted */
     double jump[3];
@@ -102,6 +103,8 @@ static void sample_law(const rg_interface_args *args, size_t i, point *p) {
     p->opening = args->law.opening * (scale == NULL ? 1 : scale[RG_LANES]);
     double slope = args->law.slope * (scale == NULL ? 1 : scale[0] / scale[RG_LANES]);
     p->contact = fmax(p->iso + p->norm, slope * p->area);
+    p->beta = args->beta == NULL ? args->law.beta : args->beta[i];
+    p->friction = args->friction == NULL ? args->law.friction : args->friction[i];
 }
 
 static void sample(const rg_interface_args *args, size_t i, int q, point *p) {
@@ -155,8 +158,8 @@ static crack crack_of(const rg_interface_args *args, size_t i, int q) {
 
 /* Whether an unbroken point breaks now; if so, `direction` is that of its first opening. */
 static bool breaks(const rg_cohesive *law, const point *p, double direction[3]) {
-    double beta2 = law->beta * law->beta, shear[3];
-    double weight = law->beta > 0 ? fmax(1, 1 / beta2) : 1;
+    double beta2 = p->beta * p->beta, shear[3];
+    double weight = p->beta > 0 ? fmax(1, 1 / beta2) : 1;
     double limit = p->strength * p->area;
     if (p->area == 0 || !isfinite(law->strength))
         return false;
@@ -167,10 +170,10 @@ static bool breaks(const rg_cohesive *law, const point *p, double direction[3]) 
     for (int c = 0; c < 3; c++)
         shear[c] = p->traction[c] / p->current - across * p->normal[c];
     double effective = pull;
-    if (law->beta > 0)
+    if (p->beta > 0)
         effective = sqrt(pull * pull + rg_reference_dot(shear, shear) / beta2);
     for (int c = 0; c < 3; c++)
-        direction[c] = law->beta > 0 ? (shear[c] / beta2 + pull * p->normal[c]) / effective : p->normal[c];
+        direction[c] = p->beta > 0 ? (shear[c] / beta2 + pull * p->normal[c]) / effective : p->normal[c];
     return effective > p->strength;
 }
 
@@ -178,7 +181,8 @@ static bool breaks(const rg_cohesive *law, const point *p, double direction[3]) 
 static double onset(const rg_cohesive *law, const point *p) {
     double share[] = {[RG_ACTIVATION_CONTINUOUS] = RG_ONSET,
                       [RG_ACTIVATION_TOTAL] = 0,
-                      [RG_ACTIVATION_CONSERVING] = law->onset};
+                      [RG_ACTIVATION_CONSERVING] =
+                          law->onset * fmax(1, p->beta * p->beta) / fmax(1, law->beta * law->beta)};
     return share[law->activation] * p->strength * p->area / (p->iso + p->norm);
 }
 
@@ -222,7 +226,7 @@ static void activate(const rg_interface_args *args, const point *p, const double
 }
 
 /* w_n, w_t and delta of (3.16). */
-static opening measure(const rg_cohesive *law, const point *p, const crack *k) {
+static opening measure(const point *p, const crack *k) {
     opening o = {0};
     double w[3];
     for (int c = 0; c < 3; c++)
@@ -231,7 +235,7 @@ static opening measure(const rg_cohesive *law, const point *p, const crack *k) {
     for (int c = 0; c < 3; c++)
         o.shear[c] = w[c] - o.normal * p->normal[c];
     double open = fmax(0, o.normal);
-    o.effective = sqrt(law->beta * law->beta * rg_reference_dot(o.shear, o.shear) + open * open);
+    o.effective = sqrt(p->beta * p->beta * rg_reference_dot(o.shear, o.shear) + open * open);
     return o;
 }
 
@@ -244,7 +248,7 @@ static rg_law_answer ask(const rg_interface_args *args, const point *p, const op
     rg_law_query query = {p->strength,
                           p->opening,
                           law->shape,
-                          law->beta,
+                          p->beta,
                           args->step,
                           o->normal,
                           sqrt(rg_reference_dot(o->shear, o->shear)),
@@ -365,7 +369,7 @@ static void add_coulomb(const rg_interface_args *args, size_t i, const point *p,
     sample_tangents(args, i, p, tangent);
     double parts = p->opening * (law->separation / law->opening);
     double damage = parts > 0 ? fmin(1, *k->state[RG_CRACK_OPENING] / parts) : 1;
-    double limit = fresh || o->normal >= 0 ? 0 : law->friction * damage * p->contact * -o->normal;
+    double limit = fresh || o->normal >= 0 ? 0 : p->friction * damage * p->contact * -o->normal;
     for (int d = 0; d < 2; d++) {
         slip[d] = rg_reference_dot(o->shear, tangent[d]);
         spring[d] = p->iso * (slip[d] - *k->friction[RG_FRICTION_ANCHOR + d]);
@@ -404,7 +408,7 @@ static void point_traction(const rg_interface_args *args, size_t i, int q, const
         set_bit(&args->broken[i], q, true);
         args->active[i / RG_LANES] = 1;
     }
-    opening o = measure(&args->law, p, &k);
+    opening o = measure(p, &k);
     bool closed = args->law.contact == RG_CONTACT_FLUX && o.normal < 0;
     if (!closed) {
         traction law = cohesive_traction(args, p, &o, &k);
@@ -452,7 +456,7 @@ static void point_energy(const rg_interface_args *args, size_t i, int q, double 
     if (!broken)
         return;
     crack k = crack_of(args, i, q);
-    opening o = measure(law, &p, &k);
+    opening o = measure(&p, &k);
     rg_law_answer a = ask(args, &p, &o, &k, *k.state[RG_CRACK_OPENING], false);
     if (unlinked)
         energy[RG_E_COHESIVE] += p.weight * p.area * a.stored;

@@ -15,6 +15,7 @@ typedef enum { RG_INTERACTION_THESIS, RG_INTERACTION_DERIVED } rg_interaction;
 typedef enum { RG_OUTPUT_DOUBLE, RG_OUTPUT_SINGLE } rg_output_precision;
 typedef enum { RG_FRAGMENTS_EACH, RG_FRAGMENTS_LAST, RG_FRAGMENTS_NONE } rg_fragments_when;
 typedef enum { RG_KEEP_ENERGY, RG_KEEP_OPENING } rg_keep;
+typedef enum { RG_BREAKING_BY_LAW, RG_BREAKING_NEVER } rg_breaking;
 typedef enum { RG_SHAPE_SPHERE, RG_SHAPE_PLANE, RG_SHAPE_CYLINDER } rg_shape_kind;
 typedef enum { RG_MOTION_FREE, RG_MOTION_PRESCRIBED } rg_motion;
 
@@ -74,8 +75,14 @@ enum { RG_MAX_MATERIALS = 32 };
 typedef struct {
     rg_expr *where; /* not 0: by their middle x, y, z (m), unit normal nx, ny, nz */
     int names;
-    char **between;          /* names of the materials on both sides */
-    double strength, energy; /* of these (Pa, J/m^2); 0: the interface's */
+    char **between; /* names of the materials on both sides */
+    rg_breaking breaking;
+    /* Numbers, or where the expression beside them is no number that: of these faces (Pa, J/m^2); without an
+     * expression the interface's. */
+    double strength, energy, beta, friction;
+    rg_expr *strength_at, *energy_at, *beta_at, *friction_at;
+    double modulus, area; /* of Weibull's distribution (m^2); modulus 0: the interface's */
+    int64_t seed;         /* 0: the interface's */
 } rg_face_set;
 
 typedef struct {
@@ -123,6 +130,7 @@ typedef struct {
         rg_penalty penalty;
         rg_law law;
         double strength, energy, beta;
+        rg_expr *strength_at, *energy_at; /* as in rg_face_set; NULL: the number */
         rg_activation activation;
         double onset; /* of a conserving activation (kernels.h: RG_ONSET) */
         rg_contact contact;

@@ -77,6 +77,15 @@ static void write_expr(FILE *out, const rg_expr *e) {
     }
 }
 
+static void write_face_value(FILE *out, const rg_key *key, const void *base) {
+    const rg_expr *e = rg_pointer_get((const char *)base + key->offset_expr);
+    if (e == NULL || rg_expr_is_number(e)) {
+        write_numbers(out, key, (const char *)base + key->offset);
+    } else {
+        write_expr(out, e);
+    }
+}
+
 static void write_interval(FILE *out, const rg_case *c) {
     if (c->output.interval_steps > 0) {
         fprintf(out, "%lld # steps", (long long)c->output.interval_steps);
@@ -112,6 +121,9 @@ void rg_key_write(FILE *out, const rg_key *key, const void *base) {
     case RG_KEY_EXPR:
         write_expr(out, rg_pointer_get(value));
         break;
+    case RG_KEY_FACE:
+        write_face_value(out, key, base);
+        break;
     case RG_KEY_INTERVAL:
         write_interval(out, base);
         break;
@@ -136,6 +148,7 @@ static bool is_zero(const rg_key *key, const char *value) {
 }
 
 bool rg_key_present(const rg_key *key, const void *base) {
+    int choice = 0;
     const char *value = (const char *)base + key->offset;
     if (!rg_key_used(key, base)) {
         return false;
@@ -148,6 +161,13 @@ bool rg_key_present(const rg_key *key, const void *base) {
     }
     if (key->type == RG_KEY_TABLES) {
         return ((const rg_curves *)(const void *)value)->count > 0;
+    }
+    if (key->type == RG_KEY_CHOICE && key->need == RG_NEED_OPTIONAL) {
+        memcpy(&choice, value, sizeof choice);
+        return choice != 0;
+    }
+    if (key->type == RG_KEY_FACE && key->need == RG_NEED_OPTIONAL) {
+        return rg_pointer_get((const char *)base + key->offset_expr) != NULL;
     }
     if (key->type == RG_KEY_TEXTS || key->type == RG_KEY_REALS) {
         return list_length(key, base) > 0;

@@ -77,6 +77,10 @@ static void type_words(const rg_key *key, char *text, size_t size) {
     case RG_KEY_EXPR:
         expr_words(key, text, size);
         break;
+    case RG_KEY_FACE:
+        range_words(key, text, size);
+        rg_text_add(text, size, ", or expression in x, y, z, nx, ny, nz");
+        break;
     case RG_KEY_INTERVAL:
         rg_text_add(text, size, "integer >= 1 (steps), or number > 0 and < 1 (simulated seconds)");
         break;
@@ -341,6 +345,8 @@ void rg_keys_free(const rg_key_table *table, void *base) {
         } else if (key->type == RG_KEY_EXPR) { /* may be shared by two keys of a group */
             rg_expr_free(rg_pointer_get(value));
             rg_pointer_set(value, NULL);
+        } else if (key->type == RG_KEY_FACE) {
+            rg_expr_free(rg_pointer_get((char *)base + key->offset_expr));
         } else if (key->type == RG_KEY_LIST) {
             free_list(key, base);
         } else if (key->type == RG_KEY_TEXTS) {

@@ -16,14 +16,16 @@
 #define RG_DEFAULT_SAFETY 0.5
 
 typedef enum {
-    RG_KEY_REAL,     /* double [count] */
-    RG_KEY_INTEGER,  /* int64_t [count] */
-    RG_KEY_CHOICE,   /* an enum: position in `choice` */
-    RG_KEY_FLAGS,    /* unsigned: list of entries of `choice`, one bit each */
-    RG_KEY_TEXT,     /* char *: any text, or one of `choice` if given */
-    RG_KEY_TEXTS,    /* char **: list of such texts */
-    RG_KEY_REALS,    /* double *: list of any length */
-    RG_KEY_EXPR,     /* rg_expr *: number or expression */
+    RG_KEY_REAL,    /* double [count] */
+    RG_KEY_INTEGER, /* int64_t [count] */
+    RG_KEY_CHOICE,  /* an enum: position in `choice` */
+    RG_KEY_FLAGS,   /* unsigned: list of entries of `choice`, one bit each */
+    RG_KEY_TEXT,    /* char *: any text, or one of `choice` if given */
+    RG_KEY_TEXTS,   /* char **: list of such texts */
+    RG_KEY_REALS,   /* double *: list of any length */
+    RG_KEY_EXPR,    /* rg_expr *: number or expression */
+    RG_KEY_FACE,    /* the same of a face, where place and normal are known, an rg_expr * at offset_expr; of a
+                       number also double */
     RG_KEY_INTERVAL, /* output.interval: steps or seconds, by the kind of number */
     RG_KEY_TABLES,   /* rg_curves: mapping of names to tables */
     RG_KEY_LIST,     /* array of mappings with the keys of `entry` */
@@ -84,6 +86,7 @@ typedef struct {
     size_t offset;                    /* of the value in the structure */
     const struct rg_key_table *entry; /* of a list */
     size_t offset_count;              /* of lists: where their length (int) is kept */
+    size_t offset_expr;               /* of RG_KEY_FACE: its rg_expr * */
 } rg_key;
 
 typedef struct rg_key_table {

@@ -26,6 +26,11 @@
 #define ONE_OF          .alternative = RG_EXACTLY_ONE
 #define SOME_OF         .alternative = RG_AT_LEAST_ONE
 #define MEANS(words)    .meaning = (words)
+/* Number or expression of a face; the member beside, with _at behind its name, holds the latter. */
+#define FACE            .type = RG_KEY_FACE, .count = 1, .no_time = true, .normal = true
+#define OF_CASE(member) CASE(member), .offset_expr = offsetof(rg_case, member##_at)
+#define OF_SET(member)                                                                                       \
+    .offset = offsetof(rg_face_set, member), .offset_expr = offsetof(rg_face_set, member##_at)
 
 #define TAKES_YOUNG(name, NAME, word, meaning, history, inside)                                              \
     | ((inside)&RG_TAKES_YOUNG ? RG_MATERIAL_BIT_##NAME : 0)
@@ -75,6 +80,10 @@ static const char *const keeps[] = {"energy", "opening", NULL};
 static const char *const keeps_meaning[] = {
     "the fracture energy: weak faces open further",
     "the critical opening: weak faces take less energy"};
+static const char *const breakings[] = {"interface", "none", NULL};
+static const char *const breakings_meaning[] = {
+    "by interface.law",
+    "they never do"};
 static const char *const masses[] = {"consistent", "lumped", NULL};
 static const char *const masses_meaning[] = {
     "exact for the shape functions; its inverse is one constant matrix",
@@ -151,10 +160,10 @@ static const rg_key case_keys[] = {
     {.name = "interface.penalty", EXPLAINED(penalties), DEFAULT(RG_PENALTY_ELASTIC), GROUP(DG),
      CASE(interface.penalty), MEANS("what beta_s multiplies")},
     {.name = "interface.law", EXPLAINED(laws), REQUIRED, CASE(interface.law), MEANS("cohesive law")},
-    {.name = "interface.strength", .unit = "Pa", REAL, ABOVE(0), REQUIRED, GROUP(COHESIVE),
-     CASE(interface.strength), MEANS("tensile strength of a face")},
-    {.name = "interface.energy", .unit = "J/m2", REAL, ABOVE(0), REQUIRED, GROUP(ENERGY),
-     CASE(interface.energy), MEANS("fracture energy G_c, per area of new crack; of a toughness: K_Ic^2 (1 - nu^2)/E")},
+    {.name = "interface.strength", .unit = "Pa", FACE, ABOVE(0), REQUIRED, GROUP(COHESIVE),
+     OF_CASE(interface.strength), MEANS("tensile strength of a face, by its middle and unit normal, of either sign")},
+    {.name = "interface.energy", .unit = "J/m2", FACE, ABOVE(0), REQUIRED, GROUP(ENERGY),
+     OF_CASE(interface.energy), MEANS("fracture energy G_c, per area of new crack; of a toughness: K_Ic^2 (1 - nu^2)/E")},
     {.name = "interface.beta", REAL, FROM(0), DEFAULT(1), GROUP(SHEAR), CASE(interface.beta),
      MEANS("weight of shear against opening; 0: opening alone breaks")},
     {.name = "interface.activation", EXPLAINED(activations), DEFAULT(RG_ACTIVATION_CONTINUOUS), GROUP(SWITCH),
@@ -252,10 +261,22 @@ static const rg_key face_set_keys[] = {
      MEANS("faces where it is not 0, by their middle and unit normal, of either sign")},
     {.name = "between", .type = RG_KEY_TEXTS, ELSE("where"), SOME_OF, .offset = offsetof(rg_face_set, between),
      .offset_count = offsetof(rg_face_set, names), MEANS("names of the materials on both sides, or one twice; with `where` both hold")},
-    {.name = "strength", .unit = "Pa", REAL, ABOVE(0), ELSE("interface.strength"), .offset = offsetof(rg_face_set, strength),
+    {.name = "law", EXPLAINED(breakings), ELSE("interface"), .offset = offsetof(rg_face_set, breaking),
+     MEANS("whether they can break")},
+    {.name = "strength", .unit = "Pa", FACE, ABOVE(0), ELSE("interface.strength"), OF_SET(strength),
      MEANS("tensile strength of these faces")},
-    {.name = "energy", .unit = "J/m2", REAL, ABOVE(0), ELSE("interface.energy"), .offset = offsetof(rg_face_set, energy),
+    {.name = "energy", .unit = "J/m2", FACE, ABOVE(0), ELSE("interface.energy"), OF_SET(energy),
      MEANS("fracture energy of these faces")},
+    {.name = "beta", FACE, FROM(0), ELSE("interface.beta"), OF_SET(beta),
+     MEANS("weight of shear against opening, but in form intrinsic")},
+    {.name = "friction", FACE, FROM(0), ELSE("interface.friction"), OF_SET(friction),
+     MEANS("Coulomb's coefficient of these faces, closed")},
+    {.name = "weibull.modulus", REAL, ABOVE(0), ELSE("interface.weibull.modulus"), .offset = offsetof(rg_face_set, modulus),
+     MEANS("of strengths that differ at random")},
+    {.name = "weibull.area", .unit = "m2", REAL, ABOVE(0), ELSE("required with weibull.modulus"), .offset = offsetof(rg_face_set, area),
+     MEANS("area of a face of which 63 % are weaker than `strength`")},
+    {.name = "weibull.seed", INTEGER, FROM(1), ELSE("interface.weibull.seed"), .offset = offsetof(rg_face_set, seed),
+     MEANS("of these faces")},
 };
 
 static const rg_key other_material_keys[] = {

@@ -112,53 +112,7 @@ void rg_material_rule(rg_check *ck, const rg_node *list, int i, const char *path
     }
 }
 
-/* ---- who names them ---- */
-
-/* "alumina, steel" */
-static void list_names(const rg_case *c, char *text, size_t size) {
-    const char *join = "names of two materials, or one twice: ";
-    text[0] = '\0';
-    for (int m = 0; m <= c->others; m++) {
-        rg_text_add(text, size, "%s%s", join, rg_case_material_name(c, m));
-        join = ", ";
-    }
-}
-
-static void check_between(rg_check *ck, const rg_node *node, const rg_face_set *set, const char *path) {
-    char allowed[256], *key = rg_text_format("%s.between", path), value[64];
-    const char **names = RG_NEW(const char *, (size_t)ck->c->others + 2); /* ends with NULL */
-    for (int m = 0; m <= ck->c->others; m++) {
-        names[m] = rg_case_material_name(ck->c, m);
-    }
-    list_names(ck->c, allowed, sizeof allowed);
-    rg_subject subject = {.key = key, .value = rg_node_line(node, value, sizeof value), .allowed = allowed};
-    if (set->names != 2) {
-        rg_problem_add(ck->problems, node->at, &subject, "wrong number of entries");
-    }
-    for (int k = 0; k < set->names && set->names == 2; k++) {
-        if (rg_case_find_material(ck->c, set->between[k]) < 0) {
-            subject.value = set->between[k];
-            subject.nearest = rg_nearest(set->between[k], names);
-            rg_problem_add(ck->problems, node->child[k].at, &subject, "no such material");
-        }
-    }
-    rg_free(names);
-    rg_free(key);
-}
-
-void rg_face_set_rule(rg_check *ck, const rg_node *list, int i, const char *path, bool good) {
-    const rg_node *item = &list->child[i];
-    if (item->kind != RG_NODE_MAPPING) {
-        return;
-    }
-    const rg_node *between = rg_node_find(item, "between", strlen("between"));
-    if (between == NULL && rg_node_find(item, "where", strlen("where")) == NULL) {
-        rg_subject subject = {.key = path, .allowed = "where, between, or both"};
-        rg_problem_add(ck->problems, item->at, &subject, "missing where or between");
-    } else if (between != NULL && good) {
-        check_between(ck, between, &ck->c->interface.set[i], path);
-    }
-}
+/* ---- what they put out ---- */
 
 void rg_fields_rule(rg_check *ck, const rg_key *key, const rg_node *node) {
     unsigned *fields = &ck->c->output.fields, possible = rg_case_possible_fields(ck->c);

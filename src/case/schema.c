@@ -72,14 +72,19 @@ static int length(const char *const words[]) {
     return count;
 }
 
-static void put_range(writer *w, const char *type, const rg_key *range) {
-    put_text(w, "type", type);
+/* Which only numbers have to keep. */
+static void put_bounds(writer *w, const rg_key *range) {
     if (isfinite(range->low)) {
         put_number(w, range->low_open ? "exclusiveMinimum" : "minimum", range->low);
     }
     if (isfinite(range->high)) {
         put_number(w, range->high_open ? "exclusiveMaximum" : "maximum", range->high);
     }
+}
+
+static void put_range(writer *w, const char *type, const rg_key *range) {
+    put_text(w, "type", type);
+    put_bounds(w, range);
 }
 
 static void put_enum(writer *w, const rg_key *key) {
@@ -183,6 +188,10 @@ static void put_single(writer *w, const rg_key *key) {
         break;
     case RG_KEY_EXPR:
         put_words(w, "type", (const char *const[]){"number", "string"}, 2);
+        break;
+    case RG_KEY_FACE:
+        put_words(w, "type", (const char *const[]){"number", "string"}, 2);
+        put_bounds(w, key);
         break;
     case RG_KEY_INTERVAL:
         put_interval(w);

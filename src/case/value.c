@@ -264,6 +264,17 @@ static bool read_expr(rg_check *ck, const rg_key *key, const rg_node *node, cons
     return true;
 }
 
+/* A number is in range at once; what an expression gives is looked at where the faces are known. */
+static bool read_face_value(rg_check *ck, const rg_key *key, const rg_node *node, const char *path,
+                            char *base) {
+    bool integer = false;
+    bool number = node->kind == RG_NODE_SCALAR && rg_is_number(node->text, &integer);
+    if (number && !read_number(ck, key, node, path, base + key->offset, 0)) {
+        return false;
+    }
+    return read_expr(ck, key, node, path, base + key->offset_expr);
+}
+
 static bool read_interval(rg_check *ck, const rg_key *key, const rg_node *node, const char *path,
                           rg_case *c) {
     bool integer = false;
@@ -298,6 +309,8 @@ bool rg_value_read(rg_check *ck, const rg_key *key, const rg_node *node, const c
         return read_reals(ck, key, node, path, base);
     case RG_KEY_EXPR:
         return read_expr(ck, key, node, path, value);
+    case RG_KEY_FACE:
+        return read_face_value(ck, key, node, path, base);
     case RG_KEY_INTERVAL:
         return read_interval(ck, key, node, path, base);
     case RG_KEY_TABLES:

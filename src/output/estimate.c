@@ -16,8 +16,8 @@
 #define SLOWEST_WAVE 10
 #define FASTEST_WAVE 30e3
 
-/* Length of the cohesive zone of mode I, plane strain: (9 pi/32) E/(1 - nu^2) G_c/sigma_c^2 (thesis 2; Rice
- * 1968). */
+/* Length of the cohesive zone of mode I, plane strain, where it is shortest: (9 pi/32) E/(1 - nu^2)
+ * G_c/sigma_c^2 (thesis 2; Rice 1968). */
 static double cohesive_zone(const rg_case *c, const rg_solver *s) {
     if (c->interface.law == RG_LAW_NONE) {
         return INFINITY;
@@ -27,8 +27,7 @@ static double cohesive_zone(const rg_case *c, const rg_solver *s) {
         const rg_material *m = &s->model->material[i];
         modulus = fmin(modulus, 4 * m->mu * (m->lambda + m->mu) / (m->lambda + 2 * m->mu));
     }
-    return 9 * 3.14159265358979324 / 32 * modulus * c->interface.energy /
-           (c->interface.strength * c->interface.strength);
+    return 9 * 3.14159265358979324 / 32 * modulus * s->model->toughness;
 }
 
 /* A point that has just switched by the conserving activation unloads 1/interface.onset times as stiffly as a

@@ -16,6 +16,21 @@ void rg_law_stiffness(const rg_cohesive *law, double slope[2]) {
     }
 }
 
+/* Whether some face may rub. */
+static bool has_friction(const rg_case *c) {
+    bool rubs = c->interface.friction > 0;
+    for (int i = 0; i < c->interface.sets; i++) {
+        const rg_face_set *set = &c->interface.set[i];
+        rubs =
+            rubs || set->friction > 0 || (set->friction_at != NULL && !rg_expr_is_number(set->friction_at));
+    }
+    return rubs;
+}
+
+double rg_law_number(double number, const rg_expr *at) {
+    return at == NULL || rg_expr_is_number(at) ? number : 1;
+}
+
 /* The critical opening of a law without work of separation means nothing: any does. */
 rg_cohesive rg_law_make(const rg_case *c) {
     if (c->interface.law == RG_LAW_NONE) {
@@ -26,21 +41,22 @@ rg_cohesive rg_law_make(const rg_case *c) {
                              .form = c->interface.form};
     }
     rg_cohesive law = {.law = c->interface.law,
-                       .strength = c->interface.strength,
+                       .strength = rg_law_number(c->interface.strength, c->interface.strength_at),
                        .beta = c->interface.beta,
                        .form = c->interface.form,
                        .activation = c->interface.activation,
                        .onset = c->interface.onset * fmax(1, c->interface.beta * c->interface.beta),
                        .beta_s = c->interface.beta_s,
                        .contact = c->interface.contact,
-                       .sliding = c->interface.friction > 0 ? RG_SLIDING_COULOMB : RG_SLIDING_FREE,
+                       .sliding = has_friction(c) ? RG_SLIDING_COULOMB : RG_SLIDING_FREE,
                        .friction = c->interface.friction};
     memcpy(law.shape, c->interface.shape[law.law], sizeof law.shape);
     rg_law_facts facts = facts_of(&law);
     if ((facts.forms & RG_NORMAL_MEASURE) != 0) {
         law.beta = 0;
     }
-    law.opening = facts.work > 0 ? c->interface.energy / (facts.work * law.strength) : 1;
+    double energy = rg_law_number(c->interface.energy, c->interface.energy_at);
+    law.opening = facts.work > 0 ? energy / (facts.work * law.strength) : 1;
     law.separation = facts.separation * law.opening;
     if (law.form == RG_FORM_INTRINSIC) {
         double slope[2];

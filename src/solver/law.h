@@ -5,8 +5,12 @@
 #include "solver/solver.h"
 
 /* Law of the case, its critical opening from strength and energy; of infinite strength where there is none.
- */
+ * Strengths and energies that are expressions are, in the law, 1 (Pa, J/m^2): faces have factors of their
+ * own then (solver/strength.h). */
 rg_cohesive rg_law_make(const rg_case *c);
+
+/* What the law has of a number, or of an expression. */
+double rg_law_number(double number, const rg_expr *at);
 
 /* N of the adaptive time step (solver/step_limiter.h); 0: the law has none, or it is not asked for. */
 double rg_law_steps(const rg_cohesive *law);

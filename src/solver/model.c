@@ -16,7 +16,8 @@ rg_model *rg_model_make(const rg_case *c) {
                     .material = rg_materials_of_case(c),
                     .gradient = gradient_of(c),
                     .law = rg_law_make(c),
-                    .stiffest = 1};
+                    .stiffest = 1,
+                    .toughness = c->interface.energy / (c->interface.strength * c->interface.strength)};
     m->crack_stride = rg_crack_stride(&m->law);
     for (int i = 0; i < m->materials; i++) {
         size_t block = rg_history_block(rg_material_history(m->material[i].model));
@@ -29,6 +30,8 @@ void rg_model_free(rg_model *m) {
     if (m != NULL) {
         rg_free((void *)m->material);
         rg_free((void *)m->scale);
+        rg_free((void *)m->beta);
+        rg_free((void *)m->friction);
         rg_free(m);
     }
 }

@@ -1,6 +1,7 @@
 #include "solver/strength.h"
 
 #include <math.h>
+#include <stdio.h>
 
 #include "base/error.h"
 #include "base/hash.h"
@@ -8,10 +9,21 @@
 #include "base/first_bad.h"
 #include "cohesive/facts.h"
 
+/* What a face has. */
+typedef struct {
+    bool breaks;
+    double strength, energy, beta, friction; /* before they differ at random (Pa, J/m^2) */
+    double modulus, area;                    /* of Weibull's distribution (m^2); modulus 0: none */
+    int64_t seed;
+} properties;
+
 /* Strength and critical opening of a face over those of the law. */
 typedef struct {
     double strength, opening;
 } factors;
+
+/* Expressions of the interface and of each set, by whose number the first bad one is found. */
+enum { WHERE, STRENGTH, ENERGY, BETA, FRICTION, EXPRESSIONS };
 
 /* Looks at the faces, one after the other. */
 typedef struct {
@@ -19,8 +31,13 @@ typedef struct {
     double work;       /* of separation, over strength times opening */
     int (*between)[2]; /* [sets]: materials that a set names, the lower first; of others nothing */
     int64_t *claimed;  /* [sets]: faces that each has */
-    rg_first_bad bad;  /* where an expression is not finite */
+    rg_first_bad bad;  /* where an expression is not what it must be; which: that of `bad_number` */
 } search;
+
+/* Of expression `which` of set i; i = -1: of the interface. */
+static int64_t bad_number(int i, int which) {
+    return (int64_t)(i + 1) * EXPRESSIONS + which;
+}
 
 /* Corners of an interface, as its first side has them; both sides have the same bits. */
 static void corners(const rg_solver *s, const rg_tile *t, size_t i, const double *x[RG_FCORNERS]) {
@@ -68,57 +85,124 @@ static bool has(search *f, int number, size_t i, const double middle[3], const d
     const rg_face_set *set = &f->s->input->interface.set[number];
     double here = set->where == NULL ? 1 : rg_expr_face_value(set->where, middle, normal);
     if (!isfinite(here)) {
-        rg_first_bad_note(&f->bad, number, middle, here);
+        rg_first_bad_note(&f->bad, bad_number(number, WHERE), middle, here);
     }
     return here != 0 && (set->between == NULL || lies_between(f, number, i));
 }
 
-/* The last set that has the face. */
-static void apply_sets(search *look, size_t face, const double *x[RG_FCORNERS], const double normal[3],
-                       factors *f) {
+/* Value of an expression at a face, or the number. */
+static double value_of(search *look, int64_t which, double number, const rg_expr *at, const double middle[3],
+                       const double normal[3]) {
+    if (at == NULL || rg_expr_is_number(at)) {
+        return number;
+    }
+    double value = rg_expr_face_value(at, middle, normal);
+    bool may_vanish = which % EXPRESSIONS == BETA || which % EXPRESSIONS == FRICTION;
+    if (!isfinite(value) || value < 0 || (value <= 0 && !may_vanish)) {
+        rg_first_bad_note(&look->bad, which, middle, value);
+    }
+    return value;
+}
+
+/* Those of the last set that has the face, and of the interface where it says nothing. */
+static properties find_properties(search *look, size_t face, const double *x[RG_FCORNERS],
+                                  const double normal[3]) {
     const rg_case *c = look->s->input;
-    const rg_cohesive *law = &look->s->model->law;
+    const rg_face_set *set = &(const rg_face_set){0};
+    int number = -1;
     double middle[3];
     for (int k = 0; k < 3; k++) {
         middle[k] = (x[0][k] + x[1][k] + x[2][k]) / 3;
     }
     for (int i = 0; i < c->interface.sets; i++) {
-        const rg_face_set *set = &c->interface.set[i];
         if (has(look, i, face, middle, normal)) {
             look->claimed[i]++;
-            double strength = set->strength > 0 ? set->strength : c->interface.strength;
-            double energy = set->energy > 0 ? set->energy : c->interface.energy;
-            f->strength = strength / law->strength;
-            f->opening = look->work > 0 ? energy / (look->work * strength) / law->opening : 1;
+            set = &c->interface.set[i];
+            number = i;
         }
     }
+    const struct {
+        double own, interface;
+        const rg_expr *own_at, *interface_at;
+    } of[EXPRESSIONS] = {
+        [STRENGTH] = {set->strength, c->interface.strength, set->strength_at, c->interface.strength_at},
+        [ENERGY] = {set->energy, c->interface.energy, set->energy_at, c->interface.energy_at},
+        [BETA] = {set->beta, look->s->model->law.beta, set->beta_at, NULL},
+        [FRICTION] = {set->friction, c->interface.friction, set->friction_at, NULL},
+    };
+    double value[EXPRESSIONS] = {0};
+    for (int k = STRENGTH; k < EXPRESSIONS; k++) {
+        bool own = of[k].own_at != NULL;
+        value[k] = value_of(look, bad_number(own ? number : -1, k), own ? of[k].own : of[k].interface,
+                            own ? of[k].own_at : of[k].interface_at, middle, normal);
+    }
+    bool random = set->modulus > 0;
+    return (properties){.breaks = set->breaking != RG_BREAKING_NEVER,
+                        .strength = value[STRENGTH],
+                        .energy = value[ENERGY],
+                        .beta = value[BETA],
+                        .friction = value[FRICTION],
+                        .modulus = random ? set->modulus : c->interface.weibull.modulus,
+                        .area = random ? set->area : c->interface.weibull.area,
+                        .seed = random && set->seed > 0 ? set->seed : c->interface.weibull.seed};
 }
 
 /* sigma = sigma_0 (-(A_0/A) ln(1 - U))^(1/m): the weakest link of a face of area A (Weibull 1939; Zhou &
  * Molinari 2004). */
-static void apply_weibull(const rg_case *c, const double *x[RG_FCORNERS], double area, factors *f) {
-    double u = face_uniform(c->interface.weibull.seed, x);
-    double w = pow(-c->interface.weibull.area / area * log1p(-u), 1 / c->interface.weibull.modulus);
+static void apply_weibull(const properties *p, rg_keep keep, const double *x[RG_FCORNERS], double area,
+                          factors *f) {
+    double u = face_uniform(p->seed, x);
+    double w = pow(-p->area / area * log1p(-u), 1 / p->modulus);
     f->strength *= w;
-    f->opening /= c->interface.weibull.keep == RG_KEEP_ENERGY ? w : 1;
+    f->opening /= keep == RG_KEEP_ENERGY ? w : 1;
 }
 
-static factors factors_of(search *look, const rg_tile *t, size_t i) {
-    const rg_solver *s = look->s;
+/* Of a face that never breaks the strength is infinite. */
+static factors factors_of(const search *look, const properties *p, const double *x[RG_FCORNERS],
+                          double area) {
+    const rg_cohesive *law = &look->s->model->law;
+    if (!p->breaks) {
+        return (factors){INFINITY, 1};
+    }
+    factors f = {p->strength / law->strength,
+                 look->work > 0 ? p->energy / (look->work * p->strength) / law->opening : 1};
+    if (p->modulus > 0) {
+        apply_weibull(p, look->s->input->interface.weibull.keep, x, area, &f);
+    }
+    return f;
+}
+
+/* Fields that are filled, NULL where all faces are alike. */
+typedef struct {
+    rg_real *scale, *beta, *friction;
+    double stiffest, toughness; /* as in rg_model, of this rank */
+} fields;
+
+static void fill_face(search *look, const rg_tile *t, size_t i, fields *to) {
+    double normal[3], area = rg_interface_area(look->s->domain, i, normal);
     factors f = {1, 1};
-    double normal[3], area = rg_interface_area(s->domain, i, normal);
+    properties p = {.breaks = false};
     if (area > 0) { /* not in padding */
         const double *x[RG_FCORNERS];
-        corners(s, t, i, x);
+        corners(look->s, t, i, x);
         for (int c = 0; c < 3; c++) {
             normal[c] /= area;
         }
-        apply_sets(look, i, x, normal, &f);
-        if (s->input->interface.weibull.modulus > 0) {
-            apply_weibull(s->input, x, area, &f);
-        }
+        p = find_properties(look, i, x, normal);
+        f = factors_of(look, &p, x, area);
     }
-    return f;
+    to->scale[i / RG_LANES * 2 * RG_LANES + i % RG_LANES] = (rg_real)f.strength;
+    to->scale[(i / RG_LANES * 2 + 1) * RG_LANES + i % RG_LANES] = (rg_real)f.opening;
+    if (to->beta != NULL) {
+        to->beta[i] = (rg_real)p.beta;
+    }
+    if (to->friction != NULL) {
+        to->friction[i] = (rg_real)p.friction;
+    }
+    if (p.breaks) {
+        to->stiffest = fmax(to->stiffest, f.strength / f.opening);
+        to->toughness = fmin(to->toughness, p.energy / (p.strength * p.strength));
+    }
 }
 
 /* Ends the run where a set has no face at all: a plane that the mesh does not have, or a slip of the pen. */
@@ -136,38 +220,84 @@ static void refuse_empty_sets(const search *look) {
     }
 }
 
+/* Ends the run at the first expression that is not what it must be. */
+static void refuse_bad_values(search *look) {
+    static const char *const key[] = {"where", "strength", "energy", "beta", "friction"};
+    const rg_case *c = look->s->input;
+    const rg_first_bad *bad = &look->bad;
+    if (!rg_first_bad_lowest(&look->bad, look->s->comm)) {
+        return;
+    }
+    int set = (int)(bad->which / EXPRESSIONS) - 1, which = (int)(bad->which % EXPRESSIONS);
+    const rg_face_set *of = set < 0 ? NULL : &c->interface.set[set];
+    const rg_expr *at[] = {of == NULL ? NULL : of->where,
+                           of == NULL ? c->interface.strength_at : of->strength_at,
+                           of == NULL ? c->interface.energy_at : of->energy_at,
+                           of == NULL ? NULL : of->beta_at, of == NULL ? NULL : of->friction_at};
+    char place[32] = "";
+    if (of != NULL) {
+        snprintf(place, sizeof place, ".sets[%d]", set);
+    }
+    rg_speak(look->s->comm);
+    const char *wrong = !isfinite(bad->value)                ? "finite"
+                        : which == BETA || which == FRICTION ? "0 or positive"
+                                                             : "positive";
+    rg_fatal(RG_USAGE, "%s: interface%s.%s: %s is not %s at (%g, %g, %g)", c->path, place, key[which],
+             rg_expr_text(at[which]), wrong, bad->x[0], bad->x[1], bad->x[2]);
+}
+
+static bool is_expression(const rg_expr *e) {
+    return e != NULL && !rg_expr_is_number(e);
+}
+
+/* Whether faces differ; in what, beside strength and opening. */
+static bool differ(const rg_case *c) {
+    return c->interface.sets > 0 || c->interface.weibull.modulus > 0 ||
+           is_expression(c->interface.strength_at) || is_expression(c->interface.energy_at);
+}
+
+static bool sets_have(const rg_case *c, size_t offset) {
+    bool have = false;
+    for (int i = 0; i < c->interface.sets; i++) {
+        rg_expr *const *at = (void *)((char *)&c->interface.set[i] + offset);
+        have = have || *at != NULL;
+    }
+    return have;
+}
+
+static rg_real *field_if(bool wanted, size_t count) {
+    return wanted ? RG_NEW(rg_real, count) : NULL;
+}
+
 void rg_strength_make(const rg_solver *s, rg_model *m) {
     const rg_case *c = s->input;
     const rg_domain *d = s->domain;
-    if (c->interface.law == RG_LAW_NONE || (c->interface.sets == 0 && !(c->interface.weibull.modulus > 0))) {
+    if (c->interface.law == RG_LAW_NONE || !differ(c)) {
         return;
     }
-    double stiffest = 0;
+    size_t slots = d->iblocks * RG_LANES;
     search look = {.s = s,
                    .work = rg_law_facts_of(m->law.law, m->law.shape, m->law.beta).work,
                    .between = rg_alloc((size_t)c->interface.sets + 1, sizeof *look.between),
                    .claimed = RG_NEW(int64_t, (size_t)c->interface.sets + 1),
                    .bad = {.which = RG_NOWHERE}};
-    const rg_first_bad *bad = &look.bad;
+    fields to = {.scale = field_if(true, 2 * slots),
+                 .beta = field_if(sets_have(c, offsetof(rg_face_set, beta_at)), slots),
+                 .friction = field_if(sets_have(c, offsetof(rg_face_set, friction_at)), slots),
+                 .toughness = INFINITY};
     find_materials(&look);
-    rg_real *scale = RG_NEW(rg_real, d->iblocks * 2 * RG_LANES);
-    m->scale = scale;
     for (size_t t = 0; t < d->tiles; t++) { /* expressions are not for threads */
         for (size_t i = d->tile[t].ibegin * RG_LANES; i < d->tile[t].iend * RG_LANES; i++) {
-            factors f = factors_of(&look, &d->tile[t], i);
-            scale[i / RG_LANES * 2 * RG_LANES + i % RG_LANES] = (rg_real)f.strength;
-            scale[(i / RG_LANES * 2 + 1) * RG_LANES + i % RG_LANES] = (rg_real)f.opening;
-            stiffest = fmax(stiffest, f.strength / f.opening);
+            fill_face(&look, &d->tile[t], i, &to);
         }
     }
     rg_free(look.between);
-    if (rg_first_bad_lowest(&look.bad, s->comm)) {
-        rg_speak(s->comm);
-        rg_fatal(RG_USAGE, "%s: interface.sets[%d].where: %s is not finite at (%g, %g, %g)", c->path,
-                 (int)bad->which, rg_expr_text(c->interface.set[bad->which].where), bad->x[0], bad->x[1],
-                 bad->x[2]);
-    }
+    refuse_bad_values(&look);
     refuse_empty_sets(&look);
     rg_free(look.claimed);
-    MPI_Allreduce(&stiffest, &m->stiffest, 1, MPI_DOUBLE, MPI_MAX, s->comm);
+    m->scale = to.scale;
+    m->beta = to.beta;
+    m->friction = to.friction;
+    MPI_Allreduce(&to.stiffest, &m->stiffest, 1, MPI_DOUBLE, MPI_MAX, s->comm);
+    MPI_Allreduce(&to.toughness, &m->toughness, 1, MPI_DOUBLE, MPI_MIN, s->comm);
 }

@@ -64,6 +64,10 @@ void rg_tile_state(const rg_solver *s, const rg_tile *t, const rg_workspace *w, 
     }
 }
 
+static const rg_real *of_faces(const rg_real *field, size_t first) {
+    return field == NULL ? NULL : field + first;
+}
+
 rg_interface_args rg_tile_interfaces(const rg_solver *s, const rg_tile *t, const rg_workspace *w) {
     const rg_domain *d = s->domain;
     size_t first = t->ibegin * RG_LANES;
@@ -80,6 +84,8 @@ rg_interface_args rg_tile_interfaces(const rg_solver *s, const rg_tile *t, const
                                .geom = d->igeom + t->ibegin * RG_IGEOM_BLOCK,
                                .scale = s->model->scale == NULL ? NULL
                                                                 : s->model->scale + t->ibegin * 2 * RG_LANES,
+                               .beta = of_faces(s->model->beta, first),
+                               .friction = of_faces(s->model->friction, first),
                                .broken = s->broken + first,
                                .unlinked = s->unlinked + first,
                                .active = s->active + t->ibegin,

@@ -80,7 +80,8 @@ static const char *const all[] = {
     "interface.activation=conserving",
     "interface.onset=0.625",
     "interface.contact=potential",
-    "interface.sets=[{where: nz > x, strength: 100}, {between: [second, third], energy: 3}]",
+    "interface.sets=[{where: nz > x, strength: 100, beta: 0, friction: 0, weibull: {modulus: 3, area: 2}}, "
+    "{between: [second, third], energy: 3*z, beta: nx, law: interface}, {where: 1, law: none}]",
     "interface.weibull={modulus: 12, area: 0.5, seed: 9, keep: opening}",
     "viscosity={linear: 0.0625, quadratic: 1.25}",
     "mass=lumped",
@@ -218,8 +219,16 @@ static void test_everything(void **state) {
                 "  sets:\n"
                 "    - where: \"nz > x\"\n"
                 "      strength: 100 # Pa\n"
+                "      beta: 0\n"
+                "      friction: 0\n"
+                "      weibull:\n"
+                "        modulus: 3\n"
+                "        area: 2 # m2\n"
                 "    - between: [\"second\", \"third\"]\n"
-                "      energy: 3 # J/m2\n"
+                "      energy: \"3*z\" # J/m2\n"
+                "      beta: \"nx\"\n"
+                "    - where: 1\n"
+                "      law: none\n"
                 "  weibull:\n"
                 "    modulus: 12\n"
                 "    area: 0.5 # m2\n"

@@ -5,6 +5,7 @@
 #define CELL     "allowed: integer >= 1 and <= 100000\n"
 #define SIZE     "allowed: [x, y, z], each number > 0 (m)\n"
 #define YOUNG    "allowed: number > 0 (Pa)\n"
+#define STRENGTH "allowed: number > 0, or expression in x, y, z, nx, ny, nz (Pa)\n"
 #define SETS     "allowed: x-, x+, y-, y+, z-, z+"
 #define MOTION   "allowed: number or expression in x, y, z, t (m/s)\n"
 #define ONE_OF   ONE_MOTION
@@ -31,7 +32,15 @@ static const mistake mistakes[] = {
     /* missing, unknown, repeated keys */
     {"  cells: [2, 2, 4]\n", "", ":2:3: mesh.cells: missing; " CELLS},
     {"  law: linear\n", "", ":10:3: interface.law: missing; allowed: $LAWS, none\n"},
-    {"  strength: 400e6\n", "", ":10:3: interface.strength: missing; " YOUNG},
+    {"  strength: 400e6\n", "", ":10:3: interface.strength: missing; " STRENGTH},
+    {"strength: 400e6", "strength: -4", ":11:13: interface.strength: -4: out of range; " STRENGTH},
+    {"strength: 400e6", "strength: .inf", ":11:13: interface.strength: .inf: not finite; " STRENGTH},
+    {"strength: 400e6", "strength: \"4\"",
+     ":11:13: interface.strength: \"4\": a text (in quotes), not a number; " STRENGTH},
+    {"strength: 400e6", "strength: 4*t",
+     ":11:13: interface.strength: 4*t: depends on t, but this is the state at the start; " STRENGTH},
+    {"strength: 400e6", "strength: [4]",
+     ":11:13: interface.strength: [4]: not a number or expression; " STRENGTH},
     {"time:\n  end: 1e-6\n", "", ":1:1: time.end: missing; allowed: number > 0 (s)\n"},
     {"mesh:\n  cells: [2, 2, 4]\n  size: [1e-3, 1e-3, 2e-3]\n", "mesh:\n",
      ":1:1: mesh: no value\n:1:1: mesh.cells: missing; " CELLS ":1:1: mesh.size: missing; " SIZE},
@@ -465,8 +474,9 @@ static void test_all_at_once(void **state) {
         ":4:9: mesh.size: [1e-3, 1e-3]: wrong number of entries; " SIZE
         ":5:11: material.density: missing; allowed: number > 0 (kg/m3)\n"
         ":5:51: material.poisson: 0.7: out of range; allowed: number >= 0 and < 0.5\n"
-        ":7:3: interface.strength: missing; " YOUNG
-        ":8:11: interface.energy: 0: out of range; allowed: number > 0 (J/m2)\n"
+        ":7:3: interface.strength: missing; " STRENGTH
+        ":8:11: interface.energy: 0: out of range; allowed: number > 0, or expression in x, y, z, nx, ny, nz "
+        "(J/m2)\n"
         "--set mass=heavy: mass: heavy: not one of the allowed words; allowed: consistent, lumped\n"
         "--set time.end=-1: time.end: -1: out of range; allowed: number > 0 (s)\n");
 }

@@ -238,6 +238,39 @@ static const mistake law_and_form[] = {
      ":12:13: interface.friction: 0.5: friction has no part in the potential, whose forces would turn with "
      "it; allowed: with contact potential: 0\n"},
     {"  law: linear\n",
+     "  law: linear\n"
+     "  contact: flux\n"
+     "  sets:\n"
+     "    - {where: 1, law: none, strength: 3, weibull: {modulus: 3, area: 1}}\n"
+     "    - {where: 1, law: linear, friction: 0}\n"
+     "    - {where: 1, friction: 0.5, weibull: {area: 1, seed: 3}}\n"
+     "    - {where: 1, friction: x, weibull: {modulus: 1}}\n"
+     "    - {where: 1, strength: 4*t, weibull: 3}\n",
+     ":13:29: interface.sets[0].strength: 3: not used, because law of this set is none\n"
+     ":13:52: interface.sets[0].weibull.modulus: 3: not used, because law of this set is none\n"
+     ":13:64: interface.sets[0].weibull.area: 1: not used, because law of this set is none\n"
+     ":14:23: interface.sets[1].law: linear: not one of the allowed words; allowed: interface, none\n"
+     ":15:18: interface.sets[2].friction: 0.5: acts with contact penalty alone\n"
+     ":15:43: interface.sets[2].weibull.area: 1: not used without weibull.modulus\n"
+     ":15:52: interface.sets[2].weibull.seed: 3: not used without weibull.modulus\n"
+     ":16:18: interface.sets[3].friction: x: acts with contact penalty alone\n"
+     ":16:41: interface.sets[3].weibull.area: missing; allowed: number > 0 (m2)\n"
+     ":17:28: interface.sets[4].strength: 4*t: depends on t, but this is the state at the start; allowed: "
+     "number > 0, or expression in x, y, z, nx, ny, nz (Pa)\n"
+     ":17:42: interface.sets[4].weibull: 3: not a mapping of keys\n"},
+    {"  law: linear\n",
+     "  law: tvergaard\n"
+     "  form: intrinsic\n"
+     "  sets: [{where: 1, law: none}, {where: 1, beta: 1}]\n",
+     ":12:21: interface.sets[0].law: none: form intrinsic has no DG terms that would hold faces without a "
+     "law\n"
+     ":12:44: interface.sets[1].beta: 1: in form intrinsic all faces have that of interface.beta\n"},
+    {"  law: linear\n",
+     "  law: needleman\n"
+     "  form: intrinsic\n"
+     "  sets: [{where: 1, beta: 0}]\n",
+     ":12:21: interface.sets[0].beta: 0: not used, because interface.law is needleman\n"},
+    {"  law: linear\n",
      "  law: needleman\n"
      "  form: intrinsic\n"
      "  beta: 1\n"
@@ -345,11 +378,12 @@ static const mistake materials[] = {
      ":16:17: interface.sets[2].between: [tin, zinc, tin]: wrong number of entries; allowed: names of two "
      "materials, or one twice: material, tin, zinc\n"
      ":17:23: interface.sets[3].between[1]: 3: not a text (put it in quotes to make it one); allowed: text\n"
-     ":18:40: interface.sets[4].strength: 0: out of range; allowed: number > 0 (Pa)\n"
+     ":18:40: interface.sets[4].strength: 0: out of range; allowed: number > 0, or expression in x, y, z, "
+     "nx, ny, nz (Pa)\n"
      ":19:34: interface.sets[5].between: lead: no such material; allowed: names of two materials, or one "
      "twice: material, tin, zinc\n"
-     ":20:7: interface.sets[6]: 8: not a mapping of keys; allowed: list of {where, between, strength, "
-     "energy}\n"},
+     ":20:7: interface.sets[6]: 8: not a mapping of keys; allowed: list of {where, between, law, "
+     "strength, energy, beta, friction, weibull.modulus, weibull.area, weibull.seed}\n"},
     {"output:\n",
      "output:\n"
      "  fields: [damage, rank, plastic_strain, regime, triaxiality, material]\n"
@@ -413,6 +447,8 @@ static void test_good(void **state) {
     expect_good("  law: linear\n",
                 "  law: exponential\n  form: intrinsic\n  contact: potential\n  friction: 0\n");
     expect_good("  law: linear\n", "  law: linear\n  sets: [{where: nx, strength: 3}]\n");
+    expect_good("  law: linear\n", "  law: linear\n  contact: flux\n  sets: [{where: nx, friction: 0}]\n");
+    expect_good("  law: linear\n", "  law: linear\n  sets: [{where: nx, law: none}]\n");
     expect_good("boundary:\n", "mass: lumped\nboundary:\n");
     expect_good("  energy: 34\n", "  energy: 34\n  form: continuous\n  faces: nx\nmass: lumped\n");
     expect_good("output:\n", "output:\n  times: [0, 1e-6]\n  fields: [rank, triaxiality, material]\n");

@@ -365,13 +365,20 @@ static void output_free(output *out) {
     free(out->energy);
 }
 
+/* Properties of each face. */
+typedef struct {
+    const rg_real *scale, *beta, *friction;
+} faces;
+
 /* Three steps, each with larger displacements, so that memories matter; then the energies. */
-static output run(const rg_kernels *set, const input *in, const rg_real *scale) {
+static output run(const rg_kernels *set, const input *in, const faces *own) {
     output out = output_make(in);
     rg_interface_args args =
         input_interface_args(in, out.broken, out.unlinked, out.active, out.crack, out.force);
     args.crack_stride = stride_of(in);
-    args.scale = scale;
+    args.scale = own == NULL ? NULL : own->scale;
+    args.beta = own == NULL ? NULL : own->beta;
+    args.friction = own == NULL ? NULL : own->friction;
     args.step = 1e-9;
     rg_real *u = input_alloc(INPUT_EBLOCKS * RG_NODE_BLOCK * sizeof *u);
     args.u = u;
@@ -462,11 +469,20 @@ static void compare_kept(const char *set, const char *law, const kept *part, con
     }
 }
 
-static void check_kernel(const rg_kernels *set, input_kind kind, const rg_cohesive *law,
-                         const rg_real *scale) {
+/* Faces of infinite strength hold. */
+static void mend(input *in, const rg_real *scale) {
+    for (size_t i = 0; i < INPUT_ISLOTS; i++)
+        if (isinf(scale[i / RG_LANES * 2 * RG_LANES + i % RG_LANES]))
+            in->broken[i] = in->unlinked[i] = 0;
+    input_flags(in);
+}
+
+static void check_kernel(const rg_kernels *set, input_kind kind, const rg_cohesive *law, const faces *own) {
     input *in = input_make(kind, *law, 7, 3);
     input_break(in, law->form == RG_FORM_INTRINSIC ? 1 : 0.4);
-    output out = run(set, in, scale), ref = run(&rg_kernels_reference, in, scale);
+    if (own != NULL)
+        mend(in, own->scale);
+    output out = run(set, in, own), ref = run(&rg_kernels_reference, in, own);
     const char *word = rg_law_facts_of(law->law, law->shape, law->beta).word;
     assert_memory_equal(out.broken, ref.broken, sizeof out.broken);
     assert_memory_equal(out.unlinked, ref.unlinked, sizeof out.unlinked);
@@ -503,20 +519,34 @@ static bool exists(rg_law law) {
 static void test_kernels(void **state) {
     const rg_kernels *sets[INPUT_SETS];
     int n = rg_kernels_available(sets, INPUT_SETS);
-    rg_real *scale = input_alloc(2 * INPUT_ISLOTS * sizeof *scale);
+    rg_real *scale = input_alloc(2 * INPUT_ISLOTS * sizeof *scale),
+            *some = input_alloc(2 * INPUT_ISLOTS * sizeof *some);
+    rg_real *beta = input_alloc(INPUT_ISLOTS * sizeof *beta),
+            *friction = input_alloc(INPUT_ISLOTS * sizeof *beta);
     (void)state;
     for (size_t k = 0; k < 2 * INPUT_ISLOTS; k++)
         scale[k] = (rg_real)(0.7 + 0.6 * rg_hash_uniform(rg_hash(3, k)));
+    for (size_t k = 0; k < INPUT_ISLOTS; k++) {
+        beta[k] = (rg_real)fmax(0, 2 * rg_hash_uniform(rg_hash(4, k)) - 0.3);
+        friction[k] = (rg_real)rg_hash_uniform(rg_hash(5, k));
+    }
+    memcpy(some, scale, 2 * INPUT_ISLOTS * sizeof *some);
+    for (size_t k = 0; k < INPUT_ISLOTS; k += 11)
+        some[k / RG_LANES * 2 * RG_LANES + k % RG_LANES] = (rg_real)INFINITY;
+    const faces own = {scale, NULL, NULL}, all = {some, beta, friction};
     for (int k = 0; k < n; k++)
         for (int l = 0; l < (int)RG_LAWS; l++)
             for (int kind = 0; kind < 2 && exists((rg_law)l); kind++) {
                 subject s = make_subject((rg_law)l, true, kind == 0 ? 1 : 1.5, 0.3);
                 rg_cohesive law = cohesive_of(&s, (s.facts.forms & RG_FORMS_DG) == 0);
                 check_kernel(sets[k], (input_kind)kind, &law, NULL);
-                check_kernel(sets[k], (input_kind)kind, &law, scale);
+                check_kernel(sets[k], (input_kind)kind, &law, &own);
                 law.sliding = RG_SLIDING_COULOMB;
                 law.friction = 0.4;
-                check_kernel(sets[k], (input_kind)kind, &law, kind == 0 ? scale : NULL);
+                check_kernel(sets[k], (input_kind)kind, &law,
+                             kind == 1                         ? NULL
+                             : law.form == RG_FORM_VARIATIONAL ? &all
+                                                               : &own);
                 law.sliding = RG_SLIDING_STUCK;
                 check_kernel(sets[k], (input_kind)kind, &law, NULL);
                 law.sliding = RG_SLIDING_FREE;
@@ -525,10 +555,13 @@ static void test_kernels(void **state) {
                 law.beta_s = 4;
                 if (s.onset > 0) {
                     check_kernel(sets[k], (input_kind)kind, &law, NULL);
-                    check_kernel(sets[k], (input_kind)kind, &law, scale);
+                    check_kernel(sets[k], (input_kind)kind, &law, &all);
                 }
             }
     free(scale);
+    free(some);
+    free(beta);
+    free(friction);
 }
 
 /* Of a face with a scale the answer is that of a law with these parameters; faces beside it do not matter. */
@@ -544,7 +577,7 @@ static void test_scale(void **state) {
     scaled.separation *= 0.5;
     input *in = input_make(INPUT_SMALL, law, 7, 3);
     input_break(in, 0.4);
-    output one = run(&rg_kernels_reference, in, scale);
+    output one = run(&rg_kernels_reference, in, &(faces){.scale = scale});
     in->law = scaled;
     output two = run(&rg_kernels_reference, in, NULL);
     compare_reals("reference", "linear", "force", one.force, two.force, INPUT_IBLOCKS * RG_IFORCE_BLOCK);

@@ -273,6 +273,94 @@ static void test_sets(void **state) {
     free(f);
 }
 
+/* Values of a face field, by face; NULL: all alike. */
+static double face_field(const rg_real *field, size_t i) {
+    return field == NULL ? NAN : field[i];
+}
+
+/* All that a set may say, by number and by expression; faces that never break; a set's own Weibull. Where a
+ * set says nothing the interface's value holds, not an earlier set's. */
+static void test_properties(void **state) {
+    (void)state;
+    const char *const set[] = {
+        "interface.sets=[{where: z < 0, strength: 1e8*(3 + nz^2), beta: 0, friction: 0.5}, {where: "
+        "'abs(nz) > 0.9 && z > 0', law: none}, {where: x > 0 && z > 0.5e-3, energy: 34e3*z, beta: 1 + "
+        "x/1e-3, "
+        "weibull: {modulus: 8, area: 2e-9, seed: 5}}]",
+        "interface.friction=0.25"};
+    rg_case *c = read_case(2, set);
+    rg_solver *s = rg_solver_make(c, MPI_COMM_SELF);
+    size_t seen[4] = {0};
+    double least = 34 / 16e16;
+    for (size_t t = 0; t < s->domain->tiles; t++) {
+        const rg_tile *tile = &s->domain->tile[t];
+        for (size_t i = tile->ibegin * RG_LANES; i < tile->iend * RG_LANES; i++) {
+            face f = face_of(s, tile, i);
+            if (!(f.area > 0)) {
+                continue;
+            }
+            double x = f.middle[0] / 3, z = f.middle[2] / 3, nz = f.normal[2] / f.area;
+            int which = x > 0 && z > 0.5e-3 ? 2 : fabs(nz) > 0.9 && z > 0 ? 1 : z < 0 ? 0 : 3;
+            double weakest = 1, strength = 400e6, energy = 34, beta = 1, friction = 0.25;
+            if (which == 0) {
+                strength = 1e8 * (3 + nz * nz);
+                beta = 0;
+                friction = 0.5;
+            } else if (which == 1) {
+                strength = INFINITY;
+            } else if (which == 2) {
+                energy = 34e3 * z;
+                beta = 1 + x / 1e-3;
+                double u = rg_hash_uniform(rg_hash(SEED, f.corners));
+                weakest = pow(-2e-9 / f.area * log(1 - u), 1 / 8.0);
+            }
+            seen[which]++;
+            assert_true(which == 1 ? isinf(f.strength)
+                                   : fabs(f.strength * 400e6 / (strength * weakest) - 1) < 1e-6);
+            assert_true(fabs(f.opening * weakest - (which == 1 ? 1 : energy / 34 * 400e6 / strength)) <
+                        1e-6 * f.opening * weakest);
+            assert_true(fabs(face_field(s->model->beta, i) - beta) < 1e-6);
+            assert_true(fabs(face_field(s->model->friction, i) - friction) < 1e-6);
+            least = which == 1 ? least : fmin(least, energy / strength / strength);
+        }
+    }
+    assert_true(seen[0] > 0 && seen[1] > 0 && seen[2] > 0 && seen[3] > 0);
+    assert_true(fabs(s->model->toughness / least - 1) < 1e-6);
+    assert_true(s->model->law.sliding == RG_SLIDING_COULOMB);
+    rg_solver_free(s);
+    rg_case_free(c);
+}
+
+/* An expression is as good as the numbers it gives, also where it is the interface's. */
+static void test_expressions(void **state) {
+    (void)state;
+    const char *const plain[] = {"interface.sets=[{where: z < 0, strength: 800e6, energy: 68}]"};
+    const char *const words[] = {"interface.strength='z < 0 ? 800e6 : 400e6'",
+                                 "interface.energy='z < 0 ? 68 : 34'"};
+    rg_case *c[2] = {read_case(1, plain), read_case(2, words)};
+    rg_solver *s[2] = {rg_solver_make(c[0], MPI_COMM_SELF), rg_solver_make(c[1], MPI_COMM_SELF)};
+    const rg_cohesive *law[2] = {&s[0]->model->law, &s[1]->model->law};
+    assert_true(s[0]->model->beta == NULL && s[1]->model->friction == NULL);
+    assert_true(fabs(s[0]->model->toughness / s[1]->model->toughness - 1) < 1e-15);
+    size_t faces = s[0]->domain->iblocks * RG_LANES;
+    for (size_t i = 0; i < faces; i++) {
+        double normal[3], found[2][2];
+        for (int k = 0; k < 2; k++) {
+            const rg_real *scale = s[k]->model->scale + i / RG_LANES * 2 * RG_LANES + i % RG_LANES;
+            found[k][0] = law[k]->strength * scale[0];
+            found[k][1] = law[k]->opening * scale[RG_LANES];
+        }
+        if (rg_interface_area(s[0]->domain, i, normal) > 0) {
+            assert_true(fabs(found[1][0] / found[0][0] - 1) < 1e-6 &&
+                        fabs(found[1][1] / found[0][1] - 1) < 1e-6);
+        }
+    }
+    for (int k = 0; k < 2; k++) {
+        rg_solver_free(s[k]);
+        rg_case_free(c[k]);
+    }
+}
+
 /* ---- Sets that are none ---- */
 
 static const char *asked;
@@ -298,6 +386,14 @@ static void test_not_finite(void **state) {
         {"interface.sets=[{where: sqrt(-1 - z), energy: 1}, {where: 1/(x - x), energy: 1}]",
          "interface.sets[0].where: sqrt(-1 - z) is not finite at (-0.000666667, 0.000333333, "
          "0.000666667)"},
+        {"interface.strength=1e12*(x + 0.5e-3)",
+         "interface.strength: 1e12*(x + 0.5e-3) is not positive at (-0.000666667, 0.000333333, 0.000666667)"},
+        {"interface.sets=[{where: 1, energy: 1}, {where: 1, energy: '-z'}]",
+         "interface.sets[1].energy: -z is not positive at (-0.000666667, 0.000333333, 0.000666667)"},
+        {"interface.sets=[{where: 1, beta: 'nz*nz - 1'}]",
+         "interface.sets[0].beta: nz*nz - 1 is not 0 or positive"},
+        {"interface.sets=[{where: 1, friction: 1/(x - x)}]",
+         "interface.sets[0].friction: 1/(x - x) is not finite"},
     };
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
         char said[2000];
@@ -334,8 +430,8 @@ static void test_uniform(void **state) {
     (void)state;
     rg_case *c = read_case(0, NULL);
     rg_solver *s = rg_solver_make(c, MPI_COMM_SELF);
-    assert_null(s->model->scale);
-    assert_true(s->model->stiffest == 1);
+    assert_true(s->model->scale == NULL && s->model->beta == NULL && s->model->friction == NULL);
+    assert_true(s->model->stiffest == 1 && s->model->toughness == 34 / (400e6 * 400e6));
     rg_solver_free(s);
     rg_case_free(c);
 }
@@ -348,6 +444,8 @@ int main(int argc, char **argv) {
         cmocka_unit_test(test_formula),
         cmocka_unit_test(test_without_softening),
         cmocka_unit_test(test_sets),
+        cmocka_unit_test(test_properties),
+        cmocka_unit_test(test_expressions),
         cmocka_unit_test(test_empty),
         cmocka_unit_test(test_uniform),
         cmocka_unit_test(test_not_finite),

@@ -1,0 +1,118 @@
+/* Rules of interface.sets: which faces a set selects, and what it may say of them. */
+#include <string.h>
+
+#include "base/mem.h"
+#include "case/check.h"
+
+/* "alumina, steel" */
+static void list_names(const rg_case *c, char *text, size_t size) {
+    const char *join = "names of two materials, or one twice: ";
+    text[0] = '\0';
+    for (int m = 0; m <= c->others; m++) {
+        rg_text_add(text, size, "%s%s", join, rg_case_material_name(c, m));
+        join = ", ";
+    }
+}
+
+static void check_between(rg_check *ck, const rg_node *node, const rg_face_set *set, const char *path) {
+    char allowed[256], *key = rg_text_format("%s.between", path), value[64];
+    const char **names = RG_NEW(const char *, (size_t)ck->c->others + 2); /* ends with NULL */
+    for (int m = 0; m <= ck->c->others; m++) {
+        names[m] = rg_case_material_name(ck->c, m);
+    }
+    list_names(ck->c, allowed, sizeof allowed);
+    rg_subject subject = {.key = key, .value = rg_node_line(node, value, sizeof value), .allowed = allowed};
+    if (set->names != 2) {
+        rg_problem_add(ck->problems, node->at, &subject, "wrong number of entries");
+    }
+    for (int k = 0; k < set->names && set->names == 2; k++) {
+        if (rg_case_find_material(ck->c, set->between[k]) < 0) {
+            subject.value = set->between[k];
+            subject.nearest = rg_nearest(set->between[k], names);
+            rg_problem_add(ck->problems, node->child[k].at, &subject, "no such material");
+        }
+    }
+    rg_free(names);
+    rg_free(key);
+}
+
+/* A key of the set that is being checked; NULL: not given. */
+static const rg_node *given(const rg_node *item, const char *key) {
+    const char *dot = strchr(key, '.');
+    const rg_node *section = dot == NULL ? item : rg_node_find(item, key, (size_t)(dot - key));
+    const char *last = dot == NULL ? key : dot + 1;
+    return section == NULL ? NULL : rg_node_find(section, last, strlen(last));
+}
+
+/* Reports a key that is given to no purpose. */
+static void refuse(rg_check *ck, const rg_node *item, const char *path, const char *name, const char *why) {
+    const rg_node *node = given(item, name);
+    if (node != NULL) {
+        char value[64], *key = rg_text_format("%s.%s", path, name);
+        rg_subject subject = {.key = key, .value = rg_node_line(node, value, sizeof value)};
+        rg_problem_add(ck->problems, node->key_at, &subject, "%s", why);
+        rg_free(key);
+    }
+}
+
+/* Faces that never break have none of the properties of those that do; form intrinsic has no others. */
+static void check_breaking(rg_check *ck, const rg_node *item, const rg_face_set *set, const char *path) {
+    static const char *const keys[] = {"strength",        "energy",       "beta",        "friction",
+                                       "weibull.modulus", "weibull.area", "weibull.seed"};
+    if (set->breaking != RG_BREAKING_NEVER) {
+        return;
+    }
+    for (size_t i = 0; i < sizeof keys / sizeof *keys; i++) {
+        refuse(ck, item, path, keys[i], "not used, because law of this set is none");
+    }
+    if (ck->form && ck->c->interface.form == RG_FORM_INTRINSIC) {
+        refuse(ck, item, path, "law", "form intrinsic has no DG terms that would hold faces without a law");
+    }
+}
+
+static void check_shear(rg_check *ck, const rg_node *item, const rg_face_set *set, const char *path) {
+    char why[128];
+    if (ck->usage[RG_GROUP_SHEAR] == RG_UNUSED) {
+        snprintf(why, sizeof why, "not used, because interface.%s", rg_why_unused(RG_GROUP_SHEAR, ck->c));
+        refuse(ck, item, path, "beta", why);
+    } else if (ck->form && ck->c->interface.form == RG_FORM_INTRINSIC) {
+        refuse(ck, item, path, "beta", "in form intrinsic all faces have that of interface.beta");
+    }
+    bool none = set->friction_at == NULL || (rg_expr_is_number(set->friction_at) && !(set->friction > 0));
+    if (!none && ck->c->interface.contact != RG_CONTACT_PENALTY) {
+        refuse(ck, item, path, "friction", "acts with contact penalty alone");
+    }
+}
+
+static void check_weibull(rg_check *ck, const rg_node *item, const rg_face_set *set, const char *path) {
+    const rg_node *modulus = given(item, "weibull.modulus");
+    if (modulus == NULL) {
+        refuse(ck, item, path, "weibull.area", "not used without weibull.modulus");
+        refuse(ck, item, path, "weibull.seed", "not used without weibull.modulus");
+    } else if (!(set->area > 0)) {
+        char *key = rg_text_format("%s.weibull.area", path);
+        rg_subject subject = {.key = key, .allowed = "number > 0 (m2)"};
+        rg_problem_add(ck->problems, modulus->key_at, &subject, "missing");
+        rg_free(key);
+    }
+}
+
+void rg_face_set_rule(rg_check *ck, const rg_node *list, int i, const char *path, bool good) {
+    const rg_node *item = &list->child[i];
+    if (item->kind != RG_NODE_MAPPING) {
+        return;
+    }
+    const rg_face_set *set = &ck->c->interface.set[i];
+    const rg_node *between = rg_node_find(item, "between", strlen("between"));
+    if (between == NULL && rg_node_find(item, "where", strlen("where")) == NULL) {
+        rg_subject subject = {.key = path, .allowed = "where, between, or both"};
+        rg_problem_add(ck->problems, item->at, &subject, "missing where or between");
+    } else if (between != NULL && good) {
+        check_between(ck, between, set, path);
+    }
+    if (good) {
+        check_breaking(ck, item, set, path);
+        check_shear(ck, item, set, path);
+        check_weibull(ck, item, set, path);
+    }
+}
