@@ -172,7 +172,8 @@ static void examine(run *r, int64_t step, double time) {
     double next = stable_step(r, s->stiffening_anywhere);
     bool lapse = rg_bodies_told(s->bodies, why, sizeof why); /* of which the solid may know nothing */
     if (lapse || !isfinite(s->stiffening_anywhere)) {
-        bool told = lapse || rg_constraints_told(s->constraints, why, sizeof why, s->comm);
+        bool told = lapse || rg_constraints_told(s->constraints, why, sizeof why, s->comm) ||
+                    rg_loads_told(s->loads, why, sizeof why);
         snprintf(r->failure, sizeof r->failure, "the state is not finite%s%s%s",
                  told ? " (" : " (or an element is inside out)", told ? why : "", told ? ")" : "");
     } else if (next < r->input->time.collapse * r->dt_reference) {

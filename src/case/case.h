@@ -52,6 +52,26 @@ typedef struct {
     rg_expr *value;
 } rg_boundary;
 
+/* What a load is, of which it has one: X(NAME, key, unit), with `join` between them. What each does:
+ * solver/load.c. */
+#define RG_LOADS(X, join)                                                                                    \
+    X(TRACTION, "traction", "Pa")                                                                            \
+    join X(PRESSURE, "pressure", "Pa") join X(FORCE, "force", "N") join X(ACCELERATION, "acceleration",      \
+                                                                          "m/s2")
+
+#define RG_LOAD_ENUM(NAME, key, unit) RG_LOAD_##NAME,
+#define RG_LOAD_KEY(NAME, key, unit)  key
+typedef enum { RG_LOADS(RG_LOAD_ENUM, ) RG_LOAD_KINDS } rg_load_kind;
+
+typedef struct {
+    char *name;     /* column prefix in history.csv; NULL: it has no columns */
+    char *set;      /* named set of faces, or */
+    rg_expr *where; /* not 0: on faces, by their middle and outward normal; of accelerations, at centroids */
+    rg_load_kind kind;
+    rg_expr *value[RG_LOAD_KINDS][3]; /* of its kind, x, y, z (a pressure: the first alone); NULL: 0 */
+    double from, until;               /* it acts in between (s); until 0: without end */
+} rg_load_input;
+
 typedef struct {
     rg_material_model model;
     double young, poisson, density;
@@ -153,6 +173,8 @@ typedef struct {
     } initial;
     int boundaries;
     rg_boundary *boundary;
+    int loads;
+    rg_load_input *load;
     int bodies;
     rg_body_input *body;
     struct {

@@ -143,6 +143,8 @@ static void check_entry(rg_check *ck, const rg_key *key, const rg_node *list, co
     }
     if (key->entry == &rg_boundary_table) {
         rg_boundary_rule(ck, list, i, item, good);
+    } else if (key->entry == &rg_load_table) {
+        rg_load_rule(ck, list, i, item, good);
     } else if (key->entry == &rg_body_table) {
         rg_body_rule(ck, list, i, item, good);
     } else if (key->entry == &rg_probe_table) {

@@ -83,6 +83,7 @@ const char *rg_why_unused(rg_key_group group, const rg_case *c);
 /* Rules that tie several keys together, applied to entry i of a list once its keys are read. `good`: all of
  * them were. An entry that is not is left so that later entries are not compared with it. */
 void rg_boundary_rule(rg_check *ck, const rg_node *list, int i, const char *path, bool good);
+void rg_load_rule(rg_check *ck, const rg_node *list, int i, const char *path, bool good);
 void rg_body_rule(rg_check *ck, const rg_node *list, int i, const char *path, bool good);
 void rg_probe_rule(rg_check *ck, const rg_node *list, int i, const char *path, bool good);
 void rg_material_rule(rg_check *ck, const rg_node *list, int i, const char *path);

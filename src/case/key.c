@@ -36,13 +36,19 @@ static void choice_words(const rg_key *key, char *text, size_t size) {
     }
 }
 
+/* A section stands for its keys. */
 static void list_words(const rg_key_table *entry, char *text, size_t size) {
-    const char *join = "list of {";
+    const char *join = "list of {", *last = "";
     for (int i = 0; i < entry->keys && !entry->key[i].of_material; i++) {
+        const char *name = entry->key[i].name;
+        int length = (int)strcspn(name, ".");
         bool another = i > 0 && entry->key[i - 1].group == RG_GROUP_PRESCRIBED;
-        join = another ? " or " : join;
-        rg_text_add(text, size, "%s%s", join, entry->key[i].name);
-        join = ", ";
+        if (name[length] == '\0' || strncmp(name, last, (size_t)length + 1) != 0) {
+            join = another ? " or " : join;
+            rg_text_add(text, size, "%s%.*s", join, length, name);
+            join = ", ";
+        }
+        last = name;
     }
     rg_text_add(text, size, "%s}", entry == &rg_material_table ? ", and the keys of material" : "");
 }

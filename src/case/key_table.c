@@ -210,6 +210,9 @@ static const rg_key case_keys[] = {
     {.name = "boundary", .type = RG_KEY_LIST, ELSE("none: a free body"), CASE(boundary), .entry = &rg_boundary_table,
      .offset_count = offsetof(rg_case, boundaries), MEANS("prescribed motion of the surface; what is not named is free")},
 
+    {.name = "loads", .type = RG_KEY_LIST, ELSE("none"), CASE(load), .entry = &rg_load_table,
+     .offset_count = offsetof(rg_case, loads), MEANS("forces from outside, each on a part of the surface or of the body; they add up")},
+
     {.name = "bodies", .type = RG_KEY_LIST, ELSE("none"), CASE(body), .entry = &rg_body_table,
      .offset_count = offsetof(rg_case, bodies), MEANS("rigid bodies that the solid's surface touches; they move without turning")},
 
@@ -303,6 +306,29 @@ static const rg_key boundary_keys[] = {
     RG_PRESCRIBED(PRESCRIBED, )
 };
 
+#define LOAD(member) .offset = offsetof(rg_load_input, member)
+#define LOAD_VECTOR(key, unit_, NAME, evenly, words)                                                    \
+    {.name = key ".x", .unit = (unit_), .type = RG_KEY_EXPR, ELSE("another load"), ONE_OF, .no_place = (evenly), LOAD(value[RG_LOAD_##NAME][0]), MEANS(words)}, \
+    {.name = key ".y", .unit = (unit_), .type = RG_KEY_EXPR, ELSE("0"), .no_place = (evenly), LOAD(value[RG_LOAD_##NAME][1]), MEANS("along y")}, \
+    {.name = key ".z", .unit = (unit_), .type = RG_KEY_EXPR, ELSE("0"), .no_place = (evenly), LOAD(value[RG_LOAD_##NAME][2]), MEANS("along z")},
+
+/* Of traction, pressure, force and acceleration it has one. */
+static const rg_key load_keys[] = {
+    {.name = "name", .type = RG_KEY_TEXT, ELSE("no columns"), LOAD(name),
+     MEANS("column prefix of its force and work in history.csv: letters, digits, _ and -")},
+    {.name = "set", .type = RG_KEY_TEXT, .choice = box_sets, ELSE("where"), LOAD(set),
+     MEANS("a side of the box, or a surface set of the mesh file; not of an acceleration")},
+    {.name = "where", .type = RG_KEY_EXPR, ELSE("set; of an acceleration the whole body"), .no_time = true, .normal = true, LOAD(where),
+     MEANS("faces of the surface where it is not 0, by their middle and outward normal; of an acceleration elements, by their centroid")},
+    LOAD_VECTOR("traction", "Pa", TRACTION, false, "traction along x, per area of reference: it keeps its direction")
+    {.name = "pressure", .unit = "Pa", .type = RG_KEY_EXPR, ELSE("another load"), ONE_OF, LOAD(value[RG_LOAD_PRESSURE][0]),
+     MEANS("pressure on the deformed face: it follows its normal and its area")},
+    LOAD_VECTOR("force", "N", FORCE, true, "total force along x, spread evenly over the area of reference")
+    LOAD_VECTOR("acceleration", "m/s2", ACCELERATION, false, "force per mass along x, as gravity")
+    {.name = "from", .unit = "s", REAL, FROM(0), DEFAULT(0), LOAD(from), MEANS("the load acts from this time on")},
+    {.name = "until", .unit = "s", REAL, ABOVE(0), ELSE("the end of the run"), LOAD(until), MEANS("and no more from this one on")},
+};
+
 #define BODY(member) .offset = offsetof(rg_body_input, member)
 #define BODY_VELOCITY(name_, component, words)                                                               \
     { .name = (name_), .unit = "m/s", .type = RG_KEY_EXPR, ELSE("0"), .no_place = true, BODY(velocity[component]), MEANS(words) }
@@ -342,6 +368,7 @@ const rg_key_table rg_case_table = TABLE(case_keys, rg_case);
 const rg_key_table rg_material_table = TABLE(other_material_keys, rg_other_material);
 const rg_key_table rg_face_set_table = TABLE(face_set_keys, rg_face_set);
 const rg_key_table rg_boundary_table = TABLE(boundary_keys, rg_boundary);
+const rg_key_table rg_load_table = TABLE(load_keys, rg_load_input);
 const rg_key_table rg_body_table = TABLE(body_keys, rg_body_input);
 const rg_key_table rg_probe_table = TABLE(probe_keys, rg_probe);
 

@@ -270,18 +270,27 @@ void rg_boundary_rule(rg_check *ck, const rg_node *list, int i, const char *path
 
 /* ---- names: unique, fit for a column heading ---- */
 
-static bool is_taken(const rg_case *c, const char *name) {
-    for (int j = 0; j < c->bodies; j++) {
-        const char *other = c->body[j].name;
-        if (other != NULL && other != name && strcmp(other, name) == 0) {
-            return true;
-        }
-        if (other == name) {
-            return false;
-        }
+/* The name of entry i of the lists that history.csv has columns of, in the order of reading; *end: there are
+ * no more. */
+static const char *column_name(const rg_case *c, int i, bool *end) {
+    *end = false;
+    if (i < c->loads) {
+        return c->load[i].name;
     }
-    for (int j = 0; j < c->output.probes; j++) {
-        const char *other = c->output.probe[j].name;
+    i -= c->loads;
+    if (i < c->bodies) {
+        return c->body[i].name;
+    }
+    i -= c->bodies;
+    *end = i >= c->output.probes;
+    return *end ? NULL : c->output.probe[i].name;
+}
+
+/* Whether an entry before that of `name` has the same one. */
+static bool is_taken(const rg_case *c, const char *name) {
+    bool end = false;
+    for (int i = 0; !end; i++) {
+        const char *other = column_name(c, i, &end);
         if (other == name) {
             return false;
         }
@@ -300,13 +309,12 @@ bool rg_is_name(const char *text) {
 void rg_name_rule(rg_check *ck, const rg_node *item, const char *path, const char *name) {
     const rg_node *node = rg_node_find(item, "name", strlen("name"));
     const char *wrong = !rg_is_name(name)       ? "not a name"
-                        : is_taken(ck->c, name) ? "the name of an earlier body or probe"
+                        : is_taken(ck->c, name) ? "the name of an earlier one in history.csv"
                                                 : NULL;
     if (wrong != NULL && node != NULL) {
         char *key = rg_text_format("%s.name", path);
-        rg_subject subject = {.key = key,
-                              .value = node->text,
-                              .allowed = "letters, digits, _ and -; unique among bodies and probes"};
+        rg_subject subject = {
+            .key = key, .value = node->text, .allowed = "letters, digits, _ and -; unique in history.csv"};
         rg_problem_add(ck->problems, node->at, &subject, "%s", wrong);
         rg_free(key);
     }

@@ -399,9 +399,11 @@ static void put_alternatives(writer *w, const rg_key_table *table) {
         if (last == 0) {
             open_group(w, words[key->alternative], '[');
         }
+        char *name = rg_text_copy(key->name, strcspn(key->name, ".")); /* a section stands for its keys */
         open_group(w, NULL, '{');
-        put_words(w, "required", &key->name, 1);
+        put_words(w, "required", (const char *const[]){name}, 1);
         close_group(w, '}');
+        rg_free(name);
         last = 1;
     }
     if (last != 0) {

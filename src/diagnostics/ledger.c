@@ -245,7 +245,7 @@ static rg_energy energy_of(const rg_solver *s, const double *v) {
                    .damage = v[RELEASED + RG_RELEASED_DAMAGE],
                    .viscous = v[VISCOUS],
                    .friction = v[FRICTION],
-                   .external = v[EXTERNAL] + bodies.work,
+                   .external = v[EXTERNAL] + bodies.work + rg_loads_work(s->loads),
                    .broken_area = v[BROKEN],
                    .failed_area = v[FAILED],
                    .momentum = {v[MOMENTUM], v[MOMENTUM + 1], v[MOMENTUM + 2]},

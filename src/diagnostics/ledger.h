@@ -20,7 +20,7 @@ typedef struct {
                          * part of contact */
     double unresolved;  /* set free where points switched, beyond what their law can take (J) */
     double half_kick;   /* dt^2/8 a . M a: by so much what a central difference keeps is below the sum (J) */
-    double external;    /* work done by prescribed motions (J) */
+    double external;    /* work done by prescribed motions and loads (J) */
     double total;       /* sum of the parts less the external work (J) */
     double error;       /* change of the total since the start, over the largest energy seen (or what
                          * rounding of F makes of the energy, if that is more: 1000 eps mu V) */

@@ -14,18 +14,27 @@
 #include "quadrature.h"
 #include "solver/tile.h"
 
-enum { VALUES = 12, BODY = 9, CAPACITY = 256 }; /* per probe, body and sample; samples between two flushes */
+enum {
+    VALUES = 12,
+    BODY = 9,
+    OUTSIDE = 4,
+    CAPACITY = 256
+}; /* per probe, body, item of the account and sample;
+      samples between two flushes */
 
 static const char *const column[VALUES] = {"ux",  "uy",  "uz",  "vx",  "vy",  "vz",
                                            "sxx", "syy", "szz", "syz", "sxz", "sxy"};
 
 static const char *const body_column[BODY] = {"x", "y", "z", "vx", "vy", "vz", "fx", "fy", "fz"};
 
+static const char *const outside_column[OUTSIDE] = {"force_x", "force_y", "force_z", "work"};
+
 struct rg_probes {
     MPI_Comm comm;
     int rank, probes, samples;
-    int row; /* values of a sample: of the probes, then of the bodies */
+    int row; /* values of a sample: of the probes, of the bodies, of what has a name in the account */
     const rg_bodies *bodies;
+    const rg_account *account;
     rg_lid *slot;                 /* [probes]; -1 where another rank has it */
     double (*at)[4];              /* [probes]: barycentric coordinates */
     double *time, *value, *total; /* [CAPACITY], [CAPACITY][row]; total: on rank 0 */
@@ -60,6 +69,14 @@ static rg_lid locate(const rg_solver *s, int i, double at[4]) {
     return id == first ? found : -1;
 }
 
+static int named_items(const rg_account *a) {
+    int count = 0;
+    for (int i = 0; i < a->count; i++) {
+        count += a->item[i].name != NULL;
+    }
+    return count;
+}
+
 static void write_header(rg_probes *p, const rg_case *c) {
     p->file = rg_open_in(c->output.dir, "history.csv");
     fprintf(p->file, "time");
@@ -70,6 +87,12 @@ static void write_header(rg_probes *p, const rg_case *c) {
     }
     for (int i = 0; i < c->bodies * BODY; i++) {
         fprintf(p->file, ",%s_%s", c->body[i / BODY].name, body_column[i % BODY]);
+    }
+    for (int i = 0; i < p->account->count * OUTSIDE; i++) {
+        const char *name = p->account->item[i / OUTSIDE].name;
+        if (name != NULL) {
+            fprintf(p->file, ",%s_%s", name, outside_column[i % OUTSIDE]);
+        }
     }
     fputc('\n', p->file);
 }
@@ -121,8 +144,9 @@ rg_probes *rg_probes_find(const rg_solver *s) {
     *p = (rg_probes){.comm = s->comm,
                      .rank = s->rank,
                      .probes = probes,
-                     .row = probes * VALUES + s->bodies->count * BODY,
-                     .bodies = s->bodies};
+                     .row = probes * VALUES + s->bodies->count * BODY + named_items(s->account) * OUTSIDE,
+                     .bodies = s->bodies,
+                     .account = s->account};
     p->slot = RG_NEW(rg_lid, (size_t)p->probes);
     p->at = rg_alloc((size_t)p->probes, sizeof *p->at);
     for (int i = 0; i < p->probes; i++) {
@@ -170,11 +194,25 @@ static void sample_bodies(const rg_probes *p, double *out) {
     }
 }
 
+/* So they know the account. */
+static void sample_account(const rg_probes *p, double *out) {
+    for (int i = 0; p->rank == 0 && i < p->account->count; i++) {
+        const rg_account_item *item = &p->account->item[i];
+        if (item->name != NULL) {
+            memcpy(out, item->force, sizeof item->force);
+            out[3] = item->work_now;
+            out += OUTSIDE;
+        }
+    }
+}
+
 void rg_probes_next(rg_probes *p, double time) {
     if (p->row == 0) {
         return;
     }
-    sample_bodies(p, p->value + p->samples * p->row + p->probes * VALUES);
+    double *values = p->value + p->samples * p->row + p->probes * VALUES;
+    sample_bodies(p, values);
+    sample_account(p, values + p->bodies->count * BODY);
     p->time[p->samples] = time;
     if (++p->samples == CAPACITY) {
         rg_probes_flush(p);

@@ -1,5 +1,5 @@
 /* What is recorded every step, in history.csv: displacement, velocity and stress at the probes; position,
- * velocity of rigid bodies, and the solid's force on them. */
+ * velocity of rigid bodies, and the solid's force on them; force and work of loads that have a name. */
 #ifndef RG_PROBE_H
 #define RG_PROBE_H
 
@@ -11,7 +11,7 @@ typedef struct rg_probes rg_probes;
  * message if a probe is in none, which of a mesh file nobody knew before. Collective. */
 rg_probes *rg_probes_find(const rg_solver *s);
 
-/* Creates history.csv in the output directory, on rank 0 and if there are probes or bodies. From then on the
+/* Creates history.csv in the output directory, on rank 0 and if there is any of that. From then on the
  * solver's kicks record what they see there. */
 void rg_probes_open(rg_probes *p, rg_solver *s);
 

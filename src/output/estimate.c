@@ -186,6 +186,12 @@ void rg_estimate_print(const rg_solver *s, const rg_estimate *e, FILE *out) {
     for (int i = 0; i < s->model->materials; i++) {
         print_material(s, e, i, out);
     }
+    for (int i = 0; i < c->loads; i++) {
+        char words[80];
+        rg_loads_describe(s->loads, i, words, sizeof words);
+        fprintf(out, "load           %s%s%s\n", c->load[i].name != NULL ? c->load[i].name : "",
+                c->load[i].name != NULL ? ": " : "", words);
+    }
     fprintf(out,
             "time step      %.4g s = %.3g of the critical %.4g s, set by element %" PRId64
             " with its faces %s\n",

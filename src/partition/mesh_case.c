@@ -12,23 +12,29 @@
 #include "partition/material_map.h"
 #include "partition/tile_weight.h"
 
-/* The surface sets that the boundary names must be in the mesh file: the case file could not know. */
+/* A surface set that entry `i` of a list names must be among those of the mesh file. */
+static void check_set(const rg_case *c, const rg_sets *sets, const char *list, int i, const char *set) {
+    if (set != NULL && rg_sets_find(sets, set) < 0) {
+        const char **names = RG_NEW(const char *, (size_t)sets->count + 1);
+        char all[1024];
+        for (int32_t k = 0; k < sets->count; k++) {
+            names[k] = sets->name[k];
+        }
+        rg_fatal(RG_USAGE, "%s: %s[%d].set: %s: %s has no such surface set; allowed: %s", c->path, list, i,
+                 set, c->mesh.file, rg_choices(set, names, all, sizeof all));
+    }
+}
+
+/* The case file could not know them. */
 static void check_sets(const rg_case *c) {
     rg_mesh_file *f = rg_mesh_file_open(c->mesh.file);
     const rg_sets *sets = &rg_mesh_file_header(f)->surface;
-    const char **names = RG_NEW(const char *, (size_t)sets->count + 1);
-    char all[1024];
-    for (int32_t i = 0; i < sets->count; i++) {
-        names[i] = sets->name[i];
+    for (int i = 0; i < c->boundaries; i++) {
+        check_set(c, sets, "boundary", i, c->boundary[i].set);
     }
-    for (int b = 0; b < c->boundaries; b++) {
-        const char *set = c->boundary[b].set;
-        if (rg_sets_find(sets, set) < 0) {
-            rg_fatal(RG_USAGE, "%s: boundary[%d].set: %s: %s has no such surface set; allowed: %s", c->path,
-                     b, set, c->mesh.file, rg_choices(set, names, all, sizeof all));
-        }
+    for (int i = 0; i < c->loads; i++) {
+        check_set(c, sets, "loads", i, c->load[i].set);
     }
-    rg_free(names);
     rg_mesh_file_close(f);
 }
 

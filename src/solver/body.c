@@ -72,21 +72,6 @@ static void refuse_lapse(const rg_bodies *b, const rg_case *c) {
 
 /* ---- Faces that may touch them ---- */
 
-/* Shape functions of the six-node triangle: corners l (2 l - 1), mid-edges 4 l l, in the order 01 12 02. */
-static void make_rule(rg_face_rule *rule) {
-    for (int q = 0; q < RG_POINTS; q++) {
-        double p = q < 3 ? RG_TRI_P0 : RG_TRI_P1, l[3] = {p, p, p}, *N = rule->shape[q];
-        l[q % 3] = 1 - 2 * p;
-        rule->weight[q] = q < 3 ? RG_TRI_W0 : RG_TRI_W1;
-        for (int i = 0; i < 3; i++) {
-            N[i] = l[i] * (2 * l[i] - 1);
-        }
-        N[3] = 4 * l[0] * l[1];
-        N[4] = 4 * l[1] * l[2];
-        N[5] = 4 * l[0] * l[2];
-    }
-}
-
 /* Which groups of faces may touch body i: [groups]; NULL where no set is named, so that all may. */
 static bool *touching_groups(const rg_case *c, const rg_part *part, int i, MPI_Comm comm) {
     int32_t groups = rg_sets_groups(&part->surface);
@@ -105,48 +90,28 @@ static bool *touching_groups(const rg_case *c, const rg_part *part, int i, MPI_C
     return touching;
 }
 
-static double face_area(const double *corner, int face) {
-    double edge[2][3], square = 0;
-    for (int c = 0; c < 3; c++) {
-        edge[0][c] = corner[3 * rg_face_node[face][1] + c] - corner[3 * rg_face_node[face][0] + c];
-        edge[1][c] = corner[3 * rg_face_node[face][2] + c] - corner[3 * rg_face_node[face][0] + c];
-    }
-    for (int c = 0; c < 3; c++) {
-        int a = (c + 1) % 3, b = (c + 2) % 3;
-        double n = edge[0][a] * edge[1][b] - edge[0][b] * edge[1][a];
-        square += n * n;
-    }
-    return 0.5 * sqrt(square);
-}
-
-static double height_over(const rg_domain *d, size_t slot, int face) {
-    return 3 * (double)d->geom[rg_geom_index(slot, RG_GEOM_VOLUME)] / face_area(d->corner + 12 * slot, face);
-}
-
-static bool is_outer(const rg_domain *d, size_t slot, int face) {
-    return d->id[slot] >= 0 && d->interface[rg_link_index(slot, face)] == RG_NO_INTERFACE;
-}
-
 /* Visits the faces of a tile that may touch a body, in an order that follows from the mesh: counts them and,
  * with room for them, lists them. */
 static size_t list_faces(rg_bodies *b, bool *const touching[], size_t tile, rg_contact_face *out) {
-    const rg_domain *d = b->domain;
+    const rg_domain *d = b->surface.domain;
     size_t count = 0;
     for (size_t slot = d->tile[tile].begin * RG_LANES; slot < d->tile[tile].end * RG_LANES; slot++) {
         for (int k = 0; k < RG_FACES * b->count; k++) {
             int face = k / b->count, body = k % b->count, group = d->set[4 * slot + (size_t)face];
             bool may = touching[body] == NULL || (group >= 0 && touching[body][group]);
-            if (!may || !is_outer(d, slot, face)) {
+            if (!may || !rg_surface_has(d, slot, face)) {
                 continue;
             }
             if (out != NULL) {
-                const rg_material *m = &b->material[d->material[slot / RG_LANES]];
+                double normal[3];
+                const rg_material *m = &b->surface.material[d->material[slot / RG_LANES]];
                 double modulus = m->lambda + 2 * m->mu;
-                double kappa = b->body[body].input->penalty * modulus / height_over(d, slot, face);
-                out[count] = (rg_contact_face){.slot = (rg_lid)slot,
-                                               .face = (int8_t)face,
-                                               .body = (int16_t)body,
-                                               .stiffness = kappa * face_area(d->corner + 12 * slot, face)};
+                double kappa = b->body[body].input->penalty * modulus / rg_surface_height(d, slot, face);
+                out[count] = (rg_contact_face){
+                    .slot = (rg_lid)slot,
+                    .face = (int8_t)face,
+                    .body = (int16_t)body,
+                    .stiffness = kappa * rg_surface_area(d->corner + 12 * slot, face, normal)};
             }
             count++;
         }
@@ -159,11 +124,11 @@ static void find_faces(rg_bodies *b, const rg_case *c, const rg_part *part) {
     for (int i = 0; i < b->count; i++) {
         touching[i] = touching_groups(c, part, i, b->comm);
     }
-    for (size_t t = 0; t < b->domain->tiles; t++) {
+    for (size_t t = 0; t < b->surface.domain->tiles; t++) {
         b->tile_begin[t + 1] = b->tile_begin[t] + list_faces(b, touching, t, NULL);
     }
-    b->face = RG_NEW(rg_contact_face, b->tile_begin[b->domain->tiles] + 1);
-    for (size_t t = 0; t < b->domain->tiles; t++) {
+    b->face = RG_NEW(rg_contact_face, b->tile_begin[b->surface.domain->tiles] + 1);
+    for (size_t t = 0; t < b->surface.domain->tiles; t++) {
         list_faces(b, touching, t, b->face + b->tile_begin[t]);
     }
     for (int i = 0; i < b->count; i++) {
@@ -183,17 +148,17 @@ static double face_eigenvalue(const rg_bodies *b) {
         for (int a = 0; a < RG_FNODES; a++) {
             y[a] = 0;
             for (int k = 0; k < RG_FNODES; k++) {
-                y[a] += b->inverse_mass[node[a]][node[k]] * x[k];
+                y[a] += b->surface.inverse_mass[node[a]][node[k]] * x[k];
             }
         }
         memset(x, 0, sizeof x);
         for (int q = 0; q < RG_POINTS; q++) {
             double at = 0;
             for (int a = 0; a < RG_FNODES; a++) {
-                at += b->rule.shape[q][a] * y[a];
+                at += b->surface.shape[q][a] * y[a];
             }
             for (int a = 0; a < RG_FNODES; a++) {
-                x[a] += b->rule.weight[q] * b->rule.shape[q][a] * at;
+                x[a] += b->surface.weight[q] * b->surface.shape[q][a] * at;
             }
         }
         largest = 0;
@@ -210,11 +175,11 @@ static double face_eigenvalue(const rg_bodies *b) {
 /* Largest squared frequency of an element whose faces are all pressed, held by nothing else. */
 static double element_omega2(const rg_bodies *b) {
     double largest = 0, eigenvalue = face_eigenvalue(b), sum = 0;
-    size_t faces = b->tile_begin[b->domain->tiles];
+    size_t faces = b->tile_begin[b->surface.domain->tiles];
     for (size_t i = 0; i < faces; i++) {
         const rg_contact_face *f = &b->face[i];
         bool same = i > 0 && f->slot == f[-1].slot;
-        double mass = rg_element_mass(b->domain, b->material, (size_t)f->slot);
+        double mass = rg_element_mass(b->surface.domain, b->surface.material, (size_t)f->slot);
         sum = (same ? sum : 0) + eigenvalue * f->stiffness / mass;
         largest = fmax(largest, sum);
     }
@@ -225,12 +190,13 @@ static double element_omega2(const rg_bodies *b) {
  * more than half of its surface. */
 static double body_omega2(const rg_bodies *b, int body) {
     rg_exact_sum sum = {0};
-    double area, kappa = 0, radius = b->body[body].input->radius;
-    for (size_t i = 0; i < b->tile_begin[b->domain->tiles]; i++) {
+    double kappa = 0, radius = b->body[body].input->radius;
+    for (size_t i = 0; i < b->tile_begin[b->surface.domain->tiles]; i++) {
         const rg_contact_face *f = &b->face[i];
         if (f->body == body) {
             rg_exact_add(&sum, f->stiffness);
-            area = face_area(b->domain->corner + 12 * (size_t)f->slot, f->face);
+            double normal[3],
+                area = rg_surface_area(b->surface.domain->corner + 12 * (size_t)f->slot, f->face, normal);
             kappa = fmax(kappa, f->stiffness / area);
         }
     }
@@ -276,13 +242,14 @@ static void refuse_overlap(const rg_bodies *b, const rg_case *c) {
     const rg_contact_face *in = NULL;
     overlap here = {0}, all;
     MPI_Comm_rank(b->comm, &here.rank);
-    for (size_t i = 0; i < b->tile_begin[b->domain->tiles]; i++) {
+    for (size_t i = 0; i < b->tile_begin[b->surface.domain->tiles]; i++) {
         const rg_contact_face *f = &b->face[i];
         for (int a = 0; a < RG_FNODES; a++) {
             double x[3], normal[3];
-            start_position(c, b->domain, f, a, x);
+            start_position(c, b->surface.domain, f, a, x);
             double depth = rg_body_depth(&b->body[f->body], x, normal);
-            if (depth > fmax(here.depth, TOUCH * height_over(b->domain, (size_t)f->slot, f->face))) {
+            if (depth >
+                fmax(here.depth, TOUCH * rg_surface_height(b->surface.domain, (size_t)f->slot, f->face))) {
                 here.depth = depth;
                 in = f;
                 memcpy(worst, x, sizeof worst);
@@ -308,17 +275,11 @@ rg_bodies *rg_bodies_make(const rg_case *c, const rg_domain *d, const rg_part *p
     *b = (rg_bodies){.count = c->bodies,
                      .threads = threads,
                      .comm = comm,
-                     .domain = d,
-                     .material = m,
+                     .surface = rg_surface_make(d, m, c->mass),
                      .request = MPI_REQUEST_NULL};
     b->tile_begin = RG_NEW(size_t, d->tiles + 1);
     if (c->bodies == 0) {
         return b;
-    }
-    make_rule(&b->rule);
-    for (int i = 0; i < RG_NODES * RG_NODES; i++) {
-        b->inverse_mass[i / RG_NODES][i % RG_NODES] =
-            rg_inverse_mass_entry(c->mass, i / RG_NODES, i % RG_NODES);
     }
     b->body = RG_NEW(rg_body, (size_t)b->count);
     for (int i = 0; i < b->count; i++) {

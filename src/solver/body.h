@@ -4,9 +4,7 @@
  * Contact is a penalty on penetration, with one potential: the integral over the outer faces of
  *     (kappa/2) <g>^2,    kappa = penalty (lambda + 2 mu)/h,
  * g the depth of a point below the body's surface, h the height of the element over the face: the stiffness
- * with which interfaces hold together. The integral is the six-point rule of the interfaces, so a face's
- * forces follow from its own element alone, whose nodes no other element shares, and do not depend on the
- * partition.
+ * with which interfaces hold together (solver/surface.h: the integral).
  *
  * Every rank knows all bodies and moves them alike: the force on a body is an exact sum over faces
  * (base/exact_sum.h), sent for under the tile-boundary faces and needed when the step ends. Bodies kick and
@@ -23,6 +21,7 @@
 #include "domain/domain.h"
 #include "kernels.h"
 #include "solver/state.h"
+#include "solver/surface.h"
 
 /* A body as it was seen at a present time, between kick and drift. */
 typedef struct {
@@ -56,20 +55,12 @@ typedef struct {
     double stiffness; /* kappa times the area of the face (N/m) */
 } rg_contact_face;
 
-/* The six-point rule on a face: weights (sum 1) and shape functions of its nodes. */
-typedef struct {
-    double weight[RG_POINTS], shape[RG_POINTS][RG_FNODES];
-} rg_face_rule;
-
 typedef struct {
     int count, threads;
     rg_body *body;
     MPI_Comm comm;
-    const rg_domain *domain;
-    rg_face_rule rule;
-    const rg_material *material;             /* of the solid, by number */
-    double inverse_mass[RG_NODES][RG_NODES]; /* (M / (rho V))^-1 */
-    size_t *tile_begin;                      /* faces of tile t: from tile_begin[t] on */
+    rg_surface surface;
+    size_t *tile_begin; /* faces of tile t: from tile_begin[t] on */
     rg_contact_face *face;
     double omega2;       /* what contact adds to the largest squared frequency, at most (1/s^2) */
     rg_exact_sum *sum;   /* [threads][count][3] force on each body (N) */
@@ -84,19 +75,12 @@ typedef struct {
 rg_bodies *rg_bodies_make(const rg_case *c, const rg_domain *d, const rg_part *part, const rg_material *m,
                           int threads, MPI_Comm comm);
 
-/* What forces do to the solid. */
-typedef struct {
-    double dt, dt_now;      /* velocity += dt M^-1 f, step_velocity += dt_now M^-1 f */
-    rg_real *velocity;      /* whole fields (layout.h) */
-    rg_real *step_velocity; /* or NULL */
-} rg_contact_kick;
-
 /* Depth of point x below the surface of a body (m), negative outside; `normal` points out of the body. */
 double rg_body_depth(const rg_body *b, const double x[3], double normal[3]);
 
 /* Forces of the bodies on the faces of a tile at displacement u: kicks the velocities and keeps account of
  * the forces for the bodies' own. Threads call it for different tiles. */
-void rg_bodies_touch(rg_bodies *b, size_t tile, const rg_real *u, const rg_contact_kick *kick);
+void rg_bodies_touch(rg_bodies *b, size_t tile, const rg_real *u, const rg_push *push);
 
 /* Adds the contact energy of a tile's faces at displacement u (J) to `energy`. */
 void rg_bodies_energy(const rg_bodies *b, size_t tile, const rg_real *u, rg_exact_sum *energy);

@@ -110,6 +110,9 @@ static rg_solver *make(const rg_case *input, rg_part *part, MPI_Comm comm) {
     }
     s->constraints = rg_constraints_make(input, s->domain, s->part, model->material, s->assembly);
     s->bodies = rg_bodies_make(input, s->domain, s->part, model->material, s->threads, comm);
+    s->account = rg_account_make(comm);
+    s->loads = rg_loads_make(input, s->domain, s->part, model->material, s->account, s->threads, comm);
+    rg_account_open(s->account, s->threads);
     allocate(s);
     rg_law_start(s);
     return s;
@@ -179,6 +182,8 @@ void rg_solver_free(rg_solver *s) {
     if (!s->beside) {
         rg_constraints_free(s->constraints);
         rg_bodies_free(s->bodies);
+        rg_loads_free(s->loads);
+        rg_account_free(s->account);
         rg_assembly_free(s->assembly);
         rg_conforming_faces_free((rg_conforming_faces *)s->conforming_faces);
         rg_domain_free((rg_domain *)s->domain);

@@ -20,9 +20,11 @@
 #include "domain/domain.h"
 #include "domain/halo.h"
 #include "kernels.h"
+#include "solver/account.h"
 #include "solver/body.h"
 #include "solver/constraint.h"
 #include "solver/field_list.h"
+#include "solver/load.h"
 #include "solver/model.h"
 #include "solver/phases.h"
 
@@ -67,6 +69,8 @@ struct rg_solver {
 #undef MEMBER
     rg_constraints *constraints;
     rg_bodies *bodies;
+    rg_account *account; /* of what acts from outside */
+    rg_loads *loads;
     double time, dt; /* of the current state (s); dt is the step that led to it */
     double dt_next;  /* step that leads on, once kicked */
     int64_t step;

@@ -426,7 +426,8 @@ void rg_spectrum_whole(rg_solver *s) {
 static limit find_on_patch(rg_solver *s) {
     rg_case input = *s->input;
     input.boundaries = 0; /* their sets are not on the patch, and the operator is that of a free body */
-    input.bodies = 0;     /* what they add to it is known */
+    input.loads = 0;
+    input.bodies = 0; /* what they add to it is known */
     rg_solver *local = rg_solver_make_from_part(&input, s->patch, MPI_COMM_SELF);
     s->patch = NULL;
     limit found = find(local, s->model->stiffest);

@@ -22,7 +22,7 @@ typedef struct {
     double dt;
     bool move;      /* the step goes on: drift and publish at once */
     bool observe;   /* `step_velocity` is wanted everywhere */
-    bool constrain; /* prescribed motions and bodies act */
+    bool constrain; /* prescribed motions, loads and bodies act */
     bool advance;   /* the history of the material goes on by the step that led here: once for each state */
     bool hold;      /* no face breaks */
     bool apart;     /* velocity is that of elements that do not know yet that they share nodes */
@@ -68,8 +68,10 @@ static void tile_kick(rg_solver *s, size_t tile, const rg_workspace *w, const im
     }
 }
 
-static void touch_bodies(rg_solver *s, size_t tile, const impulse *p) {
-    rg_contact_kick k = {p->dt, 0.5 * s->dt, p->velocity, step_velocity_of(s, tile, p)};
+/* Loads and bodies. */
+static void push(rg_solver *s, size_t tile, const impulse *p) {
+    rg_push k = {p->dt, 0.5 * s->dt, p->velocity, step_velocity_of(s, tile, p)};
+    rg_loads_push(s->loads, tile, &k);
     rg_bodies_touch(s->bodies, tile, s->u, &k);
 }
 
@@ -131,9 +133,12 @@ static void element_sweep(rg_solver *s, size_t tile, const rg_workspace *w, cons
     s->kernels->send_tractions(&traces, 0, rg_tile_face_blocks(t));
     s->kernels->interface(&interface, 0, rg_tile_inner_blocks(t));
     mark_cracked(s, t, t->ibegin, t->sbegin);
+    if (p->constrain) {
+        rg_loads_find(s->loads, tile, s->u, s->velocity);
+    }
     tile_kick(s, tile, w, p, RG_SWEEP_ELEMENT);
     if (p->constrain) {
-        touch_bodies(s, tile, p);
+        push(s, tile, p);
     }
     s->tile_stiffening[tile] = largest(bulk.stiffening, blocks * RG_LANES);
 }
@@ -152,6 +157,7 @@ static void tile_drift(rg_solver *s, size_t tile, const rg_workspace *w) {
 static void tile_complete(rg_solver *s, size_t tile, const rg_workspace *w, const impulse *p) {
     if (p->constrain) {
         rg_constraints_kick(s->constraints, tile, p->velocity, step_velocity_of(s, tile, p));
+        rg_loads_book(s->loads, tile, p->velocity);
     }
     if (s->watched[tile] && p->constrain) {
         s->watch(s->watch_context, s, tile, w);
@@ -326,6 +332,7 @@ static void evaluate(rg_solver *s, const impulse *whole) {
     }
     if (p->constrain) {
         rg_bodies_kick(s->bodies, s->time, s->dt, s->dt_next);
+        rg_account_close(s->account);
     }
     rg_phases_mark(&s->phases, RG_PHASE_REDUCE);
 }
@@ -439,6 +446,7 @@ static impulse prepare(rg_solver *s, double dt) {
         rg_material_prepare(&s->stepper->material[m], s->dt);
     }
     rg_constraints_set(s->constraints, s->time, dt);
+    rg_loads_set(s->loads, s->time, s->dt, dt);
     return (impulse){
         .velocity = s->velocity, .dt = 0.5 * (s->dt + dt), .constrain = true, .advance = s->dt > 0};
 }

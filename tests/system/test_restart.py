@@ -130,6 +130,10 @@ VARIANTS = {  # test_checkpoint.c has more, on one rank
         {"where": "z*z < 1e-8", "law": "none"}]},
     "viscosity": {"viscosity": {"linear": 0.06, "quadratic": 1.2}},
     "continuous": {"interface.form": "continuous", "interface.faces": "nz*nz > 0.5"},
+    "loads": {"tables": {"pulse": {"points": [[0, 0], [5e-8, 1], [2e-7, 0.2]], "smooth": True}},
+              "loads": [{"name": "pull", "set": "z+", "traction": {"x": "2e7*pulse(t)*(1 + 1e3*y)", "z": "3e8*pulse(t)"}},
+                        {"where": "abs(nx) > 0.5", "pressure": "2e8*pulse(2*t)*(1 + 1e2*z)", "from": 2e-8, "until": 1.5e-7},
+                        {"set": "y-", "force": {"y": 3}}, {"name": "fall", "acceleration": {"y": -4e7, "z": "1e11*x*t/1e-7"}}]},
     "plain": {"output.fields": [], "output.probes": [], "boundary": []},
 }
 

@@ -44,6 +44,7 @@ static const char defaults[] =
     "  quadratic: 0\n"
     "mass: consistent\n"
     "boundary: []\n"
+    "loads: []\n"
     "bodies: []\n"
     "time:\n"
     "  end: 0.5 # s\n"
@@ -88,6 +89,8 @@ static const char *const all[] = {
     "initial.displacement.y=x",
     "initial.velocity={x: 1.5e3, z: -y}",
     "boundary=[{set: x-, component: y, displacement: 0}, {component: z, set: y+, velocity: 't < 1 ? x : 2'}]",
+    "loads=[{name: push, set: x-, traction: {z: 't*x'}, until: 8}, {where: 'y > 1', acceleration: {y: "
+    "-9.75}, from: 0.5}]",
     "bodies=[{name: ball, shape: sphere, motion: free, at: [1, 2, 3], radius: 0.5, density: 7, faces: [z+, "
     "x-],"
     "velocity: {y: 1/3}}, {name: wall, shape: plane, motion: prescribed, at: [0, 0, -1], normal: [0, 3, 4],"
@@ -251,6 +254,17 @@ static void test_everything(void **state) {
                 "  - set: \"y+\"\n"
                 "    component: z\n"
                 "    velocity: \"t < 1 ? x : 2\" # m/s\n"
+                "loads:\n"
+                "  - name: \"push\"\n"
+                "    set: \"x-\"\n"
+                "    traction:\n"
+                "      z: \"t*x\" # Pa\n"
+                "    from: 0 # s\n"
+                "    until: 8 # s\n"
+                "  - where: \"y > 1\"\n"
+                "    acceleration:\n"
+                "      y: -9.75 # m/s2\n"
+                "    from: 0.5 # s\n"
                 "bodies:\n"
                 "  - name: \"ball\"\n"
                 "    shape: sphere\n"

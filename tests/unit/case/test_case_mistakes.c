@@ -15,11 +15,10 @@
     "allowed: list from displacement, velocity, stress, mean_stress, principal_stress, crack, "              \
     "damage, regime, plastic_strain, triaxiality, rank, fragment, material"
 #define BLOCKS                                                                                               \
-    "allowed: tables, mesh, material, materials, interface, viscosity, mass, initial, boundary, bodies, "    \
-    "time, "                                                                                                 \
-    "output, checkpoint"
+    "allowed: tables, mesh, material, materials, interface, viscosity, mass, initial, boundary, loads, "     \
+    "bodies, time, output, checkpoint"
 #define CERAMIC        ": not used, because material.model is neo-hookean; it belongs to deshpande-evans\n"
-#define NAMES          "allowed: letters, digits, _ and -; unique among bodies and probes\n"
+#define NAMES          "allowed: letters, digits, _ and -; unique in history.csv\n"
 #define MATERIAL_NAMES "allowed: letters, digits, _ and -; unique among materials\n"
 #define PAIR           "allowed: names of two materials, or one twice: material, steel"
 #define UNUSED         ": not used, because interface.law is none\n"
@@ -233,14 +232,14 @@ static const mistake mistakes[] = {
      "time:\n",
      ":16:5: bodies[0].radius: missing: spheres and cylinders have one\n"
      ":16:5: bodies[0].mass: missing: a free body has a mass, or a sphere a density\n"
-     ":16:12: bodies[0].name: a b: not a name; allowed: letters, digits, _ and -; unique among bodies and "
-     "probes\n"
+     ":16:12: bodies[0].name: a b: not a name; allowed: letters, digits, _ and -; unique in history.csv\n"
      ":17:61: bodies[1].radius: not used: a plane has none\n"
      ":17:80: bodies[1].normal: [0, 0, 0]: has no direction\n"
      ":17:91: bodies[1].density: not used: only a sphere has a volume; give its mass\n"
      ":17:113: bodies[1].velocity.z: t: depends on t, but a free body has it at the start alone\n"
-     ":18:12: bodies[2].name: w: the name of an earlier body or probe; allowed: letters, digits, _ and -; "
-     "unique among bodies and probes\n"
+     ":18:12: bodies[2].name: w: the name of an earlier one in history.csv; allowed: letters, digits, _ and "
+     "-; "
+     "unique in history.csv\n"
      ":18:126: bodies[2].velocity.x: x: depends on x, y or z, but this is the same everywhere; allowed: "
      "number or expression in t (m/s)\n"
      ":19:5: bodies[3].axis: missing: it belongs to a cylinder\n"
@@ -257,7 +256,7 @@ static const mistake mistakes[] = {
      ":24:43: bodies[8].colour: unknown key; allowed: name, shape, motion, at, radius, normal, axis, "
      "density, mass, velocity, faces, penalty\n"
      ":25:5: bodies[9]: 3: not a mapping of keys; allowed: list of {name, shape, motion, at, radius, normal, "
-     "axis, density, mass, velocity.x, velocity.y, velocity.z, faces, penalty}\n"},
+     "axis, density, mass, velocity, faces, penalty}\n"},
     {"output:\n", "output:\n  times: [1e-7, 1e-7]\n",
      ":18:10: output.times: [1e-7, 1e-7]: not ascending; allowed: ascending list, each number >= 0 (s)\n"},
     {"output:\n", "output:\n  times: [1e-7, 2e-6]\n",
@@ -298,7 +297,7 @@ static const mistake mistakes[] = {
     {"1e-3]}", "2.1e-3]}",
      ":19:28: output.probes[0].at[2]: 2.1e-3: outside the box; allowed: number >= 0 and <= 0.002 (m)\n"},
     {"1e-3]}\n", "1e-3]}\n    - {name: p, at: [0, 0]}\n",
-     ":20:14: output.probes[1].name: p: the name of an earlier body or probe; " NAMES
+     ":20:14: output.probes[1].name: p: the name of an earlier one in history.csv; " NAMES
      ":20:21: output.probes[1].at: [0, 0]: wrong number of entries; allowed: [x, y, z], each number (m)\n"},
     /* YAML */
     {"mesh:\n", "mesh:\n\tjitter: 0\n",

@@ -44,8 +44,9 @@ static const mistake bodies[] = {
      "number or expression in t (m/s)\n"
      ":24:105: bodies[8].velocity.z: nx: depends on a normal, which only faces have; allowed: number or "
      "expression in t (m/s)\n"
-     ":25:12: bodies[9].name: f: the name of an earlier body or probe; allowed: letters, digits, _ and -; "
-     "unique among bodies and probes\n"
+     ":25:12: bodies[9].name: f: the name of an earlier one in history.csv; allowed: letters, digits, _ and "
+     "-; "
+     "unique in history.csv\n"
      ":25:89: bodies[9].velocity: 3: not a mapping of keys\n"
      ":25:104: bodies[9].faces[1]: 7: not one of the allowed words; allowed: x-, x+, y-, y+, z-, z+\n"
      ":25:107: bodies[9].faces[2]: z: not one of the allowed words; allowed: x-, x+, y-, y+, z-, z+; did you "
@@ -54,8 +55,53 @@ static const mistake bodies[] = {
      ":26:40: bodies[10].motion: {a: 1}: not one of the allowed words; allowed: free, prescribed\n"
      ":26:52: bodies[10].at: 3: not a list; allowed: [x, y, z], each number (m)\n"
      ":26:63: bodies[10].faces[0]: [1]: not one of the allowed words; allowed: x-, x+, y-, y+, z-, z+\n"
-     ":31:14: output.probes[0].name: p: the name of an earlier body or probe; allowed: letters, digits, _ "
-     "and -; unique among bodies and probes\n"},
+     ":31:14: output.probes[0].name: p: the name of an earlier one in history.csv; allowed: letters, digits, "
+     "_ "
+     "and -; unique in history.csv\n"},
+};
+
+#define LOAD "allowed: exactly one of traction, pressure, force, acceleration\n"
+
+static const mistake loads[] = {
+    {"time:\n",
+     "loads:\n"
+     "  - {name: p, set: z+, pressure: 1}\n"
+     "  - {name: p, set: z+, pressure: 1, traction: {x: 1}}\n"
+     "  - {set: z+, where: 'nx > 0', force: {x: 1}, acceleration: {x: 1}}\n"
+     "  - {set: z+}\n"
+     "  - {set: z+, acceleration: {x: 1}}\n"
+     "  - {where: nx > 0, acceleration: {x: 1}}\n"
+     "  - {pressure: 1}\n"
+     "  - {set: z+, where: 'x > 0', pressure: 1}\n"
+     "  - {set: z+, force: {x: x}, from: 2, until: 1}\n"
+     "  - {set: z+, force: {x: t}, from: 2, until: 2}\n"
+     "  - {set: top, pressure: 'nx', until: 0}\n"
+     "  - {set: z+, traction: 3}\n"
+     "  - 3\n"
+     "time:\n",
+     ":17:12: loads[1].name: p: the name of an earlier one in history.csv; allowed: letters, digits, _ and "
+     "-; "
+     "unique in history.csv\n"
+     ":17:24: loads[1]: traction and pressure both given; " LOAD
+     ":18:47: loads[2]: force and acceleration both given; " LOAD ":19:5: loads[3]: missing a load; " LOAD
+     ":20:6: loads[4].set: not used: an acceleration acts on elements, which `where` selects\n"
+     ":21:13: loads[5].where: depends on a normal, which only faces have\n"
+     ":22:5: loads[6]: missing set or where; allowed: exactly one of set, where\n"
+     ":23:15: loads[7]: set and where both given; allowed: exactly one of set, where\n"
+     ":24:26: loads[8].force.x: x: depends on x, y or z, but this is the same everywhere; allowed: number or "
+     "expression in t (N)\n"
+     ":25:46: loads[9].until: not after `from`\n"
+     ":26:11: loads[10].set: top: not one of the allowed words; allowed: x-, x+, y-, y+, z-, z+\n"
+     ":26:26: loads[10].pressure: \"nx\": depends on a normal, which only faces have; allowed: number or "
+     "expression in x, y, z, t (Pa)\n"
+     ":26:39: loads[10].until: 0: out of range; allowed: number > 0 (s)\n"
+     ":27:25: loads[11].traction: 3: not a mapping of keys\n"
+     ":28:5: loads[12]: 3: not a mapping of keys; allowed: list of {name, set, where, traction, pressure, "
+     "force, "
+     "acceleration, from, until}\n"
+     ":33:14: output.probes[0].name: p: the name of an earlier one in history.csv; allowed: letters, digits, "
+     "_ "
+     "and -; unique in history.csv\n"},
 };
 
 static const mistake names[] = {
@@ -67,15 +113,15 @@ static const mistake names[] = {
      "  - {name: 5, shape: plane, motion: prescribed, at: [0, 0, 9], normal: [0, 0, 1]}\n"
      "  - {name: p, shape: plane, motion: prescribed, at: [0, 0, 9], normal: [0, 0, 1]}\n"
      "time:\n",
-     ":17:12: bodies[1].name: a.b: not a name; allowed: letters, digits, _ and -; unique among bodies and "
-     "probes\n"
-     ":18:12: bodies[2].name: a.b: not a name; allowed: letters, digits, _ and -; unique among bodies and "
-     "probes\n"
+     ":17:12: bodies[1].name: a.b: not a name; allowed: letters, digits, _ and -; unique in history.csv\n"
+     ":18:12: bodies[2].name: a.b: not a name; allowed: letters, digits, _ and -; unique in history.csv\n"
      ":19:12: bodies[3].name: 5: not a text (put it in quotes to make it one); allowed: text\n"
-     ":20:12: bodies[4].name: p: the name of an earlier body or probe; allowed: letters, digits, _ and -; "
-     "unique among bodies and probes\n"
-     ":25:14: output.probes[0].name: p: the name of an earlier body or probe; allowed: letters, digits, _ "
-     "and -; unique among bodies and probes\n"},
+     ":20:12: bodies[4].name: p: the name of an earlier one in history.csv; allowed: letters, digits, _ and "
+     "-; "
+     "unique in history.csv\n"
+     ":25:14: output.probes[0].name: p: the name of an earlier one in history.csv; allowed: letters, digits, "
+     "_ "
+     "and -; unique in history.csv\n"},
     {"1e-3]}\n",
      "1e-3]}\n"
      "    - {at: [0, 0, 0]}\n"
@@ -85,8 +131,9 @@ static const mistake names[] = {
      "    - {name: ~, at: [0, 0, 0]}\n"
      "    - 7\n",
      ":20:7: output.probes[1].name: missing; allowed: text\n"
-     ":22:14: output.probes[3].name: q: the name of an earlier body or probe; allowed: letters, digits, _ "
-     "and -; unique among bodies and probes\n"
+     ":22:14: output.probes[3].name: q: the name of an earlier one in history.csv; allowed: letters, digits, "
+     "_ "
+     "and -; unique in history.csv\n"
      ":23:14: output.probes[4].name: \"\": not a text; allowed: text\n"
      ":24:14: output.probes[5].name: no value; allowed: text\n"
      ":25:7: output.probes[6]: 7: not a mapping of keys; allowed: list of {name, at}\n"},
@@ -383,7 +430,7 @@ static const mistake materials[] = {
      ":19:34: interface.sets[5].between: lead: no such material; allowed: names of two materials, or one "
      "twice: material, tin, zinc\n"
      ":20:7: interface.sets[6]: 8: not a mapping of keys; allowed: list of {where, between, law, "
-     "strength, energy, beta, friction, weibull.modulus, weibull.area, weibull.seed}\n"},
+     "strength, energy, beta, friction, weibull}\n"},
     {"output:\n",
      "output:\n"
      "  fields: [damage, rank, plastic_strain, regime, triaxiality, material]\n"
@@ -394,7 +441,7 @@ static const mistake materials[] = {
      ":18:11: output.fields: plastic_strain: no material has such a field\n"
      ":20:1: x: unknown key; allowed: tables, mesh, material, materials, interface, viscosity, mass, "
      "initial, "
-     "boundary, bodies, time, output, checkpoint\n"},
+     "boundary, loads, bodies, time, output, checkpoint\n"},
     {"  model: neo-hookean\n",
      "  model: rubber\n"
      "  shear: 3\n"
@@ -636,6 +683,11 @@ static void test_bodies(void **state) {
     expect_mistakes(bodies, sizeof bodies / sizeof *bodies);
 }
 
+static void test_loads(void **state) {
+    (void)state;
+    expect_mistakes(loads, sizeof loads / sizeof *loads);
+}
+
 static void test_names(void **state) {
     (void)state;
     expect_mistakes(names, sizeof names / sizeof *names);
@@ -663,15 +715,22 @@ static void test_materials(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_bodies),         cmocka_unit_test(test_names),
-        cmocka_unit_test(test_probes),         cmocka_unit_test(test_law_and_form),
-        cmocka_unit_test(test_boundary),       cmocka_unit_test(test_materials),
-        cmocka_unit_test(test_good),           cmocka_unit_test(test_parameters_of_a_law),
+        cmocka_unit_test(test_loads),
+        cmocka_unit_test(test_bodies),
+        cmocka_unit_test(test_names),
+        cmocka_unit_test(test_probes),
+        cmocka_unit_test(test_law_and_form),
+        cmocka_unit_test(test_boundary),
+        cmocka_unit_test(test_materials),
+        cmocka_unit_test(test_good),
+        cmocka_unit_test(test_parameters_of_a_law),
         cmocka_unit_test(test_many_materials),
 #ifndef RG_SINGLE
-        cmocka_unit_test(test_saturation),     cmocka_unit_test(test_flaws_of_a_list),
+        cmocka_unit_test(test_saturation),
+        cmocka_unit_test(test_flaws_of_a_list),
 #endif
-        cmocka_unit_test(test_mesh_file),      cmocka_unit_test(test_mistakes_with_a_mesh_file),
+        cmocka_unit_test(test_mesh_file),
+        cmocka_unit_test(test_mistakes_with_a_mesh_file),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

@@ -206,8 +206,9 @@ static void test_sections(void **state) {
 /* What is not given is the first word of a choice. */
 static void test_default_words(void **state) {
     (void)state;
-    const rg_key_table *const tables[] = {&rg_case_table, &rg_material_table, &rg_boundary_table,
-                                          &rg_body_table, &rg_probe_table,    &rg_face_set_table};
+    const rg_key_table *const tables[] = {&rg_case_table,    &rg_material_table, &rg_boundary_table,
+                                          &rg_load_table,    &rg_body_table,     &rg_probe_table,
+                                          &rg_face_set_table};
     for (size_t t = 0; t < sizeof tables / sizeof *tables; t++) {
         for (const rg_key *key = tables[t]->key; key < tables[t]->key + tables[t]->keys; key++) {
             assert_true(key->type != RG_KEY_CHOICE || key->fallback == 0);

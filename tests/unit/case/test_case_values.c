@@ -221,8 +221,7 @@ static const mistake keys[] = {
      ": 4\n"
      "mesh:\n",
      ":1:1: unknown key; allowed: tables, mesh, material, materials, interface, viscosity, mass, initial, "
-     "boundary, "
-     "bodies, time, output, checkpoint\n"
+     "boundary, loads, bodies, time, output, checkpoint\n"
      ":2:3: a key must be a single word\n"},
     {"mesh:\n",
      "time: &x 3\n"

@@ -1,0 +1,521 @@
+#include "solver/load.h"
+
+#include <math.h>
+#include <omp.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/error.h"
+#include "base/first_bad.h"
+#include "base/mem.h"
+#include "base/vector.h"
+#include "domain/element.h"
+#include "solver/selection.h"
+
+/* A face under a load, or an element (face < 0), and what acts on its nodes at the present step. */
+typedef struct {
+    rg_lid slot;
+    int8_t face;
+    int16_t load;
+    double before; /* work of the half step that led here (J) */
+    double (
+        *value)[3]; /* of a load that depends on place: at the points of the face, the nodes of the element */
+    double (*force)[3]; /* on the nodes of the face, or of the element (N); NULL: m a, the same everywhere */
+} entry;
+
+typedef struct {
+    const rg_load_input *input;
+    int item; /* of the account */
+    bool by_place, by_time;
+    bool acts;       /* at the present time */
+    double value[3]; /* at the present time, where it is the same everywhere */
+    double area;     /* of its faces of reference (m^2) */
+} load;
+
+struct rg_loads {
+    const rg_case *input;
+    rg_surface surface;
+    rg_account *account;
+    MPI_Comm comm;
+    int count, threads;
+    load *load;
+    rg_expr *(*own)[3]; /* [threads][count]: of loads that depend on place and time */
+    size_t *tile_begin; /* entries of tile t, load by load: from tile_begin[t] on */
+    entry *entry;
+    double (*room)[3];                                  /* of the values and forces of the entries */
+    double row_sum[RG_NODES], mass[RG_NODES][RG_NODES]; /* M/(rho V), and the sums of its rows */
+    double time, dt_last, dt_next;
+    rg_first_bad bad; /* where a value was not finite first, and when */
+};
+
+/* Of a value: of a pressure there is one. */
+static int components(const load *l) {
+    return l->input->kind == RG_LOAD_PRESSURE ? 1 : 3;
+}
+
+static bool is_body_force(const load *l) {
+    return l->input->kind == RG_LOAD_ACCELERATION;
+}
+
+/* Nodes on which an entry's forces are. */
+static int nodes(const entry *e) {
+    return e->face >= 0 ? RG_FNODES : RG_NODES;
+}
+
+static size_t index_of(const entry *e, int a, int c) {
+    return rg_node_index((size_t)e->slot, e->face >= 0 ? rg_face_node[e->face][a] : a, c);
+}
+
+static double mass_of(const rg_loads *all, const entry *e) {
+    return rg_element_mass(all->surface.domain, all->surface.material, (size_t)e->slot);
+}
+
+/* ---- Values ---- */
+
+static void note(rg_loads *all, int which, const double x[3], double time) {
+#pragma omp critical(loads)
+    if (all->bad.which == RG_NOWHERE || all->bad.value == time) { /* what comes later only follows */
+        rg_first_bad_note(&all->bad, which, x, time);
+    }
+}
+
+/* Component c of load i at a place of reference. */
+static double value_at(rg_loads *all, int i, const rg_expr *e, const double x[3], double time) {
+    double value = e == NULL ? 0 : rg_expr_value(e, x, time);
+    if (!isfinite(value)) {
+        note(all, i, x, time);
+    }
+    return value;
+}
+
+/* The values of an entry that depend on place, by expressions of this thread. */
+static void evaluate(rg_loads *all, entry *e, rg_expr *const expr[3], double time) {
+    const rg_surface *s = &all->surface;
+    const load *l = &all->load[e->load];
+    double x[RG_FNODES][3], at[3];
+    if (e->face >= 0) {
+        rg_surface_place(s, (size_t)e->slot, e->face, NULL, x);
+    }
+    for (int q = 0; q < (e->face >= 0 ? RG_POINTS : RG_NODES); q++) {
+        if (e->face >= 0) {
+            rg_surface_at(s, q, x, at);
+        } else {
+            rg_node_position(s->domain->corner + 12 * (size_t)e->slot, q, at);
+        }
+        for (int c = 0; c < components(l); c++) {
+            e->value[q][c] = value_at(all, e->load, expr[c], at, time);
+        }
+    }
+}
+
+static void set_even_value(rg_loads *all, int i, double time) {
+    static const double nowhere[3] = {0, 0, 0};
+    load *l = &all->load[i];
+    double share = l->input->kind == RG_LOAD_FORCE ? 1 / l->area : 1;
+    for (int c = 0; c < components(l); c++) {
+        l->value[c] = share * value_at(all, i, l->input->value[l->input->kind][c], nowhere, time);
+    }
+}
+
+void rg_loads_set(rg_loads *all, double time, double dt_last, double dt_next) {
+    all->time = time;
+    all->dt_last = dt_last;
+    all->dt_next = dt_next;
+    for (int i = 0; i < all->count; i++) {
+        load *l = &all->load[i];
+        l->acts = time >= l->input->from && !(l->input->until > 0 && time >= l->input->until);
+        if (l->acts && l->by_time && !l->by_place) {
+            set_even_value(all, i, time);
+        }
+    }
+}
+
+/* ---- Forces ---- */
+
+static void face_forces(const rg_loads *all, entry *e, const rg_real *u) {
+    const rg_surface *s = &all->surface;
+    const load *l = &all->load[e->load];
+    bool follows = l->input->kind == RG_LOAD_PRESSURE;
+    double normal[3], x[RG_FNODES][3];
+    double area = rg_surface_area(s->domain->corner + 12 * (size_t)e->slot, e->face, normal), out = 1;
+    memset(e->force, 0, RG_FNODES * sizeof *e->force);
+    if (follows) { /* which way x,1 cross x,2 points, from the face of reference */
+        double edge[2][3], product[3];
+        rg_surface_place(s, (size_t)e->slot, e->face, NULL, x);
+        rg_vector_subtract(x[1], x[0], edge[0]);
+        rg_vector_subtract(x[2], x[0], edge[1]);
+        rg_vector_cross(edge[0], edge[1], product);
+        out = rg_vector_dot(product, normal) > 0 ? 1 : -1;
+        rg_surface_place(s, (size_t)e->slot, e->face, u, x);
+    }
+    for (int q = 0; q < RG_POINTS; q++) {
+        const double *value = l->by_place ? e->value[q] : l->value;
+        double t[3] = {value[0] * area, value[1] * area, value[2] * area};
+        if (follows) {
+            double tangent[2][3] = {{0}};
+            for (int a = 0; a < RG_FNODES; a++) {
+                for (int c = 0; c < 3; c++) {
+                    tangent[0][c] += s->slope[q][0][a] * x[a][c];
+                    tangent[1][c] += s->slope[q][1][a] * x[a][c];
+                }
+            }
+            rg_vector_cross(tangent[0], tangent[1], t);
+            for (int c = 0; c < 3; c++) {
+                t[c] *= -0.5 * out * value[0]; /* the triangle of barycentric coordinates has area 1/2 */
+            }
+        }
+        for (int a = 0; a < RG_FNODES; a++) {
+            for (int c = 0; c < 3; c++) {
+                e->force[a][c] += s->weight[q] * s->shape[q][a] * t[c];
+            }
+        }
+    }
+}
+
+static void body_forces(const rg_loads *all, entry *e) {
+    double mass = mass_of(all, e);
+    for (int a = 0; a < RG_NODES; a++) {
+        for (int c = 0; c < 3; c++) {
+            double sum = 0;
+            for (int b = 0; b < RG_NODES; b++) {
+                sum += all->mass[a][b] * e->value[b][c];
+            }
+            e->force[a][c] = mass * sum;
+        }
+    }
+}
+
+/* Power of an entry's forces at a velocity (a whole field). */
+static double power(const rg_loads *all, const entry *e, const rg_real *velocity) {
+    const double *value = all->load[e->load].value;
+    double sum = 0;
+    for (int a = 0; a < nodes(e); a++) {
+        for (int c = 0; c < 3; c++) {
+            double force = e->force != NULL ? e->force[a][c] : all->row_sum[a] * value[c];
+            sum += force * velocity[index_of(e, a, c)];
+        }
+    }
+    return e->force != NULL ? sum : mass_of(all, e) * sum;
+}
+
+void rg_loads_find(rg_loads *all, size_t tile, const rg_real *u, const rg_real *velocity) {
+    for (size_t i = all->tile_begin[tile]; i < all->tile_begin[tile + 1]; i++) {
+        entry *e = &all->entry[i];
+        const load *l = &all->load[e->load];
+        if (!l->acts) {
+            continue;
+        }
+        if (l->by_place && l->by_time) {
+            evaluate(all, e, all->own[omp_get_thread_num() * all->count + e->load], all->time);
+        }
+        if (e->face >= 0) {
+            face_forces(all, e, u);
+        } else if (e->force != NULL) {
+            body_forces(all, e);
+        }
+        e->before = 0.5 * all->dt_last * power(all, e, velocity);
+    }
+}
+
+/* An element moves by just the acceleration of its nodes. */
+static void accelerate(const rg_loads *all, const entry *e, const rg_push *push) {
+    const load *l = &all->load[e->load];
+    for (int a = 0; a < RG_NODES; a++) {
+        const double *value = l->by_place ? e->value[a] : l->value;
+        for (int c = 0; c < 3; c++) {
+            size_t at = rg_node_index((size_t)e->slot, a, c);
+            push->velocity[at] = (rg_real)(push->velocity[at] + push->dt * value[c]);
+            if (push->step_velocity != NULL) {
+                push->step_velocity[at] = (rg_real)(push->step_velocity[at] + push->dt_now * value[c]);
+            }
+        }
+    }
+}
+
+void rg_loads_push(const rg_loads *all, size_t tile, const rg_push *push) {
+    for (size_t i = all->tile_begin[tile]; i < all->tile_begin[tile + 1]; i++) {
+        entry *e = &all->entry[i];
+        if (!all->load[e->load].acts) {
+            continue;
+        }
+        if (e->face >= 0) {
+            rg_surface_push(&all->surface, (size_t)e->slot, e->face, e->force, push);
+        } else {
+            accelerate(all, e, push);
+        }
+    }
+}
+
+static void add_entry(const rg_loads *all, const entry *e, const rg_real *velocity, rg_account_entry *sum) {
+    double mass = e->force != NULL ? 0 : mass_of(all, e);
+    for (int c = 0; c < 3; c++) {
+        sum->force[c] += mass * all->load[e->load].value[c];
+        for (int a = 0; e->force != NULL && a < nodes(e); a++) {
+            sum->force[c] += e->force[a][c];
+        }
+    }
+    sum->before += e->before;
+    sum->after += 0.5 * all->dt_next * power(all, e, velocity);
+}
+
+void rg_loads_book(const rg_loads *all, size_t tile, const rg_real *velocity) {
+    size_t i = all->tile_begin[tile], end = all->tile_begin[tile + 1];
+    while (i < end) {
+        int16_t which = all->entry[i].load;
+        rg_account_entry sum = {{0, 0, 0}, 0, 0};
+        for (; i < end && all->entry[i].load == which; i++) {
+            if (all->load[which].acts) {
+                add_entry(all, &all->entry[i], velocity, &sum);
+            }
+        }
+        if (all->load[which].acts) {
+            rg_account_book(all->account, all->load[which].item, &sum);
+        }
+    }
+}
+
+double rg_loads_work(const rg_loads *all) {
+    double work = 0;
+    for (int i = 0; i < all->count; i++) {
+        work += all->account->item[all->load[i].item].work_now;
+    }
+    return work;
+}
+
+static const char *const key[] = {
+#define KEY(NAME, word, unit) word,
+    RG_LOADS(KEY, )
+#undef KEY
+};
+
+void rg_loads_describe(const rg_loads *all, int i, char *words, size_t size) {
+    const load *l = &all->load[i];
+    if (!is_body_force(l)) {
+        snprintf(words, size, "%s on %.4g m2", key[l->input->kind], l->area);
+    } else {
+        snprintf(words, size, "%s of %s", key[l->input->kind],
+                 l->input->where == NULL ? "the body" : "a part of it");
+    }
+}
+
+bool rg_loads_told(const rg_loads *all, char *words, size_t size) {
+    rg_first_bad bad = all->bad;
+    double first = bad.which == RG_NOWHERE ? INFINITY : bad.value;
+    MPI_Allreduce(MPI_IN_PLACE, &first, 1, MPI_DOUBLE, MPI_MIN, all->comm);
+    if (bad.which != RG_NOWHERE && bad.value > first) { /* it only followed */
+        bad.which = RG_NOWHERE;
+    }
+    bool found = rg_first_bad_lowest(&bad, all->comm);
+    if (found) {
+        snprintf(words, size, "loads[%d].%s is not finite at (%g, %g, %g), t = %g s", (int)bad.which,
+                 key[all->input->load[bad.which].kind], bad.x[0], bad.x[1], bad.x[2], bad.value);
+    }
+    return found;
+}
+
+/* ---- Set-up ---- */
+
+/* Elements of an acceleration: those at whose centroid `where` is not 0. */
+static bool has_element(rg_loads *all, int i, size_t slot) {
+    const rg_domain *d = all->surface.domain;
+    const rg_expr *where = all->load[i].input->where;
+    double x[3];
+    if (d->id[slot] < 0 || where == NULL) {
+        return d->id[slot] >= 0;
+    }
+    for (int c = 0; c < 3; c++) {
+        const double *corner = d->corner + 12 * slot + c;
+        x[c] = 0.25 * (corner[0] + corner[3] + corner[6] + corner[9]);
+    }
+    return value_at(all, i, where, x, 0) != 0;
+}
+
+/* What a load acts on: bits of faces of each slot, or 1 where it acts on the element. */
+static uint8_t *parts_of(rg_loads *all, int i, const rg_part *part) {
+    const rg_load_input *in = all->load[i].input;
+    const rg_domain *d = all->surface.domain;
+    if (!is_body_force(&all->load[i])) {
+        rg_selection s = {"loads", i, in->set, in->where};
+        return rg_selection_faces(&s, all->input, d, part, all->comm);
+    }
+    uint8_t *on = RG_NEW(uint8_t, d->blocks * RG_LANES + 1);
+    int64_t count = 0;
+    for (size_t slot = 0; slot < d->blocks * RG_LANES; slot++) {
+        on[slot] = has_element(all, i, slot);
+        count += on[slot];
+    }
+    MPI_Allreduce(MPI_IN_PLACE, &count, 1, MPI_INT64_T, MPI_SUM, all->comm);
+    if (rg_first_bad_lowest(&all->bad, all->comm) || count == 0) {
+        const double *x = all->bad.x;
+        rg_speak(all->comm);
+        if (all->bad.which != RG_NOWHERE) {
+            rg_fatal(RG_USAGE, "%s: loads[%d].where: %s is not finite at (%g, %g, %g)", all->input->path, i,
+                     rg_expr_text(in->where), x[0], x[1], x[2]);
+        }
+        rg_fatal(RG_USAGE, "%s: loads[%d]: no element is in it, where: %s", all->input->path, i,
+                 rg_expr_text(in->where));
+    }
+    return on;
+}
+
+/* Visits what a load acts on in a tile: counts it and, with room for it, lists it. */
+static size_t list_parts(const rg_loads *all, int i, const uint8_t *on, const rg_tile *t, entry *out) {
+    bool body = is_body_force(&all->load[i]);
+    size_t count = 0;
+    for (size_t slot = t->begin * RG_LANES; slot < t->end * RG_LANES; slot++) {
+        for (int f = 0; f < (body ? 1 : RG_FACES); f++) {
+            if ((on[slot] >> f & 1) != 0) {
+                if (out != NULL) {
+                    out[count] =
+                        (entry){.slot = (rg_lid)slot, .face = (int8_t)(body ? -1 : f), .load = (int16_t)i};
+                }
+                count++;
+            }
+        }
+    }
+    return count;
+}
+
+static void list_all(rg_loads *all, const rg_part *part) {
+    const rg_domain *d = all->surface.domain;
+    uint8_t **on = RG_NEW(uint8_t *, (size_t)all->count + 1);
+    for (int i = 0; i < all->count; i++) {
+        on[i] = parts_of(all, i, part);
+    }
+    all->tile_begin = RG_NEW(size_t, d->tiles + 1);
+    for (int pass = 0; pass < 2; pass++) {
+        for (size_t t = 0, n = 0; t < d->tiles; t++) {
+            for (int i = 0; i < all->count; i++) {
+                n += list_parts(all, i, on[i], &d->tile[t], pass == 0 ? NULL : all->entry + n);
+            }
+            all->tile_begin[t + 1] = n;
+        }
+        if (pass == 0) {
+            all->entry = RG_NEW(entry, all->tile_begin[d->tiles] + 1);
+        }
+    }
+    for (int i = 0; i < all->count; i++) {
+        rg_free(on[i]);
+    }
+    rg_free(on);
+}
+
+/* Rows of values and of forces that an entry has. */
+static size_t value_rows(const rg_loads *all, const entry *e) {
+    return !all->load[e->load].by_place ? 0 : e->face >= 0 ? RG_POINTS : RG_NODES;
+}
+
+static size_t force_rows(const rg_loads *all, const entry *e) {
+    return e->face < 0 && !all->load[e->load].by_place ? 0 : (size_t)nodes(e);
+}
+
+static void make_room(rg_loads *all) {
+    size_t count = all->tile_begin[all->surface.domain->tiles], rows = 0;
+    for (size_t i = 0; i < count; i++) {
+        rows += value_rows(all, &all->entry[i]) + force_rows(all, &all->entry[i]);
+    }
+    all->room = rg_alloc(rows + 1, sizeof *all->room);
+    double(*next)[3] = all->room;
+    for (size_t i = 0; i < count; i++) {
+        entry *e = &all->entry[i];
+        size_t values = value_rows(all, e), forces = force_rows(all, e);
+        e->value = values > 0 ? next : NULL;
+        e->force = forces > 0 ? next + values : NULL;
+        next += values + forces;
+    }
+}
+
+/* Exact, so that it is the same on any ranks. */
+static void measure_areas(rg_loads *all) {
+    for (int i = 0; i < all->count; i++) {
+        rg_exact_sum sum = {0};
+        for (size_t n = 0; n < all->tile_begin[all->surface.domain->tiles]; n++) {
+            const entry *e = &all->entry[n];
+            double normal[3];
+            if (e->load == i && e->face >= 0) {
+                rg_exact_add(&sum, rg_surface_area(all->surface.domain->corner + 12 * (size_t)e->slot,
+                                                   e->face, normal));
+            }
+        }
+        rg_exact_allreduce(&sum, 1, all->comm);
+        all->load[i].area = rg_exact_value(&sum);
+    }
+}
+
+/* Values that do not change, and all others when their load begins. */
+static void first_values(rg_loads *all) {
+    for (int i = 0; i < all->count; i++) {
+        if (!all->load[i].by_place) {
+            set_even_value(all, i, all->load[i].input->from);
+        }
+    }
+    for (size_t n = 0; n < all->tile_begin[all->surface.domain->tiles]; n++) {
+        entry *e = &all->entry[n];
+        const rg_load_input *in = all->load[e->load].input;
+        if (all->load[e->load].by_place) {
+            evaluate(all, e, in->value[in->kind], in->from);
+        }
+    }
+    char words[400];
+    if (rg_loads_told(all, words, sizeof words)) {
+        rg_speak(all->comm);
+        rg_fatal(RG_USAGE, "%s: %s", all->input->path, words);
+    }
+}
+
+static void copy_expressions(rg_loads *all) {
+    all->own = rg_alloc((size_t)(all->threads * all->count) + 1, sizeof *all->own);
+    for (int n = 0; n < all->threads * all->count; n++) {
+        const load *l = &all->load[n % all->count];
+        for (int c = 0; l->by_place && l->by_time && c < components(l); c++) {
+            all->own[n][c] = rg_expr_copy(l->input->value[l->input->kind][c]);
+        }
+    }
+}
+
+rg_loads *rg_loads_make(const rg_case *c, const rg_domain *d, const rg_part *part, const rg_material *m,
+                        rg_account *account, int threads, MPI_Comm comm) {
+    rg_loads *all = RG_NEW(rg_loads, 1);
+    *all = (rg_loads){.input = c,
+                      .surface = rg_surface_make(d, m, c->mass),
+                      .account = account,
+                      .comm = comm,
+                      .count = c->loads,
+                      .threads = threads,
+                      .load = RG_NEW(load, (size_t)c->loads + 1),
+                      .bad = {.which = RG_NOWHERE}};
+    for (int a = 0; a < RG_NODES; a++) {
+        for (int b = 0; b < RG_NODES; b++) {
+            all->mass[a][b] = rg_mass_entry(c->mass, a, b);
+            all->row_sum[a] += all->mass[a][b];
+        }
+    }
+    for (int i = 0; i < c->loads; i++) {
+        load *l = &all->load[i];
+        *l = (load){.input = &c->load[i], .item = rg_account_add(account, c->load[i].name)};
+        for (int k = 0; k < components(l); k++) {
+            const rg_expr *e = c->load[i].value[c->load[i].kind][k];
+            l->by_place = l->by_place || (e != NULL && rg_expr_uses_position(e));
+            l->by_time = l->by_time || (e != NULL && rg_expr_uses_time(e));
+        }
+    }
+    list_all(all, part);
+    make_room(all);
+    measure_areas(all);
+    copy_expressions(all);
+    first_values(all);
+    return all;
+}
+
+void rg_loads_free(rg_loads *all) {
+    if (all == NULL) {
+        return;
+    }
+    for (int n = 0; n < 3 * all->threads * all->count; n++) {
+        rg_expr_free(all->own[n / 3][n % 3]);
+    }
+    void *blocks[] = {all->load, all->own, all->tile_begin, all->entry, all->room, all};
+    for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) {
+        rg_free(blocks[i]);
+    }
+}

@@ -1,0 +1,57 @@
+/* Loads of a case: forces from outside on faces of the surface and on elements.
+ *
+ * On a face, by its six points (solver/surface.h), f_a = int N_a t dA:
+ *   traction, force   t per area of reference: dead, it keeps direction and size
+ *   pressure          t dA = -p x,1 cross x,2 by the face's own deformed tangents, p at the place of
+ * reference. By Nanson this is -p J F^-T N dA with the F of the element at its face, but from six nodes in
+ * place of ten, for any state of the element, and a polynomial that the rule takes exactly: on a closed
+ * surface that moves as one the forces add up to nothing, and so do their moments. On an element an
+ * acceleration a, interpolated between its nodes: f = M a, which moves them by just a, with any mass.
+ *
+ * Forces are those of the displacement and the time of the step; their work is in an account
+ * (solver/account.h). */
+#ifndef RG_LOAD_H
+#define RG_LOAD_H
+
+#include <mpi.h>
+#include <stdbool.h>
+
+#include "case/case.h"
+#include "domain/domain.h"
+#include "solver/account.h"
+#include "solver/surface.h"
+
+typedef struct rg_loads rg_loads;
+
+/* The loads of a case on this rank, each with an item of the account. Ends the run with a message where a
+ * load acts on nothing, a set is unknown or a value is not finite when the load begins. Keeps references to
+ * `c`, `d`, `m`, the materials, and `account`. Collective; free with rg_loads_free. */
+rg_loads *rg_loads_make(const rg_case *c, const rg_domain *d, const rg_part *part, const rg_material *m,
+                        rg_account *account, int threads, MPI_Comm comm);
+
+/* A step from `time`, dt_next long, after one of dt_last (s). One thread. */
+void rg_loads_set(rg_loads *l, double time, double dt_last, double dt_next);
+
+/* The forces on a tile at displacement u, and the work of the half step that led here, by `velocity` (both
+ * whole fields). Before its kick. */
+void rg_loads_find(rg_loads *l, size_t tile, const rg_real *u, const rg_real *velocity);
+
+/* Kicks the velocities of a tile. After its kick. */
+void rg_loads_push(const rg_loads *l, size_t tile, const rg_push *push);
+
+/* The work of the half step to come, by the complete velocity, and the account. */
+void rg_loads_book(const rg_loads *l, size_t tile, const rg_real *velocity);
+
+/* Load i in words: "traction on 2.5e-09 m2". */
+void rg_loads_describe(const rg_loads *l, int i, char *words, size_t size);
+
+/* Work of all loads up to the present time (J). */
+double rg_loads_work(const rg_loads *l);
+
+/* Collective: whether a value was not finite in any step so far; then words[size] says which, where and when
+ * first. */
+bool rg_loads_told(const rg_loads *l, char *words, size_t size);
+
+void rg_loads_free(rg_loads *l);
+
+#endif

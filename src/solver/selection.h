@@ -1,0 +1,23 @@
+/* Faces on the surface that an entry of the case selects: those of a named set, or those where an expression
+ * of their middle and their outward normal is not 0. */
+#ifndef RG_SELECTION_H
+#define RG_SELECTION_H
+
+#include <mpi.h>
+
+#include "case/case.h"
+#include "domain/domain.h"
+
+typedef struct {
+    const char *list; /* of which it is an entry, and its number: "loads", 3 */
+    int number;
+    const char *set;      /* or */
+    const rg_expr *where; /* NULL: by the set */
+} rg_selection;
+
+/* Bits of the selected faces of each element: [slots]; the caller frees them. Ends the run with a message
+ * where the mesh has no such set, the expression is not finite or nothing is selected. Collective. */
+uint8_t *rg_selection_faces(const rg_selection *s, const rg_case *c, const rg_domain *d, const rg_part *part,
+                            MPI_Comm comm);
+
+#endif

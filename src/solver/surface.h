@@ -1,0 +1,50 @@
+/* The outer faces of the solid: which there are, their geometry, and what forces on them do to its elements.
+ *
+ * Integrals over a face are by the six-point rule of the interfaces, exact to degree 4. The forces of a face
+ * are on the nodes of its own element alone, which no other element shares (where elements do, the assembly
+ * adds up what each has made), so they do not depend on the partition. */
+#ifndef RG_SURFACE_H
+#define RG_SURFACE_H
+
+#include "case/case.h"
+#include "domain/domain.h"
+#include "kernels.h"
+
+typedef struct {
+    const rg_domain *domain;
+    const rg_material *material;             /* of the solid, by number */
+    double inverse_mass[RG_NODES][RG_NODES]; /* (M / (rho V))^-1 */
+    /* The rule: weights (sum 1), and at its points the shape functions of a face's nodes and their
+     * derivatives by the barycentric coordinates of its second and third corner. */
+    double weight[RG_POINTS], shape[RG_POINTS][RG_FNODES], slope[RG_POINTS][2][RG_FNODES];
+} rg_surface;
+
+rg_surface rg_surface_make(const rg_domain *d, const rg_material *m, rg_mass mass);
+
+/* Whether a face of an element is on the surface. */
+bool rg_surface_has(const rg_domain *d, size_t slot, int face);
+
+/* Area of a face of the element with these corners [4][3] (m^2), and its unit normal out of the element. */
+double rg_surface_area(const double *corner, int face, double normal[3]);
+
+/* Height of the element over the face (m). */
+double rg_surface_height(const rg_domain *d, size_t slot, int face);
+
+/* Positions of a face's nodes at displacement u (a whole field); NULL: of reference. */
+void rg_surface_place(const rg_surface *s, size_t slot, int face, const rg_real *u, double x[RG_FNODES][3]);
+
+/* Sum over a face's nodes of shape function times value, at point q of the rule. */
+void rg_surface_at(const rg_surface *s, int q, double value[RG_FNODES][3], double out[3]);
+
+/* What forces do to the solid. */
+typedef struct {
+    double dt, dt_now;      /* velocity += dt M^-1 f, step_velocity += dt_now M^-1 f */
+    rg_real *velocity;      /* whole fields (layout.h) */
+    rg_real *step_velocity; /* or NULL */
+} rg_push;
+
+/* Forces on the nodes of a face: the mass matrix couples all nodes of the element. */
+void rg_surface_push(const rg_surface *s, size_t slot, int face, double force[RG_FNODES][3],
+                     const rg_push *push);
+
+#endif

@@ -1,0 +1,96 @@
+"""Loads: waves that a traction sends, and that the work of each is what the body gains. The forces themselves against
+integrals: tests/unit/solver/test_load.c; bits on any layout and restarts: test_parallel.py, test_restart.py."""
+
+import numpy as np
+import pytest
+from conftest import CASES, example, launch, rounding
+from figures import ROUNDING
+
+LOADS = CASES / "loads.yaml"
+NAMES = ("pull", "press", "push", "fall")
+
+# ---- A bar of Poisson's ratio 0 under a step of traction: 1-D waves ----
+
+YOUNG, DENSITY, TRACTION = 200e9, 8000.0, 1e8
+SPEED = np.sqrt(YOUNG / DENSITY)
+RISE = 8e-8  # s
+BAR = {
+    "mesh": {"cells": [1, 1, 40], "size": [5e-5, 5e-5, 2e-3]},
+    "material": {"model": "linear-elastic", "young": YOUNG, "poisson": 0, "density": DENSITY},
+    "interface": {"law": "none", "beta_s": 4},
+    "tables": {"rise": {"points": [[0, 0], [RISE, 1]], "smooth": True}},
+    "time": {"end": 5e-7, "safety": 0.5},
+    "output": {"fields": [], "probes": [{"name": "p", "at": [2e-5, 2e-5, 1.2e-3]}]},
+}
+
+
+def crossing(time, signal, level):
+    after = np.argmax(signal > level)
+    before = after - 1
+    return time[before] + (level - signal[before]) / (signal[after] - signal[before]) * (time[after] - time[before])
+
+
+@pytest.mark.parametrize("load", ["traction", "force", "pressure"])
+def test_step_of_traction(run, figure, load):
+    entry = {"traction": {"traction": {"z": f"{TRACTION}*rise(t)"}}, "force": {"force": {"z": f"{TRACTION * 25e-10}*rise(t)"}},
+             "pressure": {"pressure": f"-{TRACTION}*rise(t)"}}[load]
+    history = run(example("spall.yaml"), sets={**BAR, "boundary": [], "initial": {}, "loads": [{"name": "end", "set": "z+", **entry}]}).history
+    time, stress = history["time"], history["p_szz"]
+    arrival = crossing(time, stress, TRACTION / 2) - RISE / 2
+    figure(f"step of {load} on a bar: speed of its wave", 0.8e-3 / arrival, theory=SPEED, bound=2e-4, unit="m/s", relative=True)
+    plateau = (time > 0.8e-3 / SPEED + 1.5 * RISE) & (time < 5e-7)
+    figure(f"step of {load} on a bar: stress behind it", stress[plateau].mean(), theory=TRACTION, bound=rounding(2.5e-6, 2e-4), unit="Pa", relative=True)
+    figure(f"step of {load} on a bar: velocity behind it", history["p_vz"][plateau].mean(), theory=TRACTION / (DENSITY * SPEED),
+           bound=rounding(2.5e-6, 2e-4), unit="m/s", relative=True)
+    assert history["end_force_z"][-1] == pytest.approx(TRACTION * 25e-10, rel=2e-3)
+
+
+# ---- Work ----
+
+
+def test_work_is_what_the_body_gains(run, figure):
+    """Tractions, pressures that follow, forces and accelerations, of place and time, beside a prescribed motion."""
+    loads = run(LOADS, sets={"time.steps": 10000, "output.interval": 100})
+    energy, history = loads.energy, loads.history
+    assert loads.summary["steps"] == 10000
+    works = [history[f"{name}_work"] for name in NAMES]
+    scale = sum(np.abs(work).max() for work in works)
+    assert min(np.abs(work).max() for work in works) > 0.005 * scale
+    figure("loads of every kind, 10,000 steps: energy error over the work", np.abs(energy["total"] - energy["total"][0]).max() / scale,
+           bound=rounding(1.5e-5, 1e-4))
+    total = np.interp(energy["time"], history["time"], sum(works))
+    supports = energy["external_work"] - total  # of the prescribed motion, which does little
+    assert 0 < np.abs(supports).max() < 0.3 * scale
+
+
+def test_loads_begin_and_end(run):
+    history = run(LOADS, sets={"time.steps": 10000, "output.interval": 100}).history
+    time = history["time"]
+    for name, begin, end in (("press", 1e-7, 3e-6), ("push", 3e-7, np.inf), ("fall", 0, 2.5e-6)):
+        force = sum(np.abs(history[f"{name}_force_{c}"]) for c in "xyz")
+        acts = (time >= begin) & (time < end)
+        assert (force[~acts] == 0).all() and acts.any() and (force[acts] > 0).mean() > 0.3
+        assert np.ptp(history[f"{name}_work"][time >= end]) <= 0 if (time >= end).any() else True
+
+
+@pytest.mark.parametrize("form, mass", [("variational", "consistent"), ("variational", "lumped"), ("intrinsic", "consistent"),
+                                        ("continuous", "lumped")])
+def test_free_fall(run, figure, form, mass):
+    """Every point falls by just g t^2/2 with the speed g t, whatever holds the elements together."""
+    law = {"law": "xu-needleman", "strength": 1e9, "energy": 100} if form == "intrinsic" else {"law": "none"}
+    sets = {"interface": {"form": form, **law}, "mass": mass, "loads": [{"name": "g", "acceleration": {"z": -9.81e6}}], "boundary": [],
+            "time.steps": 200}
+    fall = run(LOADS, sets=sets)
+    time, velocity, way = (fall.history[name][-1] for name in ("time", "p_vz", "p_uz"))
+    bound = rounding(2e-14, 1e-5)
+    figure(f"free fall, form {form}, mass {mass}: velocity", velocity, theory=-9.81e6 * time, bound=bound, unit="m/s", relative=True,
+           why=ROUNDING)
+    figure(f"free fall, form {form}, mass {mass}: way", way, theory=-9.81e6 * time**2 / 2, bound=bound, unit="m", relative=True,
+           why=ROUNDING)
+    work = fall.history["g_work"][-1]
+    assert work == pytest.approx(fall.energy["kinetic"][-1], rel=bound)
+
+
+def test_check_tells_them():
+    said = launch("check", LOADS).stdout
+    assert "load           pull: traction on 9e-08 m2\n" in said and "load           fall: acceleration of the body\n" in said
