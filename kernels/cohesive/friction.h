@@ -10,6 +10,10 @@
  * central difference to its own order; it is negative only where the limit falls while slip turns back, and
  * is then left out.
  *
+ * Beside contact as a potential p is its normal force, and the springs have the forces that follow from the
+ * turn of their frame, too (element/interface_friction.h), so that what sticks keeps its energy however far
+ * it has slid.
+ *
  * k is the tangential part of the penalty, (beta_s/h_s) mu (isotropic penalty: lambda + 2 mu): a point that
  * sticks is held across as it was while the face was whole.
  * limit = mu D p: p is the pressure of contact, D the damage (largest opening over that of full separation,

@@ -84,15 +84,21 @@ RG_INLINE void damaged(interface *s, law_functions law, rg_activation activation
 /* Step 4, once the others are done at all points; `before`: bits of those that were broken already. */
 static __attribute__((noinline)) void rub(interface *s, const uint8_t before[RG_VLEN]) {
     const uint8_t *bits = s->args->broken + s->block * RG_LANES + s->lane;
-    vec3 g[RG_POINTS][2], n[RG_POINTS];
+    vec3 g[RG_POINTS][2], n[RG_POINTS], turn[RG_FNODES] = {{{0}}};
     rg_vec area[RG_POINTS];
     mid_tangents(s, g);
     mid_surface(g, n, area);
+    if (s->args->law.contact == RG_CONTACT_POTENTIAL) {
+        load_turn(s, turn);
+    }
     for (int q = 0; q < RG_POINTS; q++) {
         rg_mask broken = bit_mask(bits, q);
         if (rg_any(broken)) {
-            add_friction(s, q, n[q], broken, broken & ~bit_mask(before, q));
+            add_friction(s, q, g[q], n[q], broken, broken & ~bit_mask(before, q), turn);
         }
+    }
+    if (s->args->law.contact == RG_CONTACT_POTENTIAL) {
+        store_turn(s, turn);
     }
 }
 

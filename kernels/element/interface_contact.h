@@ -31,6 +31,17 @@ RG_INLINE rg_vec facing_root(const interface *s, const point_opening *o) {
     return rg_max(1.0 - apart / rg_max(s->area, rg_splat(RG_NO_AREA)), rg_splat(0.0));
 }
 
+/* Pressure of contact on a broken point (N). */
+RG_INLINE rg_vec contact_pressure(const interface *s, const point_opening *o) {
+    rg_vec depth = rg_max(-o->normal, rg_splat(0.0)), pressure = s->contact * depth;
+    if (s->args->law.contact == RG_CONTACT_POTENTIAL) { /* -dE/dw_n */
+        rg_vec root = facing_root(s, o);
+        rg_vec fading = 2.0 * DEPTHS * depth * depth / rg_max(s->area, rg_splat(RG_NO_AREA));
+        pressure *= root * rg_max(root - fading, rg_splat(0.0));
+    }
+    return pressure;
+}
+
 /* Contact as a potential: E = c/2 w_n^2 root^2. */
 RG_INLINE void add_potential(const interface *s, const point_opening *o, rg_vec pressed, rg_law_response *r) {
     rg_vec root = facing_root(s, o), force = s->contact * pressed * root;
@@ -40,30 +51,35 @@ RG_INLINE void add_potential(const interface *s, const point_opening *o, rg_vec 
     r->weight = rg_splat(1.0);
 }
 
-/* A potential of w_n = w . n and w_t = w - w_n n also depends on n, by (t_n - T w_n) w_t . dn, where the
- * traction is t_n n + T w_t, and
- *     w_t . dn = (dg1 . (g2 x w_t) + dg2 . (w_t x g1))/|g1 x g2|.
- * Adds the nodal forces that follow, of which either side bears one half. */
-RG_INLINE void add_turn(int q, vec3 g[2], const point_opening *o, const rg_law_response *r, rg_mask acting,
-                        vec3 turn[RG_FNODES]) {
+/* Nodal forces of `times` v . dn, v tangential, of which either side bears one half:
+ *     v . dn = (dg1 . (g2 x v) + dg2 . (v x g1))/|g1 x g2|. */
+RG_INLINE void add_turn_along(int q, vec3 g[2], const vec3 v, rg_vec times, rg_mask acting,
+                              vec3 turn[RG_FNODES]) {
     rg_real xi[RG_FNODES], eta[RG_FNODES];
     face_derivatives(q, xi, eta);
-    vec3 w, across, one, two;
-    for (int c = 0; c < 3; c++) {
-        w[c] = o->tangential[c];
-    }
+    vec3 across, one, two;
     rg_cross(g[0], g[1], across);
-    rg_cross(g[1], w, one);
-    rg_cross(w, g[0], two);
+    rg_cross(g[1], v, one);
+    rg_cross(v, g[0], two);
     rg_vec twice = rg_sqrt(rg_dot(across, across));
-    rg_vec factor = rg_splat(-0.5 * rg_tri[q / 3].weight) * (r->normal - r->shear * o->normal) /
-                    rg_max(twice, rg_splat(RG_NO_AREA));
+    rg_vec factor = rg_splat(-0.5 * rg_tri[q / 3].weight) * times / rg_max(twice, rg_splat(RG_NO_AREA));
     factor = rg_select(acting, factor, rg_splat(0.0));
     for (int a = 0; a < RG_FNODES; a++) {
         for (int c = 0; c < 3; c++) {
             turn[a][c] += factor * (xi[a] * one[c] + eta[a] * two[c]);
         }
     }
+}
+
+/* A potential of w_n = w . n and w_t = w - w_n n also depends on n, by (t_n - T w_n) w_t . dn, where the
+ * traction is t_n n + T w_t. */
+RG_INLINE void add_turn(int q, vec3 g[2], const point_opening *o, const rg_law_response *r, rg_mask acting,
+                        vec3 turn[RG_FNODES]) {
+    vec3 w;
+    for (int c = 0; c < 3; c++) {
+        w[c] = o->tangential[c];
+    }
+    add_turn_along(q, g, w, r->normal - r->shear * o->normal, acting, turn);
 }
 
 /* Adds contact to the traction of the points that act by their law. */
@@ -92,6 +108,15 @@ RG_INLINE rg_vec contact_energy(const interface *s, const point_opening *o, rg_m
     }
     rg_mask touches = s->args->law.contact == RG_CONTACT_FLUX ? (rg_mask){0} : broken & is_touching(s, o);
     return rg_select(touches, energy, rg_splat(0.0));
+}
+
+RG_INLINE void load_turn(const interface *s, vec3 turn[RG_FNODES]) {
+    const rg_real *from = s->args->turn + s->block * RG_IFORCE_BLOCK + s->lane;
+    for (int a = 0; a < RG_FNODES; a++) {
+        for (int c = 0; c < 3; c++) {
+            turn[a][c] = rg_load(from + (a * 3 + c) * RG_LANES);
+        }
+    }
 }
 
 RG_INLINE void store_turn(const interface *s, vec3 turn[RG_FNODES]) {

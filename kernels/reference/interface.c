@@ -345,14 +345,17 @@ static void add_contact(const rg_interface_args *args, const point *p, const ope
 
 /* ---- 4. Friction ---- */
 
-/* Unit tangents of the deformed mid-surface: along the edge from corner 0 to 1, and across it. */
-static void sample_tangents(const rg_interface_args *args, size_t i, const point *p, double tangent[2][3]) {
-    double chord[3];
+/* Chord of the mid-surface from corner 0 to 1. */
+static void sample_chord(const rg_interface_args *args, size_t i, double chord[3]) {
     for (int c = 0; c < 3; c++) {
         double first = (side_value(args, i, 0, 0, c) + side_value(args, i, 1, 0, c)) / 2;
         double second = (side_value(args, i, 0, 1, c) + side_value(args, i, 1, 1, c)) / 2;
         chord[c] = edge(args, i, 0, c) + second - first;
     }
+}
+
+/* Unit tangents of the deformed mid-surface: along the chord, and across it. */
+static void sample_tangents(const double chord[3], const point *p, double tangent[2][3]) {
     rg_reference_cross(p->normal, chord, tangent[1]);
     double length = sqrt(rg_reference_dot(tangent[1], tangent[1]));
     for (int c = 0; c < 3; c++)
@@ -360,23 +363,71 @@ static void sample_tangents(const rg_interface_args *args, size_t i, const point
     rg_reference_cross(tangent[1], p->normal, tangent[0]);
 }
 
+/* Pressure of contact at opening o, area-weighted. */
+static double pressure_of(const rg_cohesive *law, const point *p, const opening *o) {
+    double depth = fmax(0, -o->normal), root = sqrt(facing(p, o));
+    double share = law->contact == RG_CONTACT_POTENTIAL ? root * (root - 32 * depth * depth / p->area) : 1;
+    return p->contact * depth * fmax(0, share);
+}
+
+/* m <- (I - u u)(a x b + c x d)/length */
+static void turned(const double u[3], const double a[3], const double b[3], const double c[3],
+                   const double d[3], double length, double m[3]) {
+    double first[3], second[3];
+    rg_reference_cross(a, b, first);
+    rg_reference_cross(c, d, second);
+    for (int k = 0; k < 3; k++)
+        first[k] = (first[k] + second[k]) / length;
+    double along = rg_reference_dot(u, first);
+    for (int k = 0; k < 3; k++)
+        m[k] = first[k] - along * u[k];
+}
+
+/* Adds -sum drag_k w . da_k/dx/2 of the mid-surface's nodes x for each of them in each direction: n = g/|g|,
+ * a_1 = (n x c)/|n x c|, a_0 = a_1 x n with the chord c. */
+static void turn_frame(const point *p, const opening *o, const double chord[3], double tangent[2][3],
+                       const double drag[2], double f[RG_FNODES][3]) {
+    double across[3], w[3];
+    rg_reference_cross(p->normal, chord, across);
+    double length = sqrt(rg_reference_dot(across, across));
+    if (!(p->area > 0))
+        return;
+    for (int c = 0; c < 3; c++)
+        w[c] = o->shear[c] + o->normal * p->normal[c];
+    for (int a = 0; a < RG_FNODES; a++)
+        for (int c = 0; c < 3; c++) {
+            double g1[3] = {0}, g2[3] = {0}, dc[3] = {0}, dn[3], first[3], left[3], right[3], sum = 0;
+            g1[c] = p->by_xi[a];
+            g2[c] = p->by_eta[a];
+            dc[c] = a == 0 ? -1 : a == 1 ? 1 : 0;
+            turned(p->normal, g1, p->tangent[1], p->tangent[0], g2, 2 * p->current, dn);
+            turned(tangent[1], dn, chord, p->normal, dc, length, first);
+            rg_reference_cross(first, p->normal, left);
+            rg_reference_cross(tangent[1], dn, right);
+            for (int k = 0; k < 3; k++)
+                sum += w[k] * (drag[0] * (left[k] + right[k]) + drag[1] * first[k]);
+            f[a][c] -= p->weight / 2 * sum;
+        }
+}
+
 /* Adds friction: a spring of the tangential penalty from an anchor, which slips where the spring would pull
  * with more than mu times damage times pressure. */
 static void add_coulomb(const rg_interface_args *args, size_t i, const point *p, const opening *o,
-                        const crack *k, bool fresh, double t[3]) {
+                        const crack *k, bool fresh, double t[3], double turning[RG_FNODES][3]) {
     const rg_cohesive *law = &args->law;
-    double tangent[2][3], slip[2], spring[2], slid = 0;
-    sample_tangents(args, i, p, tangent);
+    double chord[3], tangent[2][3], slip[2], spring[2], drag[2], slid = 0;
+    sample_chord(args, i, chord);
+    sample_tangents(chord, p, tangent);
     double parts = p->opening * (law->separation / law->opening);
     double damage = parts > 0 ? fmin(1, *k->state[RG_CRACK_OPENING] / parts) : 1;
-    double limit = fresh || o->normal >= 0 ? 0 : p->friction * damage * p->contact * -o->normal;
+    double limit = fresh || o->normal >= 0 ? 0 : p->friction * damage * pressure_of(law, p, o);
     for (int d = 0; d < 2; d++) {
         slip[d] = rg_reference_dot(o->shear, tangent[d]);
         spring[d] = p->iso * (slip[d] - *k->friction[RG_FRICTION_ANCHOR + d]);
     }
     double force = hypot(spring[0], spring[1]), part = force > limit ? limit / force : 1;
     for (int d = 0; d < 2; d++) {
-        double before = p->iso * *k->friction[RG_FRICTION_STRETCH + d], now = part * spring[d];
+        double before = p->iso * *k->friction[RG_FRICTION_STRETCH + d], now = drag[d] = part * spring[d];
         double stretch = p->iso > 0 ? now / p->iso : 0, moved = (spring[d] - now) / (p->iso > 0 ? p->iso : 1);
         slid += (before + now) / 2 * moved;
         *k->friction[RG_FRICTION_STRETCH + d] = (rg_real)stretch;
@@ -385,6 +436,8 @@ static void add_coulomb(const rg_interface_args *args, size_t i, const point *p,
             t[c] += now * tangent[d][c];
     }
     *k->friction[RG_FRICTION_HEAT] += (rg_real)(p->weight * fmax(0, slid));
+    if (law->contact == RG_CONTACT_POTENTIAL)
+        turn_frame(p, o, chord, tangent, drag, turning);
 }
 
 static void set_bit(uint8_t *mask, int q, bool on) {
@@ -417,7 +470,7 @@ static void point_traction(const rg_interface_args *args, size_t i, int q, const
             t[c] = law.over * o.shear[c] + law.along * p->normal[c];
     }
     if (args->law.sliding == RG_SLIDING_COULOMB)
-        add_coulomb(args, i, p, &o, &k, !broken, t);
+        add_coulomb(args, i, p, &o, &k, !broken, t, turning);
     for (int c = 0; c < 3 && args->law.sliding == RG_SLIDING_STUCK; c++)
         t[c] += p->iso * o.shear[c];
     set_bit(&args->unlinked[i], q, !closed);

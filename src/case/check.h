@@ -73,7 +73,7 @@ void rg_activation_rule(rg_check *ck, const rg_node *node, bool good);
  */
 void rg_contact_rule(rg_check *ck, const rg_node *node);
 
-/* Friction acts on faces that contact `penalty` keeps closed. */
+/* Friction acts on faces that slide, which contact `flux` does not let them. */
 void rg_friction_rule(rg_check *ck, const rg_node *node);
 
 /* Why a key of `group`, which the interface has no use for, is not used: "form is intrinsic", "law is

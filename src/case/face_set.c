@@ -79,8 +79,9 @@ static void check_shear(rg_check *ck, const rg_node *item, const rg_face_set *se
         refuse(ck, item, path, "beta", "in form intrinsic all faces have that of interface.beta");
     }
     bool none = set->friction_at == NULL || (rg_expr_is_number(set->friction_at) && !(set->friction > 0));
-    if (!none && ck->c->interface.contact != RG_CONTACT_PENALTY) {
-        refuse(ck, item, path, "friction", "acts with contact penalty alone");
+    if (!none && ck->c->interface.contact == RG_CONTACT_FLUX) {
+        refuse(ck, item, path, "friction",
+               "contact flux holds closed faces by all DG terms, so they do not slide");
     }
 }
 

@@ -175,7 +175,7 @@ static const rg_key case_keys[] = {
     {.name = "interface.contact", EXPLAINED(contacts), DEFAULT(RG_CONTACT_PENALTY), GROUP(COHESIVE),
      CASE(interface.contact), MEANS("how closed cracks push")},
     {.name = "interface.friction", REAL, FROM(0), DEFAULT(0), GROUP(COHESIVE), CASE(interface.friction),
-     MEANS("Coulomb's coefficient of closed cracks, with contact penalty")},
+     MEANS("Coulomb's coefficient of closed cracks, with contact penalty or potential")},
 #define RG_LAW_PARAMETER(NAME, index, word, unit_, low_, high_, fallback_, words)                            \
     {.name = word, .unit = unit_, REAL, FROM_TO(low_, high_), DEFAULT(fallback_), GROUP(LAW),                \
      .law = RG_LAW_##NAME, CASE(interface.shape[RG_LAW_##NAME][index]), MEANS(words)},

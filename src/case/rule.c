@@ -193,14 +193,11 @@ void rg_contact_rule(rg_check *ck, const rg_node *node) {
 }
 
 void rg_friction_rule(rg_check *ck, const rg_node *node) {
-    if (ck->c->interface.friction > 0 && ck->c->interface.contact != RG_CONTACT_PENALTY) {
-        bool flux = ck->c->interface.contact == RG_CONTACT_FLUX;
-        rg_subject subject = {.key = "interface.friction",
-                              .value = node->text,
-                              .allowed = flux ? "with contact flux: 0" : "with contact potential: 0"};
+    if (ck->c->interface.friction > 0 && ck->c->interface.contact == RG_CONTACT_FLUX) {
+        rg_subject subject = {
+            .key = "interface.friction", .value = node->text, .allowed = "with contact flux: 0"};
         rg_problem_add(ck->problems, node->at, &subject,
-                       flux ? "contact flux holds closed faces by all DG terms, so they do not slide"
-                            : "friction has no part in the potential, whose forces would turn with it");
+                       "contact flux holds closed faces by all DG terms, so they do not slide");
     }
 }
 

@@ -72,6 +72,18 @@ def test_no_friction_no_slowing(run, figure):
     assert not free.energy["friction"].any()
 
 
+def test_block_slides_on_a_potential_as_on_a_penalty(run, figure):
+    """By 0.7 % of an edge, so that little fades; tests/unit/kernels/test_friction.c has what does."""
+    slide = run(CASES / "sliding.yaml", sets={"interface.contact": "potential"})
+    blocks = table(slide)
+    sliding = blocks.relative > 0.3
+    slowing = -np.polyfit(blocks.time[sliding], blocks.velocity[sliding], 1)[0]
+    figure("block on a potential: deceleration against mu p/(rho h)", 1e-6 * slowing, theory=1e-6 * SLOWING, bound=0.003,
+           unit="Mm/s2", relative=True)
+    figure("block on a potential: energy error", slide.summary["energy_error_rel"], bound=6e-6)
+    assert abs(blocks.relative[-1]) < 0.02 * blocks.relative[0]
+
+
 def shaken(run, share, **more):
     """The lower wall, at rest while it presses, then pushes with a share of what friction can pass on; a jolt of
     1 mm/s breaks the faces first."""
@@ -116,7 +128,7 @@ def test_block_slips_above_it(run, figure):
     assert slipped.energy["friction"][-1] > 0
 
 
-def test_friction_needs_contact_by_penalty(tmp_path):
+def test_friction_needs_faces_that_slide(tmp_path):
     process = launch("run", CASES / "sliding.yaml", "-q", "-o", tmp_path / "out", "--set", "interface.contact=flux")
     assert process.returncode == 2
     assert "sliding.yaml" in process.stderr and "interface.friction: 0.3" in process.stderr

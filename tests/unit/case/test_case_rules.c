@@ -280,12 +280,6 @@ static const mistake law_and_form[] = {
      "slide; allowed: with contact flux: 0\n"},
     {"  law: linear\n",
      "  law: linear\n"
-     "  contact: potential\n"
-     "  friction: 0.5\n",
-     ":12:13: interface.friction: 0.5: friction has no part in the potential, whose forces would turn with "
-     "it; allowed: with contact potential: 0\n"},
-    {"  law: linear\n",
-     "  law: linear\n"
      "  contact: flux\n"
      "  sets:\n"
      "    - {where: 1, law: none, strength: 3, weibull: {modulus: 3, area: 1}}\n"
@@ -297,10 +291,12 @@ static const mistake law_and_form[] = {
      ":13:52: interface.sets[0].weibull.modulus: 3: not used, because law of this set is none\n"
      ":13:64: interface.sets[0].weibull.area: 1: not used, because law of this set is none\n"
      ":14:23: interface.sets[1].law: linear: not one of the allowed words; allowed: interface, none\n"
-     ":15:18: interface.sets[2].friction: 0.5: acts with contact penalty alone\n"
+     ":15:18: interface.sets[2].friction: 0.5: contact flux holds closed faces by all DG terms, so they do "
+     "not slide\n"
      ":15:43: interface.sets[2].weibull.area: 1: not used without weibull.modulus\n"
      ":15:52: interface.sets[2].weibull.seed: 3: not used without weibull.modulus\n"
-     ":16:18: interface.sets[3].friction: x: acts with contact penalty alone\n"
+     ":16:18: interface.sets[3].friction: x: contact flux holds closed faces by all DG terms, so they do not "
+     "slide\n"
      ":16:41: interface.sets[3].weibull.area: missing; allowed: number > 0 (m2)\n"
      ":17:28: interface.sets[4].strength: 4*t: depends on t, but this is the state at the start; allowed: "
      "number > 0, or expression in x, y, z, nx, ny, nz (Pa)\n"
@@ -490,7 +486,8 @@ static void test_good(void **state) {
                 "  - {name: g, shape: sphere, motion: free, at: [0, 0, 9], radius: 1, mass: 1}\n"
                 "time:\n");
     expect_good("  law: linear\n", "  law: linear\n  contact: flux\n  friction: 0\n");
-    expect_good("  law: linear\n", "  law: linear\n  activation: conserving\n  contact: potential\n");
+    expect_good("  law: linear\n",
+                "  law: linear\n  activation: conserving\n  contact: potential\n  friction: 0.5\n");
     expect_good("  law: linear\n",
                 "  law: exponential\n  form: intrinsic\n  contact: potential\n  friction: 0\n");
     expect_good("  law: linear\n", "  law: linear\n  sets: [{where: nx, strength: 3}]\n");

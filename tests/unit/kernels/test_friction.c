@@ -192,10 +192,156 @@ static void test_objectivity(void **state) {
                                       .found = forces, .bound = TURNED, .why = ROUNDING}));
 }
 
+/* ---- With contact as a potential ---- */
+
+/* Points far below the surface and far along it, by some 4 and 40 % of the root of their area: there what
+ * turns with the mid-surface weighs as much as what acts along the opening. Failed, so contact and friction
+ * act alone; springs are relaxed somewhere aside, so that they do not pull along the slip. */
+static void press(body *b, double coefficient) {
+    static const double w[2] = {-15, 150};
+    b->in->law.contact = RG_CONTACT_POTENTIAL;
+    b->args.law.contact = RG_CONTACT_POTENTIAL;
+    b->args.law.friction = coefficient;
+    memset(b->crack, 0, INPUT_IBLOCKS * STRIDE * sizeof *b->crack);
+    for (size_t i = 0; i < INPUT_INTERFACES; i++)
+        for (int q = 0; q < RG_POINTS; q++)
+            input_break_point(b->in, i, q, w, 10);
+    for (size_t k = 0; k < INPUT_IBLOCKS; k++)
+        memcpy(b->crack + k * STRIDE, b->in->crack + k * RG_CRACK_BLOCK, RG_CRACK_BLOCK * sizeof *b->crack);
+    for (size_t i = 0; i < INPUT_INTERFACES; i++)
+        for (int k = 0; k < 2 * RG_POINTS; k++) {
+            size_t at = rg_friction_index(b->in->slot[i], k / 2, RG_FRICTION_ANCHOR + k % 2, STRIDE);
+            b->crack[at] = (rg_real)(100 * law.opening * (rg_hash_uniform(rg_hash(12, at)) - 0.5));
+        }
+}
+
+/* Sum over the nodes of all elements of what faces do to them, times `way` (moments: about the origin, one
+ * component). */
+static double over_nodes(const body *b, double (*way)(const body *b, size_t slot, int node, int c)) {
+    double sum = 0;
+    for (size_t i = 0; i < INPUT_INTERFACES; i++)
+        for (int k = 0; k < 2 * RG_FNODES * 3; k++) {
+            int side = k / (RG_FNODES * 3), a = k / 3 % RG_FNODES, c = k % 3;
+            size_t s = b->in->slot[i], at = rg_iforce_index(s, a, c);
+            int32_t link = b->in->side[side][s];
+            double force = (side == 0 ? 1 : -1) * (double)b->force[at] + (double)b->args.turn[at];
+            sum += force * way(b, (size_t)link / RG_FACES, rg_face_node[link % RG_FACES][a], c);
+        }
+    return sum;
+}
+
+static double random_way(const body *b, size_t slot, int node, int c) {
+    (void)b;
+    return 2 * rg_hash_uniform(rg_hash(11, rg_node_index(slot, node, c))) - 1;
+}
+
+/* What a face stores. */
+static double stored(body *b, const rg_kernels *set) {
+    double *energy = input_alloc(INPUT_ISLOTS * RG_E_INTERFACE * sizeof *energy), sum = 0;
+    set->interface(&b->args, 0, INPUT_IBLOCKS);
+    set->interface_state(&(rg_interface_state_args){&b->args, energy}, 0, INPUT_IBLOCKS);
+    for (size_t i = 0; i < INPUT_INTERFACES; i++)
+        for (int k = 0; k < RG_E_INTERFACE; k++) {
+            size_t s = b->in->slot[i];
+            sum += k == RG_E_DISSIPATED
+                       ? 0
+                       : energy[(s / RG_LANES * RG_E_INTERFACE + (size_t)k) * RG_LANES + s % RG_LANES];
+        }
+    free(energy);
+    return sum;
+}
+
+static void move(body *b, double by) {
+    for (size_t e = 0; e < INPUT_ELEMENTS; e++)
+        for (int k = 0; k < 3 * RG_NODES; k++) {
+            size_t slot = b->in->element[e], at = rg_node_index(slot, k / 3, k % 3);
+            b->u[at] = (rg_real)(b->in->u[at] + by * random_way(b, slot, k / 3, k % 3));
+        }
+}
+
+/* Springs that nothing makes slide are a potential: forces are what a central difference of the energy says,
+ * to the square of its step. */
+static void test_gradient(void **state) {
+    const rg_kernels *sets[INPUT_SETS];
+    int n = input_sets(sets, INPUT_SETS);
+    double worst = 0;
+    const double step = sizeof(rg_real) == 8 ? 1e-10 : 1e-8; /* m */
+    (void)state;
+    for (int set = 0; set < n; set++) {
+        body b = body_make(5);
+        rg_real *turned = input_alloc(INPUT_IBLOCKS * RG_IFORCE_BLOCK * sizeof *turned);
+        b.args.turn = turned;
+        double energy[2];
+        for (int k = 0; k < 2; k++) {
+            press(&b, 1e6);
+            move(&b, k == 0 ? step : -step);
+            energy[k] = stored(&b, sets[set]);
+        }
+        press(&b, 1e6);
+        move(&b, 0);
+        double all = stored(&b, sets[set]), work = over_nodes(&b, random_way);
+        assert_true(all > 0);
+        worst = fmax(worst, fabs((energy[1] - energy[0]) / (2 * step) / work - 1));
+        free(turned);
+        body_free(&b);
+    }
+    assert_true(
+        state_figure((figure){"friction with contact as a potential: force against gradient", .found = worst,
+                              .bound = sizeof(rg_real) == 8 ? 8e-9 : 2e-2, .why = "difference of energies"}));
+}
+
+/* Lever arms of a moment about x, y, z. */
+static int axis;
+static double lever(const body *b, size_t slot, int node, int c) {
+    size_t e = 0;
+    while (b->in->element[e] != slot)
+        e++;
+    if (c == axis)
+        return 0;
+    int other = 3 - c - axis; /* M = X x F: M_axis gets +-X_other F_c */
+    double x = b->in->x[e][node][other] + b->u[rg_node_index(slot, node, other)];
+    return (axis + 1) % 3 == other ? x : -x;
+}
+
+/* Sides that stick or slide, at a distance, exert no moment. Openings count from 0 here: an origin does not
+ * turn with the body, which in a run is of no matter, for it is as small as the jump of an intact face. */
+static void test_moment(void **state) {
+    const rg_kernels *sets[INPUT_SETS];
+    int n = input_sets(sets, INPUT_SETS);
+    double worst = 0;
+    (void)state;
+    for (int set = 0; set < n; set++) {
+        body b = body_make(5);
+        rg_real *turned = input_alloc(INPUT_IBLOCKS * RG_IFORCE_BLOCK * sizeof *turned);
+        b.args.turn = turned;
+        press(&b, 0.4);
+        move(&b, 0);
+        for (size_t i = 0; i < INPUT_INTERFACES; i++)
+            for (int k = 0; k < RG_POINTS * 3; k++) {
+                size_t slot = b.in->slot[i],
+                       at = rg_crack_index(slot % RG_LANES, k / 3, RG_CRACK_ORIGIN + k % 3);
+                b.crack[slot / RG_LANES * STRIDE + at] = 0;
+            }
+        stored(&b, sets[set]);
+        double scale = 0;
+        for (size_t k = 0; k < INPUT_IBLOCKS * RG_IFORCE_BLOCK; k++)
+            scale = fmax(scale, fabs((double)b.force[k]));
+        for (axis = 0; axis < 3; axis++)
+            worst = fmax(worst, fabs(over_nodes(&b, lever)) / (scale * 4 * INPUT_SIZE * INPUT_INTERFACES));
+        free(turned);
+        body_free(&b);
+    }
+    assert_true(
+        state_figure((figure){"friction with contact as a potential: moment of both sides", .found = worst,
+                              .bound = sizeof(rg_real) == 8 ? 1.3e-17 : 1e-8, .why = ROUNDING}));
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_never_negative),
         cmocka_unit_test(test_objectivity),
+        cmocka_unit_test(test_gradient),
+        cmocka_unit_test(test_moment),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

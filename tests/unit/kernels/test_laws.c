@@ -335,7 +335,7 @@ static void test_conserving(void **state) {
 
 /* What the interface kernels write, with the crack state of the law. */
 typedef struct {
-    rg_real *force, *crack;
+    rg_real *force, *turn, *crack;
     double *energy;
     uint8_t broken[INPUT_ISLOTS], unlinked[INPUT_ISLOTS], active[INPUT_IBLOCKS];
 } output;
@@ -349,6 +349,7 @@ static size_t stride_of(const input *in) {
 static output output_make(const input *in) {
     size_t stride = stride_of(in);
     output out = {.force = input_alloc(INPUT_IBLOCKS * RG_IFORCE_BLOCK * sizeof(rg_real)),
+                  .turn = input_alloc(INPUT_IBLOCKS * RG_IFORCE_BLOCK * sizeof(rg_real)),
                   .crack = input_alloc(INPUT_IBLOCKS * stride * sizeof(rg_real)),
                   .energy = input_alloc(INPUT_ISLOTS * RG_E_INTERFACE * sizeof(double))};
     for (size_t b = 0; b < INPUT_IBLOCKS; b++)
@@ -361,6 +362,7 @@ static output output_make(const input *in) {
 
 static void output_free(output *out) {
     free(out->force);
+    free(out->turn);
     free(out->crack);
     free(out->energy);
 }
@@ -376,6 +378,7 @@ static output run(const rg_kernels *set, const input *in, const faces *own) {
     rg_interface_args args =
         input_interface_args(in, out.broken, out.unlinked, out.active, out.crack, out.force);
     args.crack_stride = stride_of(in);
+    args.turn = out.turn;
     args.scale = own == NULL ? NULL : own->scale;
     args.beta = own == NULL ? NULL : own->beta;
     args.friction = own == NULL ? NULL : own->friction;
@@ -487,6 +490,7 @@ static void check_kernel(const rg_kernels *set, input_kind kind, const rg_cohesi
     assert_memory_equal(out.broken, ref.broken, sizeof out.broken);
     assert_memory_equal(out.unlinked, ref.unlinked, sizeof out.unlinked);
     compare_reals(set->name, word, "force", out.force, ref.force, INPUT_IBLOCKS * RG_IFORCE_BLOCK);
+    compare_reals(set->name, word, "turn", out.turn, ref.turn, INPUT_IBLOCKS * RG_IFORCE_BLOCK);
     compare(set->name, word, "energy", out.energy, ref.energy, INPUT_ISLOTS * RG_E_INTERFACE);
     size_t stride = stride_of(in), memory = (size_t)rg_law_facts_of(law->law, law->shape, law->beta).memory;
     compare_cracks(set->name, word, &out, &ref, stride);
@@ -547,6 +551,9 @@ static void test_kernels(void **state) {
                              kind == 1                         ? NULL
                              : law.form == RG_FORM_VARIATIONAL ? &all
                                                                : &own);
+                law.contact = RG_CONTACT_POTENTIAL;
+                check_kernel(sets[k], (input_kind)kind, &law, NULL);
+                law.contact = RG_CONTACT_PENALTY;
                 law.sliding = RG_SLIDING_STUCK;
                 check_kernel(sets[k], (input_kind)kind, &law, NULL);
                 law.sliding = RG_SLIDING_FREE;
