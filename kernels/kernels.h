@@ -67,6 +67,10 @@ enum {
  * (1/s). */
 enum { RG_LIMITER_STEPS = 1, RG_LIMITER_LAST = 0, RG_LIMITER_RATE = 1, RG_LIMITER_MEMORY = 2 };
 
+/* Parameters of a law whose energy depends on the share of shear B (RG_MIXED): the critical opening grows by
+ * (ratio - 1) B^exponent. */
+enum { RG_MIXED_RATIO = 0, RG_MIXED_EXPONENT = 1 };
+
 /* Bulk viscosity (element/viscosity.c), after the bulk: adds to its forces, and to its stiffening what
  * damping takes from the step. */
 typedef struct {

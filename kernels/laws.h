@@ -9,7 +9,7 @@
  *   forms         RG_FORMS_DG: starts rigid, at the strength;
  *                 RG_FORMS_INTRINSIC: starts with a slope, at zero; or both;
  *                 RG_LIMITS_STEP besides: memory and a parameter are those of rg_law_opening_rate.
- *                 To these a law may add RG_NORMAL_MEASURE and RG_ENVELOPE (cohesive/facts.h)
+ *                 To these a law may add RG_NORMAL_MEASURE, RG_ENVELOPE and RG_MIXED (cohesive/facts.h)
  *   work          work of separation over strength times critical opening
  *   separation    effective opening of full separation over the critical opening
  *   normal_slope  bound on the stiffness of opening, in strength over critical opening; 0 for laws that start
@@ -28,3 +28,4 @@
 #include "cohesive/xu_needleman.h"
 #include "cohesive/rate.h"
 #include "cohesive/fatigue.h"
+#include "cohesive/benzeggagh_kenane.h"

@@ -56,6 +56,12 @@ RG_INLINE rg_vec rg_law_stored(const rg_law_point *p, rg_vec secant) {
     return 0.5 * p->area * secant * p->effective * p->effective;
 }
 
+/* What the critical opening of a law RG_MIXED grows by, at a share of shear. */
+RG_INLINE rg_vec rg_law_excess(const rg_cohesive *law, rg_vec share) {
+    return rg_splat(law->shape[RG_MIXED_RATIO] - 1) *
+           rg_pow(rg_max(share, rg_splat(1e-30)), law->shape[RG_MIXED_EXPONENT]);
+}
+
 /* How fast a point goes through its law (3.15): |dx|/dt over the part of x, the opening over the critical
  * one, that it is in: `ascent` below the strength, 1 - ascent beyond it; 0 once separated. */
 RG_INLINE void rg_law_opening_rate(const rg_law_point *p, double ascent, rg_law_state *state) {

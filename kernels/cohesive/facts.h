@@ -12,6 +12,8 @@ enum {
     RG_ENVELOPE =
         16, /* unloads to the origin; its secant falls only while the largest opening grows, and is that
               of strength times (1 - x) where it does so slowly: fit for a conserving activation */
+    RG_MIXED = 32, /* each point has a critical opening of its own, from the share of shear at its switch: its
+                      memory begins with what that is larger by, over the law's */
 };
 
 typedef struct {

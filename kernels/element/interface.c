@@ -22,12 +22,12 @@
 
 /* Step 1: the broken points, with those that break now. */
 RG_INLINE rg_mask break_point(const interface *s, int q, const vec3 n, rg_vec area, rg_mask broken,
-                              rg_activation activation) {
+                              rg_activation activation, int mixed) {
     cauchy t;
     cauchy_traction(s, q, n, area, &t);
     rg_mask now = breaking(s, q, &t, ~broken);
     if (rg_any(now)) {
-        activate(s, q, n, &t, now, activation);
+        activate(s, q, n, &t, now, activation, mixed);
     }
     return broken | now;
 }
@@ -60,7 +60,7 @@ RG_INLINE void damaged(interface *s, law_functions law, rg_activation activation
     uint8_t broken[RG_VLEN], unlinked[RG_VLEN] = {0}, any = 0;
     memcpy(broken, args->broken + first, sizeof broken);
     for (int q = 0; q < RG_POINTS; q++) {
-        rg_mask cracked = break_point(s, q, n[q], area[q], bit_mask(broken, q), activation);
+        rg_mask cracked = break_point(s, q, n[q], area[q], bit_mask(broken, q), activation, law.mixed);
         set_bits(broken, q, cracked);
         rg_mask closed = {0};
         if (rg_any(cracked)) {
@@ -111,7 +111,8 @@ RG_INLINE rg_activation shifted(const interface *s) {
 
 /* A law that a conserving activation cannot serve has nothing there: no case has it. */
 #define RG_LAW(NAME, name, word, meaning, forms, work, separation, normal_slope, shear_slope, memory)        \
-    static const law_functions law_##name = {rg_##name##_respond, rg_##name##_energy, memory};               \
+    static const law_functions law_##name = {rg_##name##_respond, rg_##name##_energy, memory,                \
+                                             ((forms)&RG_MIXED) != 0 ? (memory) : 0};                        \
     static __attribute__((noinline)) void damaged_##name(interface *s) {                                     \
         damaged(s, law_##name, shifted(s));                                                                  \
     }                                                                                                        \
@@ -192,7 +193,7 @@ RG_INLINE void broken_energy(const interface *s, int q, const vec3 n, rg_mask br
     sum[RG_E_CONTACT] += weight * contact_energy(s, &o, broken);
     sum[RG_E_DISSIPATED] += weight * rg_select(broken, e.dissipated, zero);
     if (activation == RG_ACTIVATION_CONSERVING) {
-        sum[RG_E_UNRESOLVED] += weight * rg_select(broken, unresolved_energy(s, q), zero);
+        sum[RG_E_UNRESOLVED] += weight * rg_select(broken, unresolved_energy(s, q, law.mixed), zero);
     }
 }
 

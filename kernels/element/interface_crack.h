@@ -4,6 +4,7 @@
 #define RG_INTERFACE_CRACK_H
 
 #include "cohesive/cohesive.h"
+#include "cohesive/facts.h"
 #include "element/interface_face.h"
 
 RG_INLINE rg_mask bit_mask(const uint8_t bits[RG_VLEN], int q) {
@@ -74,9 +75,25 @@ RG_INLINE void load_law(interface *s) {
     }
 }
 
-/* Effective opening of full separation (m). */
-RG_INLINE rg_vec separation(const interface *s) {
-    return s->opening * rg_splat(s->args->law.separation / s->args->law.opening);
+/* Values that a point remembers of a law with RG_MIXED; 0 of others. */
+RG_INLINE int mixed_memory(rg_law law) {
+    static const int8_t memories[] = {
+#define RG_LAW(NAME, name, word, meaning, forms, work, separation, normal_slope, shear_slope, memory)        \
+    ((forms)&RG_MIXED) != 0 ? memory : 0,
+#include "laws.h"
+#undef RG_LAW
+    };
+    return memories[law];
+}
+
+/* Critical opening at a broken point (m); `mixed`: mixed_memory of the law. */
+RG_INLINE rg_vec critical_opening(const interface *s, int q, int mixed) {
+    return mixed == 0 ? s->opening : s->opening * (1.0 + rg_load(memory_state(s, mixed, q, 0)));
+}
+
+/* Effective opening of full separation there (m). */
+RG_INLINE rg_vec separation(const interface *s, int q, int mixed) {
+    return critical_opening(s, q, mixed) * rg_splat(s->args->law.separation / s->args->law.opening);
 }
 
 /* Opening of a broken point: w = [u] - origin, split along n (section 6 of kernels/README.md). */

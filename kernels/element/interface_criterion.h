@@ -108,14 +108,19 @@ RG_INLINE rg_vec point_onset(const interface *s, int q, rg_activation activation
  *   conserving  [u] - ([u]_s - delta_0 d - w_p n), of which d_0 is damage already and w_p what contact is
  *               pressed by, so that pressure goes on, too (cohesive/conserving.h) */
 RG_INLINE void activate(const interface *s, int q, const vec3 n, const cauchy *t, rg_mask now,
-                        rg_activation activation) {
+                        rg_activation activation, int mixed) {
+    if (mixed > 0) {
+        rg_vec sheared = t->shear * rg_dot(t->tau, t->tau);
+        store_where(memory_state(s, mixed, q, 0), now,
+                    rg_law_excess(&s->args->law, sheared / (t->effective * t->effective)));
+    }
     rg_vec start = onset(s, activation), first = start, pressed = rg_splat(0.0);
     if (activation == RG_ACTIVATION_CONSERVING) {
         pressed = pressed_at_switch(s, q, n);
         rg_vec given = given_free(s, q, pressed);
         store_where(crack_state(s, q, RG_CRACK_GIVEN), now, given);
         start = rg_conserving_onset(given, start);
-        first = rg_conserving_first(given, s->opening);
+        first = rg_conserving_first(given, critical_opening(s, q, mixed));
         start = rg_conserving_start(given, first, start);
     }
     bool total = s->args->law.activation == RG_ACTIVATION_TOTAL;

@@ -56,7 +56,8 @@ RG_INLINE rg_vec friction_limit(const interface *s, int q, const point_opening *
     const rg_cohesive *law = &s->args->law;
     rg_vec damage = rg_splat(1.0);
     if (law->separation > 0) {
-        damage = rg_min(rg_load(crack_state(s, q, RG_CRACK_OPENING)) / separation(s), damage);
+        damage = rg_min(
+            rg_load(crack_state(s, q, RG_CRACK_OPENING)) / separation(s, q, mixed_memory(law->law)), damage);
     }
     rg_vec pressure = contact_pressure(s, o);
     return rg_select(broken_before, of_face(s, s->args->friction, law->friction) * damage * pressure,

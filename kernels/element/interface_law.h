@@ -10,7 +10,7 @@
 typedef struct {
     void (*respond)(const rg_law_point *p, rg_law_state *state, rg_law_response *r);
     void (*energy)(const rg_law_point *p, const rg_law_state *state, rg_law_energy *e);
-    int memory;
+    int memory, mixed; /* mixed: as mixed_memory */
 } law_functions;
 
 RG_INLINE rg_law_point law_point(const interface *s, const point_opening *o, rg_vec before) {
@@ -52,7 +52,7 @@ RG_INLINE rg_vec grow(const interface *s, int q, rg_mask acting, rg_vec reached,
 
 /* Keeps the time at which points of the intrinsic form separate. */
 RG_INLINE void note_separation(const interface *s, int q, rg_mask acting, rg_vec before, rg_vec largest) {
-    rg_vec bound = separation(s);
+    rg_vec bound = separation(s, q, 0);
     rg_mask parted = acting & (largest >= bound) & (before < bound);
     if (rg_any(parted)) {
         store_where(crack_state(s, q, RG_CRACK_TIME), parted, rg_splat(s->args->time));
@@ -99,9 +99,9 @@ RG_INLINE void cohesive_energy(const interface *s, int q, const point_opening *o
 
 /* What came free where a point broke by a conserving activation beyond what its law can take (J, of the whole
  * face). */
-RG_INLINE rg_vec unresolved_energy(const interface *s, int q) {
+RG_INLINE rg_vec unresolved_energy(const interface *s, int q, int mixed) {
     rg_vec given = rg_load(crack_state(s, q, RG_CRACK_GIVEN));
-    return s->area * s->strength * rg_conserving_unresolved(given, s->opening);
+    return s->area * s->strength * rg_conserving_unresolved(given, critical_opening(s, q, mixed));
 }
 
 #endif

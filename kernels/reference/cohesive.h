@@ -46,6 +46,11 @@ rg_law_answer rg_reference_law(rg_law law, const rg_law_query *p, double state[1
 rg_law_answer rg_reference_conserving(rg_law law, const rg_law_query *p, double onset,
                                       double state[1 + RG_LAW_MEMORY]);
 
+/* (ratio - 1) B^exponent, B the share of shear (RG_MIXED). */
+static inline double rg_reference_excess(const double *shape, double share) {
+    return (shape[RG_MIXED_RATIO] - 1) * pow(share, shape[RG_MIXED_EXPONENT]);
+}
+
 #define RG_REFERENCE_NOTHING 1e-20 /* m: least damage of a point that has switched */
 
 #endif

@@ -204,15 +204,29 @@ static double given_free(const rg_cohesive *law, const point *p, double pressed)
     return free / (p->area * p->strength);
 }
 
+static bool is_mixed(const rg_cohesive *law) {
+    return (rg_law_facts_of(law->law, law->shape, law->beta).forms & RG_MIXED) != 0;
+}
+
+/* Critical opening of a point that has switched, or switches now. */
+static double critical_opening(const rg_cohesive *law, const point *p, const crack *k) {
+    return p->opening * (is_mixed(law) ? 1 + *k->memory[0] : 1);
+}
+
 /* First crack state of a point. */
 static void activate(const rg_interface_args *args, const point *p, const double direction[3],
                      const crack *k) {
     double start = onset(&args->law, p), first = start, pressed = 0;
+    if (is_mixed(&args->law)) { /* what of the effective traction is not tension is shear */
+        double open = rg_reference_dot(direction, p->normal);
+        *k->memory[0] = (rg_real)rg_reference_excess(args->law.shape, fmax(0, 1 - open * open));
+    }
+    double end = critical_opening(&args->law, p, k);
     if (args->law.activation == RG_ACTIVATION_CONSERVING) {
         pressed = fmin(0, rg_reference_dot(p->traction, p->normal)) / p->contact;
         double given = given_free(&args->law, p, pressed);
-        double left = sqrt(fmax(0, 1 - 2 * fmax(0, given) / p->opening)); /* of the strength */
-        first = fmax(RG_REFERENCE_NOTHING, p->opening * (1 - left));
+        double left = sqrt(fmax(0, 1 - 2 * fmax(0, given) / end)); /* of the strength */
+        first = fmax(RG_REFERENCE_NOTHING, end * (1 - left));
         double eps = fmax(start, -2 * given);
         start = given > 0 ? eps + first : eps * sqrt(fmax(0, 1 + 2 * given / eps));
         *k->state[RG_CRACK_GIVEN] = (rg_real)given;
@@ -418,7 +432,7 @@ static void add_coulomb(const rg_interface_args *args, size_t i, const point *p,
     double chord[3], tangent[2][3], slip[2], spring[2], drag[2], slid = 0;
     sample_chord(args, i, chord);
     sample_tangents(chord, p, tangent);
-    double parts = p->opening * (law->separation / law->opening);
+    double parts = critical_opening(law, p, k) * (law->separation / law->opening);
     double damage = parts > 0 ? fmin(1, *k->state[RG_CRACK_OPENING] / parts) : 1;
     double limit = fresh || o->normal >= 0 ? 0 : p->friction * damage * pressure_of(law, p, o);
     for (int d = 0; d < 2; d++) {
@@ -523,8 +537,8 @@ static void point_energy(const rg_interface_args *args, size_t i, int q, double 
     }
     energy[RG_E_DISSIPATED] += p.weight * p.area * a.dissipated;
     if (law->activation == RG_ACTIVATION_CONSERVING)
-        energy[RG_E_UNRESOLVED] +=
-            p.weight * p.area * p.strength * fmax(0, *k.state[RG_CRACK_GIVEN] - p.opening / 2);
+        energy[RG_E_UNRESOLVED] += p.weight * p.area * p.strength *
+                                   fmax(0, *k.state[RG_CRACK_GIVEN] - critical_opening(law, &p, &k) / 2);
 }
 
 void rg_reference_interface_state(const rg_interface_state_args *args, size_t begin, size_t end) {

@@ -69,7 +69,7 @@ static const char *const activations[] = {"continuous", "total", "conserving", N
 static const char *const activations_meaning[] = {
     "the opening counts from the jump at the moment of breaking, so the traction is continuous in time",
     "the whole jump enters at once (the thesis's): gains energy",
-    "like continuous, and so that the energy of the switch adds up, for long runs of violent breaks (form variational, contact penalty or potential, law linear or rate)"};
+    "like continuous, and so that the energy of the switch adds up, for long runs of violent breaks (form variational, contact penalty or potential; law linear, rate or benzeggagh-kenane)"};
 static const char *const contacts[] = {"penalty", "flux", "potential", NULL};
 static const char *const contacts_meaning[] = {
     "one-sided penalty on the normal opening",

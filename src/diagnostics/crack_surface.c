@@ -10,7 +10,7 @@ double rg_damage(const rg_solver *s, size_t i, int q) {
     if (!(s->broken[i] >> q & 1)) {
         return 0;
     }
-    return fmin(1, *rg_crack_value(s, i, q, RG_CRACK_OPENING) / rg_separation(s, i));
+    return fmin(1, *rg_crack_value(s, i, q, RG_CRACK_OPENING) / rg_separation(s, i, q));
 }
 
 static void corners(const rg_solver *s, const rg_tile *t, size_t i, double x[3][3]) {

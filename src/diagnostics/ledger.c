@@ -141,7 +141,7 @@ static void add_areas(rg_exact_sum *sum, const rg_solver *s, size_t i) {
     for (int q = 0; q < RG_POINTS; q++) {
         if (rg_point_is_broken(s, i, q)) {
             rg_exact_add(&sum[BROKEN], weight[q / 3] * area);
-            bool failed = *rg_crack_value(s, i, q, RG_CRACK_OPENING) >= rg_separation(s, i);
+            bool failed = *rg_crack_value(s, i, q, RG_CRACK_OPENING) >= rg_separation(s, i, q);
             rg_exact_add(&sum[FAILED], failed ? weight[q / 3] * area : 0);
         }
     }

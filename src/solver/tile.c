@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "cohesive/facts.h"
 #include "solver/stepper.h"
 
 rg_trace_args rg_tile_traces(const rg_solver *s, const rg_tile *t, const rg_workspace *w, bool next) {
@@ -95,16 +96,22 @@ rg_interface_args rg_tile_interfaces(const rg_solver *s, const rg_tile *t, const
                                .turn = w->turn};
 }
 
-double rg_separation(const rg_solver *s, size_t i) {
+static bool is_mixed(const rg_cohesive *law) {
+    return law->law != RG_LAW_NONE &&
+           (rg_law_facts_of(law->law, law->shape, law->beta).forms & RG_MIXED) != 0;
+}
+
+double rg_separation(const rg_solver *s, size_t i, int q) {
     const rg_real *scale =
         s->model->scale == NULL ? NULL : s->model->scale + (i / RG_LANES * 2 + 1) * RG_LANES;
-    return s->model->law.separation * (scale == NULL ? 1 : scale[i % RG_LANES]);
+    double whole = s->model->law.separation * (scale == NULL ? 1 : scale[i % RG_LANES]);
+    return is_mixed(&s->model->law) ? whole * (1 + rg_law_memory(s, i, q)) : whole;
 }
 
 bool rg_point_is_broken(const rg_solver *s, size_t i, int q) {
     bool cohesive = s->broken[i] >> q & 1;
     return cohesive && (s->model->law.form != RG_FORM_INTRINSIC ||
-                        *rg_crack_value(s, i, q, RG_CRACK_OPENING) >= rg_separation(s, i));
+                        *rg_crack_value(s, i, q, RG_CRACK_OPENING) >= rg_separation(s, i, q));
 }
 
 bool rg_face_is_broken(const rg_solver *s, size_t i) {

@@ -54,6 +54,12 @@ static inline rg_real *rg_crack_value(const rg_solver *s, size_t i, int q, int k
     return s->crack + i / RG_LANES * s->model->crack_stride + rg_crack_index(i % RG_LANES, q, k);
 }
 
+/* First value that a law remembers there; only where it remembers one alone. */
+static inline rg_real rg_law_memory(const rg_solver *s, size_t i, int q) {
+    return s
+        ->crack[i / RG_LANES * s->model->crack_stride + RG_CRACK_BLOCK + (size_t)q * RG_LANES + i % RG_LANES];
+}
+
 /* Value k (RG_FRICTION_ANCHOR...) of friction there; only where the law has some. */
 static inline rg_real *rg_friction_value(const rg_solver *s, size_t i, int q, int k) {
     return s->crack + rg_friction_index(i, q, k, s->model->crack_stride);
@@ -63,8 +69,8 @@ static inline rg_real *rg_friction_value(const rg_solver *s, size_t i, int q, in
  * points follow theirs from the start, it is fully separated. */
 bool rg_point_is_broken(const rg_solver *s, size_t i, int q);
 
-/* Opening of full separation at interface i (m). */
-double rg_separation(const rg_solver *s, size_t i);
+/* Opening of full separation at point q of interface i (m), which is broken if the law is RG_MIXED. */
+double rg_separation(const rg_solver *s, size_t i, int q);
 
 /* Some point of interface i is broken. */
 bool rg_face_is_broken(const rg_solver *s, size_t i);

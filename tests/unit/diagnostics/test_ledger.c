@@ -661,7 +661,7 @@ static void check_face_hash(random_state *r) {
     }
     for (int q = 0; q < RG_POINTS; q++) {
         double *opening = rg_crack_value(s, at, q, RG_CRACK_OPENING), kept = *opening;
-        *opening = here ? 0.123 * rg_separation(s, at) : kept;
+        *opening = here ? 0.123 * rg_separation(s, at, q) : kept;
         good = rg_state_hash(s) != before && good;
         *opening = kept;
         for (int k = 0; k < RG_FRICTION; k++) {

@@ -7,17 +7,17 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include "support/face_bench.h"
 #include "support/kernel_input.h"
 #include "support/precision.h"
 
-enum { ALL = 63, MINUS_FACE = 3, PLUS_FACE = 1 };
+enum { ALL = FACE_BENCH_ALL };
 
-#define SIDE  2e-4              /* legs of the face (m) */
-#define AREA  (SIDE * SIDE / 2) /* m^2 */
-#define SIGMA 4e8               /* strength (Pa) */
-#define DELTA 1.6e-7            /* delta_c (m) */
-#define ISO   5e15              /* penalty per area (Pa/m) */
-#define NORM  1.5e16
+#define AREA  FACE_BENCH_AREA /* m^2 */
+#define SIGMA 4e8             /* strength (Pa) */
+#define DELTA 1.6e-7          /* delta_c (m) */
+#define ISO   FACE_BENCH_ISO  /* penalty per area (Pa/m) */
+#define NORM  FACE_BENCH_NORM
 #define STIFF (ISO + NORM)
 #define EPS   (RG_ONSET * SIGMA / STIFF) /* first opening (m) */
 #define FIRST (1 - EPS / DELTA)          /* traction just after the switch, in strengths */
@@ -25,7 +25,7 @@ enum { ALL = 63, MINUS_FACE = 3, PLUS_FACE = 1 };
 #define ONSET (0.3 * SIGMA / STIFF) /* first opening of a conserving activation of onset 0.3 (m) */
 #define LEFT  0.8659099260315706    /* sqrt(1 - 2 * 2.0016e-8/DELTA) */
 #define EASED 0.40824829046386296   /* sqrt(1 - 0.25/0.3) */
-#define TIME  2.5e-7
+#define TIME  FACE_BENCH_TIME
 
 /* Vectors are (normal, tangential); tractions and energies per area. */
 typedef struct {
@@ -408,116 +408,6 @@ static const scenario scenarios[] = {
      .energy = {0, SECANT(1e-7) * 25e-16 / 2, 0, GC * 1e-7 / DELTA}},
 };
 
-/* How the kernel sees the face. */
-typedef enum { INSIDE, FROM_MINUS, FROM_PLUS, VIEWS } view;
-
-/* One block of interfaces, all between face MINUS_FACE of element 0 and face PLUS_FACE of element 1. As
- * tile-boundary faces they have the first rows of tractions, the other side the last ones. */
-typedef struct {
-    view view;
-    _Alignas(64) rg_real u[RG_NODE_BLOCK], traction[RG_TRACTION_BLOCK], geom[RG_IGEOM_BLOCK];
-    _Alignas(64) rg_real crack[RG_CRACK_BLOCK], force[RG_IFORCE_BLOCK];
-    double energy[RG_E_INTERFACE * RG_LANES];
-    _Alignas(64) rg_real ghost[RG_GHOST_BLOCK], rows[2 * RG_LANES * RG_TILE_FACE_ROW];
-    _Alignas(64) int32_t side[2][RG_LANES];
-    _Alignas(64) uint8_t broken[RG_LANES], unlinked[RG_LANES];
-    uint8_t active;
-    rg_interface_args args;
-} bench;
-
-/* Row of the other side of tile-boundary face i. */
-static size_t other_row(size_t i) {
-    return RG_LANES + (i + 3) % RG_LANES;
-}
-
-static void bench_link(bench *b, size_t i) {
-    const int32_t minus = rg_side_link(0, MINUS_FACE), plus = rg_side_link(1, PLUS_FACE);
-    b->side[0][i] = b->view == FROM_PLUS ? plus : minus;
-    b->side[1][i] = b->view == INSIDE ? plus : rg_link(other_row(i), b->view == FROM_PLUS, 2);
-}
-
-/* The face lies in the xy plane; `up` is the direction of its normal along z. */
-static void bench_make(bench *b, rg_cohesive law, double up, view v) {
-    memset(b, 0, sizeof *b);
-    b->view = v;
-    for (size_t i = 0; i < RG_LANES; i++) {
-        bench_link(b, i);
-        b->geom[rg_igeom_index(i, RG_IGEOM_PEN_ISO)] = (rg_real)(AREA * ISO);
-        b->geom[rg_igeom_index(i, RG_IGEOM_PEN_NORM)] = (rg_real)(NORM / AREA);
-        b->geom[rg_igeom_index(i, RG_IGEOM_EDGE + (up > 0 ? 0 : 1))] = (rg_real)SIDE;
-        b->geom[rg_igeom_index(i, RG_IGEOM_EDGE + (up > 0 ? 4 : 3))] = (rg_real)SIDE;
-    }
-    b->args = (rg_interface_args){
-        .law = law,
-        .time = TIME,
-        .u = b->u,
-        .traction = b->traction,
-        .first_tile_face = v == INSIDE ? 1 : 0,
-        .ghost = b->ghost,
-        .own_tractions = b->rows,
-        .tractions = b->rows,
-        .side = {b->side[0], b->side[1]},
-        .geom = b->geom,
-        .broken = b->broken,
-        .unlinked = b->unlinked,
-        .active = &b->active,
-        .crack = b->crack,
-        .crack_stride = RG_CRACK_BLOCK,
-        .force = b->force,
-    };
-}
-
-/* Uniform traction of the minus side (per area) and jump. */
-static void bench_load(bench *b, const double pull[3], const double jump[3]) {
-    for (int k = 0; k < RG_FCORNERS * 3; k++) {
-        b->traction[rg_traction_index(0, MINUS_FACE, k / 3, k % 3)] = (rg_real)(AREA * pull[k % 3]);
-        b->traction[rg_traction_index(1, PLUS_FACE, k / 3, k % 3)] = (rg_real)(-AREA * pull[k % 3]);
-    }
-    for (int k = 0; k < RG_FNODES * 3; k++)
-        b->u[rg_node_index(1, rg_face_node[PLUS_FACE][k / 3], k % 3)] += (rg_real)jump[k % 3];
-}
-
-/* Displacement u = (G - I) x of both sides. */
-static void bench_deform(bench *b, const double g[3][3]) {
-    static const double xy[RG_FNODES][2] = {{0, 0}, {1, 0}, {0, 1}, {0.5, 0}, {0.5, 0.5}, {0, 0.5}};
-    for (int k = 0; k < RG_FNODES * 3; k++) {
-        const double *x = xy[k / 3];
-        double moved = SIDE * (g[k % 3][0] * x[0] + g[k % 3][1] * x[1]);
-        double u = moved - (k % 3 < 2 ? SIDE * x[k % 3] : 0);
-        b->u[rg_node_index(0, rg_face_node[MINUS_FACE][k / 3], k % 3)] = (rg_real)u;
-        b->u[rg_node_index(1, rg_face_node[PLUS_FACE][k / 3], k % 3)] = (rg_real)u;
-    }
-}
-
-/* What a tile-boundary face knows of both sides. The kernel must take all of it from here: the other side's
- * own fields are spoiled. */
-static void bench_exchange(bench *b) {
-    const size_t own = b->view == FROM_PLUS, other = 1 - own;
-    const int face[2] = {MINUS_FACE, PLUS_FACE};
-    rg_real *trace = &b->u[rg_node_index(other, 0, 0)], u[RG_FNODES][3];
-    for (int k = 0; k < RG_FNODES * 3; k++)
-        u[k / 3][k % 3] = b->u[rg_node_index(other, rg_face_node[face[other]][k / 3], k % 3)];
-    for (int k = 0; k < RG_NODES * 3; k++)
-        trace[k * RG_LANES] = NAN;
-    for (size_t i = 0; i < RG_LANES; i++) {
-        for (int k = 0; k < RG_FNODES * 3; k++)
-            b->ghost[rg_iforce_index(i, k / 3, k % 3)] = u[k / 3][k % 3];
-        memcpy(b->rows + i * RG_TILE_FACE_ROW, &b->traction[rg_traction_index(own, face[own], 0, 0)],
-               RG_TILE_FACE_ROW * sizeof(rg_real));
-        memcpy(b->rows + other_row(i) * RG_TILE_FACE_ROW,
-               &b->traction[rg_traction_index(other, face[other], 0, 0)], RG_TILE_FACE_ROW * sizeof(rg_real));
-    }
-    for (int k = 0; k < RG_TRACTION_BLOCK; k++)
-        b->traction[k] = NAN;
-}
-
-static void bench_run(bench *b, const rg_kernels *set) {
-    if (b->view != INSIDE)
-        bench_exchange(b);
-    set->interface(&b->args, 0, 1);
-    set->interface_state(&(rg_interface_state_args){&b->args, b->energy}, 0, 1);
-}
-
 static void expect(const rg_kernels *set, const char *name, const char *what, double got, double expected,
                    double tolerance) {
     if (!(fabs(got - expected) <= tolerance))
@@ -525,7 +415,7 @@ static void expect(const rg_kernels *set, const char *name, const char *what, do
 }
 
 /* A uniform traction loads the three mid-edges with a third each, the corners with nothing. */
-static void expect_force(const rg_kernels *set, const scenario *s, const bench *b, size_t i,
+static void expect_force(const rg_kernels *set, const scenario *s, const face_bench *b, size_t i,
                          const double t[3]) {
     for (int k = 0; k < RG_FNODES * 3; k++) {
         double expected = k / 3 < 3 ? 0 : AREA * t[k % 3] / 3;
@@ -535,7 +425,7 @@ static void expect_force(const rg_kernels *set, const scenario *s, const bench *
     }
 }
 
-static void expect_point(const rg_kernels *set, const scenario *s, const bench *b, size_t i, int q,
+static void expect_point(const rg_kernels *set, const scenario *s, const face_bench *b, size_t i, int q,
                          double up) {
     const rg_real *crack = &b->crack[rg_crack_index(i, q, 0)];
     if (!s->is_broken)
@@ -547,7 +437,7 @@ static void expect_point(const rg_kernels *set, const scenario *s, const bench *
         expect(set, s->name, "origin", crack[(RG_CRACK_ORIGIN + c) * RG_LANES], origin[c], TOLERANCE * DELTA);
 }
 
-static void check_scenario(const rg_kernels *set, const scenario *s, double up, view v) {
+static void check_scenario(const rg_kernels *set, const scenario *s, double up, face_view v) {
     const rg_cohesive law = {.strength = s->strong ? INFINITY : SIGMA,
                              .opening = DELTA,
                              .beta = s->beta,
@@ -557,9 +447,9 @@ static void check_scenario(const rg_kernels *set, const scenario *s, double up, 
                              .contact = s->contact};
     const double pull[3] = {s->pull[1], 0, up * s->pull[0]}, jump[3] = {s->jump[1], 0, up * s->jump[0]};
     const double traction[3] = {s->traction[1], 0, up * s->traction[0]};
-    bench b;
-    bench_make(&b, law, up, v);
-    bench_load(&b, pull, jump);
+    face_bench b;
+    face_bench_make(&b, law, up, v);
+    face_bench_load(&b, pull, jump);
     memset(b.broken, s->broken ? ALL : 0, RG_LANES);
     memset(b.unlinked, s->unlinked ? ALL : 0, RG_LANES);
     b.active = s->broken;
@@ -570,7 +460,7 @@ static void check_scenario(const rg_kernels *set, const scenario *s, double up, 
         crack[RG_CRACK_ORIGIN * RG_LANES] = (rg_real)s->origin[1];
         crack[(RG_CRACK_ORIGIN + 2) * RG_LANES] = (rg_real)(up * s->origin[0]);
     }
-    bench_run(&b, set);
+    face_bench_run(&b, set);
     expect(set, s->name, "active", b.active, s->is_broken, 0);
     for (size_t i = 0; i < RG_LANES; i++) {
         expect(set, s->name, "broken", b.broken[i], s->is_broken ? ALL : 0, 0);
@@ -592,22 +482,23 @@ static void test_scenarios(void **state) {
     for (int k = 0; k < n; k++)
         for (size_t s = 0; s < sizeof scenarios / sizeof scenarios[0]; s++)
             for (int v = 0; v < VIEWS; v++) {
-                check_scenario(sets[k], &scenarios[s], 1, (view)v);
-                check_scenario(sets[k], &scenarios[s], -1, (view)v);
+                check_scenario(sets[k], &scenarios[s], 1, (face_view)v);
+                check_scenario(sets[k], &scenarios[s], -1, (face_view)v);
             }
 }
 
 /* Whether a traction (per reference area) breaks the face after a deformation of the mid-surface: the same
- * answer in every view. */
+ * answer in every face_view. */
 static bool breaks(const rg_kernels *set, double beta, const double g[3][3], const double pull[3]) {
     static const double no_jump[3] = {0};
     int broken = 0;
     for (int v = 0; v < VIEWS; v++) {
-        bench b;
-        bench_make(&b, (rg_cohesive){.strength = SIGMA, .opening = DELTA, .beta = beta}, 1, (view)v);
-        bench_deform(&b, g);
-        bench_load(&b, pull, no_jump);
-        bench_run(&b, set);
+        face_bench b;
+        face_bench_make(&b, (rg_cohesive){.strength = SIGMA, .opening = DELTA, .beta = beta}, 1,
+                        (face_view)v);
+        face_bench_deform(&b, g);
+        face_bench_load(&b, pull, no_jump);
+        face_bench_run(&b, set);
         for (size_t i = 0; i < RG_LANES; i++)
             assert_true(b.broken[i] == (b.active ? ALL : 0));
         broken += b.active;

@@ -168,7 +168,7 @@ static void count_point(record *r, const rg_solver *s, const rg_tile *t, size_t 
     bool broken = s->broken[i] >> q & 1;
     r->held += !broken;
     if (broken) {
-        bool parted = *rg_crack_value(s, i, q, RG_CRACK_OPENING) >= rg_separation(s, i);
+        bool parted = *rg_crack_value(s, i, q, RG_CRACK_OPENING) >= rg_separation(s, i, q);
         r->parted += parted;
         r->opened += !parted;
         r->closed += is_closed(s, t, i, q);

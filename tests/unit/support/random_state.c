@@ -163,9 +163,9 @@ static void draw_interface(rg_solver *s, size_t i, rg_gid face, uint64_t seed) {
     s->unlinked[i] = s->broken[i] & (uint8_t)(32 * (drawn(seed, DRAW_UNLINKED, face, 0) + 1));
     for (int q = 0; q < RG_POINTS; q++) {
         *rg_crack_value(s, i, q, RG_CRACK_OPENING) =
-            (rg_real)(drawn_damage(seed, face, q) * rg_separation(s, i));
+            (rg_real)(drawn_damage(seed, face, q) * rg_separation(s, i, q));
         *rg_crack_value(s, i, q, RG_CRACK_GIVEN) =
-            (rg_real)(drawn(seed, DRAW_GIVEN, face, q) * rg_separation(s, i));
+            (rg_real)(drawn(seed, DRAW_GIVEN, face, q) * rg_separation(s, i, q));
         for (int c = 0; c < 3; c++) {
             *rg_crack_value(s, i, q, RG_CRACK_ORIGIN + c) =
                 (rg_real)(1e-8 * drawn(seed, DRAW_ORIGIN, face, 3 * q + c));
