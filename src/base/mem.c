@@ -3,11 +3,15 @@
 
 #include <stdint.h>
 #include <stdlib.h>
+#include <string.h>
 #include <sys/mman.h>
 
 #include "base/error.h"
 
-enum { ALIGN = 64 };
+enum {
+    ALIGN = 64,
+    SPARE = 3 * ALIGN
+}; /* SPARE: before and behind a block, for its alignment, header and guard */
 
 /* Blocks from this size on ask the system for huge pages: a thousand times fewer page faults when they are
  * first touched, which is most of the set-up of a large mesh, and fewer misses of the address cache. */
@@ -17,7 +21,12 @@ enum { HUGE = 4 << 20 };
 typedef struct {
     void *raw; /* what the C library or, if `mapped`, the system gave */
     size_t bytes, mapped;
+    size_t guarded; /* bytes of the block, behind which `guard` stands if they are few */
 } header;
+
+/* Stands right behind every block but large ones, whose last page nobody may touch first. Whoever writes more
+ * than he asked for is found out when the block is given back. */
+static const uint64_t guard = 0x9e3779b97f4a7c15;
 
 static size_t total;
 
@@ -30,15 +39,29 @@ static _Noreturn void exhausted(size_t count, size_t size) {
 }
 
 static size_t checked_bytes(size_t count, size_t size) {
-    if (size != 0 && count > (SIZE_MAX - 2 * ALIGN) / size) {
+    if (size != 0 && count > (SIZE_MAX - SPARE) / size) {
         exhausted(count, size);
     }
     return count * size;
 }
 
+static void put_guard(header *h) {
+    if (h->guarded < HUGE) {
+        memcpy((char *)(h + 1) + h->guarded, &guard, sizeof guard);
+    }
+}
+
+static void check_guard(const header *h) {
+    if (h->guarded < HUGE && memcmp((const char *)(h + 1) + h->guarded, &guard, sizeof guard) != 0) {
+        rg_fatal(RG_FAILURE, "a fault of this program: it wrote more than a block of %zu bytes holds",
+                 h->guarded);
+    }
+}
+
 static void *place(char *raw, header h) {
     char *block = raw + ALIGN + (ALIGN - ((uintptr_t)raw & (ALIGN - 1))) % ALIGN;
     *head(block) = h;
+    put_guard(head(block));
 #pragma omp atomic
     total += h.bytes;
     return block;
@@ -46,15 +69,15 @@ static void *place(char *raw, header h) {
 
 void *rg_alloc_sparse(size_t count, size_t size) {
     size_t bytes = checked_bytes(count, size);
-    char *raw = calloc(1, bytes + 2 * ALIGN); /* leaves large blocks as untouched zero pages */
+    char *raw = calloc(1, bytes + SPARE); /* leaves large blocks as untouched zero pages */
     if (raw == NULL) {
         exhausted(count, size);
     }
-    return place(raw, (header){raw, bytes, 0});
+    return place(raw, (header){raw, bytes, 0, bytes});
 }
 
 void *rg_alloc(size_t count, size_t size) {
-    size_t bytes = checked_bytes(count, size), mapped = bytes + 2 * ALIGN;
+    size_t bytes = checked_bytes(count, size), mapped = bytes + SPARE;
     if (bytes < HUGE) {
         return rg_alloc_sparse(count, size);
     }
@@ -63,27 +86,34 @@ void *rg_alloc(size_t count, size_t size) {
         exhausted(count, size);
     }
     madvise(raw, mapped, MADV_HUGEPAGE); /* a hint; refused it costs nothing */
-    return place(raw, (header){raw, bytes, mapped});
+    return place(raw, (header){raw, bytes, mapped, bytes});
 }
 
 void *rg_realloc(void *block, size_t count, size_t size) {
     header *old = block == NULL ? NULL : head(block);
-    header *raw = realloc(old, count * size + sizeof(header));
+    if (old != NULL) {
+        check_guard(old);
+    }
+    size_t bytes = checked_bytes(count, size);
+    header *raw = realloc(old, sizeof(header) + bytes + sizeof guard);
     if (raw == NULL) {
         exhausted(count, size);
     }
-    *raw = (header){.raw = raw}; /* not counted: set-up only */
+    *raw = (header){.raw = raw, .guarded = bytes}; /* not counted: set-up only */
+    put_guard(raw);
     return raw + 1;
 }
 
 void rg_free(void *block) {
     if (block != NULL) {
+        header *h = head(block);
+        check_guard(h);
 #pragma omp atomic
-        total -= head(block)->bytes;
-        if (head(block)->mapped > 0) {
-            munmap(head(block)->raw, head(block)->mapped);
+        total -= h->bytes;
+        if (h->mapped > 0) {
+            munmap(h->raw, h->mapped);
         } else {
-            free(head(block)->raw);
+            free(h->raw);
         }
     }
 }

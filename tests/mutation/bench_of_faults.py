@@ -93,8 +93,8 @@ class Bench:
         """The programs that a test runs."""
         if name in self.files:
             return self.ninja(*[t for t in ("rhegma", "rhegma-mesh", "rhegma-bench", "rhegma-pattern") if (self.build / t).exists()])
-        inside = [word for word in self.programs[name]["cmd"] if word.startswith(f"{self.build}/")]
-        return self.ninja(*[str(pathlib.Path(word).relative_to(self.build)) for word in inside])
+        words = [self.build / word for word in self.programs[name]["cmd"]]
+        return self.ninja(*[str(path.relative_to(self.build)) for path in words if self.build in path.parents and path.is_file()])
 
     def codes(self):
         """Hash and time of every object file: what a fault that changes no machine code leaves alone."""

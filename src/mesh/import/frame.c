@@ -19,7 +19,7 @@ static bool normalise(double v[3]) {
     for (int i = 0; i < 3; i++) {
         v[i] /= length;
     }
-    return isfinite(v[0]) && isfinite(v[1]) && isfinite(v[2]);
+    return length > 0 && isfinite(length);
 }
 
 /* Exact at whole quarter turns. */

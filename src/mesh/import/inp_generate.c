@@ -17,7 +17,7 @@ static size_t need_row(const rg_inp_lines *l, const rg_inp_rows *rows, rg_gid nu
 /* Counts what is generated, before it is. */
 static void count(const rg_inp_lines *l, rg_inp_model *m, rg_gid more) {
     m->generated += more;
-    if (more > RG_INP_GENERATED || m->generated > RG_INP_GENERATED) {
+    if (m->generated > RG_INP_GENERATED) {
         rg_inp_refuse(l->at, "more than %d nodes and elements to be generated", RG_INP_GENERATED);
     }
 }
@@ -109,28 +109,22 @@ static void copy_element(const rg_inp_lines *l, rg_inp_model *m, size_t row, rg_
 
 void rg_inp_elgen(rg_inp_lines *l, rg_inp_model *m, int scope, const char *set) {
     rg_gid master = rg_inp_integer(l, 0) + m->scope[scope].elements;
-    rg_gid many[3], nodes_by[3], by[3], at[3]; /* elements in a row, rows in a layer, layers */
+    rg_gid many[3], nodes_by[3], by[3]; /* elements in a row, rows in a layer, layers */
     size_t row = need_row(l, &m->elements, master, "element");
     rg_gid all = 1;
     for (int i = 0; i < 3; i++) {
         many[i] = rg_inp_integer(l, i == 0 ? 0 : 1);
         nodes_by[i] = rg_inp_integer(l, i == 0 || many[i] == 1 ? 1 : 0);
         by[i] = rg_inp_integer(l, i == 0 || many[i] == 1 ? 1 : 0);
+        count(l, m, all * (many[i] - 1)); /* before `all` grows beyond all bounds */
         all *= many[i];
-        count(l, m, all - 1 > RG_INP_GENERATED ? all - 1 : 0); /* before it grows beyond all bounds */
     }
-    count(l, m, all - 1);
     collect(l, m, RG_INP_ELEMENTS, scope, set, master);
-    for (at[2] = 0; at[2] < many[2]; at[2]++) {
-        for (at[1] = 0; at[1] < many[1]; at[1]++) {
-            for (at[0] = 0; at[0] < many[0]; at[0]++) {
-                rg_gid far = at[0] * by[0] + at[1] * by[1] + at[2] * by[2];
-                rg_gid nodes_far = at[0] * nodes_by[0] + at[1] * nodes_by[1] + at[2] * nodes_by[2];
-                if (at[0] + at[1] + at[2] > 0) {
-                    copy_element(l, m, row, far, nodes_far, scope, set);
-                }
-            }
-        }
+    for (rg_gid n = 1; n < all; n++) {
+        rg_gid at[3] = {n % many[0], n / many[0] % many[1], n / many[0] / many[1]};
+        rg_gid far = at[0] * by[0] + at[1] * by[1] + at[2] * by[2];
+        rg_gid nodes_far = at[0] * nodes_by[0] + at[1] * nodes_by[1] + at[2] * nodes_by[2];
+        copy_element(l, m, row, far, nodes_far, scope, set);
     }
 }
 

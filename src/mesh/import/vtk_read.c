@@ -382,7 +382,7 @@ rg_mesh *rg_vtk_read(const char *path, double scale) {
     while (next_word(&r, word)) {
         read_section(&r, word);
     }
-    if (r.grid.x == NULL || r.grid.start == NULL || r.grid.type == NULL) {
+    if (r.grid.x == NULL || r.grid.type == NULL) { /* no types without cells */
         rg_fatal(RG_USAGE, "%s: POINTS, CELLS or CELL_TYPES are not there", path);
     }
     rg_free(r.text);

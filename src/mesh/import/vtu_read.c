@@ -17,7 +17,8 @@ typedef enum { NOTHING, POINTS, CELLS, CELL_DATA } part;
 typedef struct {
     const char *path;
     char *text; /* of the whole file, with a zero behind it */
-    size_t size, at;
+    size_t size;
+    const char *at, *end; /* where we are in it */
     bool big_endian, compressed;
     size_t header; /* bytes of a length before data */
     size_t pieces;
@@ -43,16 +44,21 @@ static bool has_name(const tag *t, const char *name) {
            (t->name + length == t->end || isspace((unsigned char)t->name[length]) || t->name[length] == '/');
 }
 
+/* The next such character; NULL: there is none. */
+static const char *find(const reader *r, char c) {
+    return memchr(r->at, c, (size_t)(r->end - r->at));
+}
+
 /* The next tag; false at the end. */
 static bool next_tag(reader *r, tag *t) {
-    const char *end = r->text + r->size;
-    const char *begin = memchr(r->text + r->at, '<', r->size - r->at);
-    const char *close = begin != NULL ? memchr(begin, '>', (size_t)(end - begin)) : NULL;
+    const char *begin = find(r, '<');
+    r->at = begin != NULL ? begin + 1 : r->end;
+    const char *close = find(r, '>');
     if (close == NULL) {
         return false;
     }
     *t = (tag){begin + 1, close};
-    r->at = (size_t)(close + 1 - r->text);
+    r->at = close + 1;
     return true;
 }
 
@@ -269,20 +275,19 @@ static double *read_bytes(const reader *r, const tag *t, const char *name, strea
 /* The values of a DataArray; the caller frees them. */
 static double *read_array(const reader *r, const tag *t, const char *name, size_t *count) {
     char format[WORD] = "ascii";
-    const char *begin = r->text + r->at, *file_end = r->text + r->size;
-    const char *end = memchr(begin, '<', r->size - r->at);
-    end = end != NULL ? end : file_end;
+    const char *end = find(r, '<');
+    end = end != NULL ? end : r->end;
     attribute(r, t, "format", format);
     if (strcmp(format, "ascii") == 0) {
-        return read_text(r, name, begin, end, count);
+        return read_text(r, name, r->at, end, count);
     }
-    stream s = {.at = begin, .end = end};
+    stream s = {.at = r->at, .end = end};
     if (strcmp(format, "appended") == 0) {
         size_t offset = count_of(r, t, "offset", 0);
-        if (r->appended == NULL || offset > (size_t)(file_end - r->appended)) {
+        if (r->appended == NULL || offset > (size_t)(r->end - r->appended)) {
             refuse(r, ": its appended data are not there", name);
         }
-        s = (stream){.at = r->appended + offset, .end = file_end, .raw = r->raw};
+        s = (stream){.at = r->appended + offset, .end = r->end, .raw = r->raw};
     } else if (strcmp(format, "binary") != 0) {
         refuse(r, ": its format is not known", name);
     }
@@ -329,6 +334,8 @@ static void load(reader *r) {
     if (!rg_vtk_load(r->path, &r->text, &r->size)) {
         refuse(r, "cannot be read to its end", "");
     }
+    r->at = r->text;
+    r->end = r->text + r->size;
 }
 
 static void read_head(reader *r, const tag *t) {
@@ -350,13 +357,13 @@ static void find_appended(reader *r) {
     char encoding[WORD] = "";
     while (next_tag(r, &t)) {
         if (has_name(&t, "AppendedData")) {
-            const char *mark = memchr(r->text + r->at, '_', r->size - r->at);
+            const char *mark = find(r, '_');
             r->appended = mark != NULL ? mark + 1 : NULL;
             r->raw = attribute(r, &t, "encoding", encoding) && strcmp(encoding, "raw") == 0;
             break;
         }
     }
-    r->at = 0;
+    r->at = r->text;
 }
 
 static void read_tag(reader *r, const tag *t) {

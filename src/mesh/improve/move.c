@@ -90,21 +90,19 @@ static bool note_edge(face_edges *list, rg_gid end, int32_t label) {
     return true;
 }
 
-static void unit(const double a[3], const double b[3], double out[3]) {
-    rg_vector_subtract(b, a, out);
-    double length = sqrt(rg_vector_dot(out, out));
+static void normalise(double v[3]) {
+    double length = sqrt(rg_vector_dot(v, v));
     for (int i = 0; i < 3; i++) {
-        out[i] /= length;
+        v[i] /= length;
     }
 }
 
 static void face_normal(const rg_tets *t, const rg_gid v[3], double n[3]) {
-    static const double origin[3] = {0, 0, 0};
-    double u[3], w[3], both[3];
+    double u[3], w[3];
     rg_vector_subtract(rg_tets_at(t, v[1]), rg_tets_at(t, v[0]), u);
     rg_vector_subtract(rg_tets_at(t, v[2]), rg_tets_at(t, v[0]), w);
-    rg_vector_cross(u, w, both);
-    unit(origin, both, n);
+    rg_vector_cross(u, w, n);
+    normalise(n);
 }
 
 /* Faces with labels hold the vertex in their planes; edges where labels change, or where not two such faces
@@ -134,7 +132,8 @@ static freedom freedom_of(const rg_tets *t, rg_gid vertex) {
     for (int i = 0; i < list.count; i++) {
         if (list.edge[i].differ || list.edge[i].faces != 4) {
             double e[3];
-            unit(rg_tets_at(t, vertex), rg_tets_at(t, list.edge[i].end), e);
+            rg_vector_subtract(rg_tets_at(t, list.edge[i].end), rg_tets_at(t, vertex), e);
+            normalise(e);
             confine(&f, e);
         }
     }

@@ -39,6 +39,8 @@ static void test_through(void **state) {
     assert_false(rg_frame_through(a, a, side, &f));
     assert_false(rg_frame_through(a, up, a, &f));
     assert_false(rg_frame_through(a, up, (const double[]){10, 20, 44}, &f));
+    assert_false(rg_frame_through(a, (const double[]){1e200, 20, 30}, side,
+                                  &f)); /* its length is beyond all numbers */
 }
 
 static void test_moved(void **state) {

@@ -190,19 +190,7 @@ static void test_inner_faces_stay(void **state) {
     }
 }
 
-static void test_same_every_time(void **state) {
-    (void)state;
-    rg_mesh *a = jittered(), *b = jittered();
-    improve(a);
-    improve(b);
-    assert_int_equal(a->elements, b->elements);
-    assert_memory_equal(a->x, b->x, 3 * (size_t)a->vertices * sizeof *a->x);
-    assert_memory_equal(a->corner, b->corner, 4 * (size_t)a->elements * sizeof *a->corner);
-    rg_mesh_free(a);
-    rg_mesh_free(b);
-}
-
-/* Nothing in it has a length of its own. */
+/* Twice the same, and nothing in it has a length of its own. */
 static void test_same_at_any_size(void **state) {
     (void)state;
     rg_mesh *a = jittered(), *b = jittered();
@@ -301,20 +289,25 @@ static void test_edge_and_face_are_replaced(void **state) {
 
 /* ---- the ring around an edge ---- */
 
-/* Vertices 2 .. 2 + sides - 1 around the edge 0 1, at random heights and distances; closed, or a fan that
- * ends at its first and last vertex. The corners of every other tetrahedron begin elsewhere. */
+/* Vertices 2 .. 2 + sides - 1 around the edge 0 1, at random heights and distances; closed, or a fan whose
+ * first and last vertex lie in one plane with the edge. The corners of every other tetrahedron begin
+ * elsewhere. */
 static rg_mesh *make_ring(int sides, bool closed, uint64_t seed) {
     double x[3 * 14] = {0.1, -0.2, 0, 0.05, 0.1, 1};
     rg_gid corner[4 * 12];
     dice d = {.seed = seed};
     int tets = closed ? sides : sides - 1;
     for (int k = 0; k < sides; k++) {
-        double angle = 6.283185307179586 * (k + 0.3 * dice_unit(&d)) / (closed ? sides : 2 * sides);
-        double far = 0.35 + 0.15 * dice_unit(&d);
+        double angle = closed
+                           ? 6.283185307179586 * (k + 0.3 * dice_unit(&d)) / sides
+                           : 3.141592653589793 * (k + (k > 0 && k < tets ? 0.3 * dice_sign(&d) : 0)) / tets;
+        double far = closed ? 0.35 + 0.15 * dice_unit(&d) : 0.15 + 0.35 * dice_unit(&d);
         x[6 + 3 * k] = far * cos(angle);
-        x[7 + 3 * k] = far * sin(angle);
-        x[8 + 3 * k] = 0.35 + 0.3 * dice_unit(&d);
+        x[7 + 3 * k] = closed || (k > 0 && k < tets) ? far * sin(angle) : 0;
+        x[8 + 3 * k] = closed ? 0.35 + 0.3 * dice_unit(&d) : 0.1 + 0.8 * dice_unit(&d);
     }
+    memset(x, 0,
+           closed ? 0 : 5 * sizeof *x); /* the edge of a fan is the axis that angles are measured around */
     for (int k = 0; k < tets; k++) {
         rg_gid c[4] = {0, 1, 2 + k, 2 + (k + 1) % sides};
         for (int i = 0; i < 4; i++) { /* ascending, as in a mesh */
@@ -362,6 +355,76 @@ static void test_rings(void **state) {
         }
     }
     assert_true(gone > 10 && stays > 10);
+}
+
+/* Fans of several tetrahedra, too: the best way to join their vertices, and two surface faces in place of
+ * two. */
+static void test_wide_fans(void **state) {
+    (void)state;
+    int gone[9] = {0}, stays = 0;
+    for (int sides = 3; sides <= 8; sides++) {
+        for (uint64_t seed = 1; seed <= 60; seed++) {
+            rg_mesh *m = make_ring(sides, false, 1000 * (uint64_t)sides + seed);
+            double before = smallest_height(m), volume = total_volume(m, 0);
+            for (rg_gid s = 0; s < 4 * m->elements; s++) { /* the faces of the edge are of set 7 */
+                const rg_gid *c = m->corner + s / 4 * 4;
+                m->set[s] = m->neighbour[s] < 0 && s % 4 >= 2 && c[1] == 1 ? 7 : -1;
+            }
+            rg_tets t = rg_tets_make(m);
+            double best = best_of_all(&t, 0, sides - 1);
+            bool pays = best > 1.001 * before;
+            assert_int_equal(rg_tets_remove_edge(&t, seed % 2 == 0, seed % 2 == 1), pays);
+            rg_tets_finish(&t);
+            assert_int_equal(m->elements, pays ? 2 * (sides - 2) : sides - 1);
+            rg_mesh_connect(m);
+            rg_mesh_check(m, "fan");
+            assert_close(total_volume(m, 0), volume, 1e-13);
+            assert_close(smallest_height(m), pays ? best : before, 1e-13);
+            int marked = 0;
+            for (rg_gid s = 0; s < 4 * m->elements; s++) {
+                const rg_gid *c = m->corner + s / 4 * 4;
+                bool flat = true;
+                for (int i = 0; i < 4; i++) {
+                    flat = flat && (i == s % 4 || m->x[3 * c[i] + 1] == 0);
+                }
+                assert_int_equal(m->set[s], flat ? 7 : -1);
+                marked += flat;
+            }
+            assert_int_equal(marked, 2);
+            gone[sides] += pays;
+            stays += !pays;
+            rg_mesh_free(m);
+        }
+    }
+    assert_true(gone[3] > 10 && gone[4] > 3 && gone[5] > 1 && gone[6] > 1 && stays > 10);
+}
+
+/* A ring with one face that must stay, whichever it is, stays. */
+static void test_kept_spokes(void **state) {
+    (void)state;
+    for (int closed = 0; closed < 2; closed++) {
+        int tried = 0;
+        for (uint64_t seed = 1; seed <= 30; seed++) {
+            for (int kept = closed ? 0 : 1; kept < (closed ? 4 : 3); kept++) {
+                for (int keep = 0; keep < 2; keep++) {
+                    rg_mesh *m = make_ring(4, closed, 4000 + seed);
+                    if (keep) {
+                        m->inner = RG_NEW(rg_gid, 3);
+                        memcpy(m->inner, (const rg_gid[]){0, 1, 2 + kept}, 3 * sizeof *m->inner);
+                        m->inners = 1;
+                    }
+                    double before = smallest_height(m);
+                    rg_tets t = rg_tets_make(m);
+                    bool pays = best_of_all(&t, 0, 3) > 1.001 * before;
+                    tried += pays && keep;
+                    assert_int_equal(rg_tets_remove_edge(&t, 0, 1), pays && !keep);
+                    rg_tets_finish(&t);
+                    rg_mesh_free(m);
+                }
+            }
+        }
+        assert_true(tried > 10);
+    }
 }
 
 /* A fan around an edge of the surface goes where its ends lie in one plane and set, and has another surface
@@ -499,6 +562,39 @@ static void test_faces(void **state) {
     }
 }
 
+/* The element across a face is the one that shares all of it, though others, which come first, share an edge.
+ */
+static void test_crowded_face(void **state) {
+    (void)state;
+    /* 0 and 4 on either side of the triangle 1 2 3; 5 to 10 beyond the sides of these two */
+    static const double x[33] = {0.1, 0.05, -0.4, 3,  0, 0,  -1.5, 2.4, 0, -1.4, -2.7, 0, 0, 0.1, 0.5, 2, 3,
+                                 -2,  -4,   0,    -2, 2, -3, -2,   2,   3, 2,    -4,   0, 2, 2,   -3,  2};
+    rg_gid corner[32];
+    for (int k = 0; k < 3; k++) { /* an edge of the triangle with either apex, and what is beyond */
+        rg_gid a = 1 + k, b = 1 + (k + 1) % 3, low = a < b ? a : b, high = a < b ? b : a;
+        memcpy(corner + 4 * k, (const rg_gid[]){0, low, high, 5 + k}, 4 * sizeof *corner);
+        memcpy(corner + 12 + 4 * k, (const rg_gid[]){low, high, 4, 8 + k}, 4 * sizeof *corner);
+    }
+    memcpy(corner + 24, (const rg_gid[]){0, 1, 2, 3, 1, 2, 3, 4}, 8 * sizeof *corner);
+    for (int first = 0; first < 2; first++) { /* the two before the others, and behind them */
+        rg_gid here[32];
+        for (int i = 0; i < 32; i++) {
+            here[i] = corner[first ? (i + 24) % 32 : i];
+        }
+        rg_mesh *m = small(11, x, 8, here);
+        double volume = total_volume(m, 0);
+        rg_tets t = rg_tets_make(m);
+        rg_gid lower = first ? 0 : 6;
+        assert_true(rg_tets_remove_face(&t, lower, rg_tets_find(t.tet + lower, 0)));
+        rg_tets_finish(&t);
+        assert_int_equal(m->elements, 9);
+        rg_mesh_connect(m);
+        rg_mesh_check(m, "crowded");
+        assert_close(total_volume(m, 0), volume, 1e-12);
+        rg_mesh_free(m);
+    }
+}
+
 /* A change must pay by a thousandth: heights of the old and the new pair around it. */
 static void test_least_gain(void **state) {
     (void)state;
@@ -593,8 +689,29 @@ static double star_height(const rg_tets *t) {
     return least;
 }
 
+/* The axes of the star after a turn that no axis survives, or none. */
+static void turned_axes(bool turned, double axis[3][3]) {
+    static const double general[3][3] = {
+        {2.0 / 7, 3.0 / 7, 6.0 / 7}, {3.0 / 7, -6.0 / 7, 2.0 / 7}, {6.0 / 7, 2.0 / 7, -3.0 / 7}};
+    for (int i = 0; i < 3; i++) {
+        for (int k = 0; k < 3; k++) {
+            axis[i][k] = turned ? general[i][k] : i == k;
+        }
+    }
+}
+
+static void turn_mesh(rg_mesh *m, const double axis[3][3]) {
+    for (rg_gid v = 0; v < m->vertices; v++) {
+        double from[3];
+        memcpy(from, m->x + 3 * v, sizeof from);
+        for (int i = 0; i < 3; i++) {
+            m->x[3 * v + i] = from[0] * axis[0][i] + from[1] * axis[1][i] + from[2] * axis[2][i];
+        }
+    }
+}
+
 /* The best height by trying in all free directions, with steps that get smaller. */
-static double search_best(const rg_tets *t, const bool free[3]) {
+static double search_best(const rg_tets *t, const bool free[3], const double axis[3][3]) {
     double *x = t->mesh->x + 18, from[3], best = star_height(t);
     dice d = {.seed = 99};
     memcpy(from, x, sizeof from);
@@ -603,7 +720,10 @@ static double search_best(const rg_tets *t, const bool free[3]) {
             double back[3], height;
             memcpy(back, x, sizeof back);
             for (int i = 0; i < 3; i++) {
-                x[i] += free[i] ? step * dice_sign(&d) : 0;
+                double far = free[i] ? step * dice_sign(&d) : 0;
+                for (int k = 0; k < 3; k++) {
+                    x[k] += far * axis[i][k];
+                }
             }
             height = star_height(t);
             height > best ? (void)(best = height) : (void)memcpy(x, back, sizeof back);
@@ -620,18 +740,26 @@ static void test_moves(void **state) {
     for (int kind = 0; kind < PLACES; kind++) {
         double worst = 1;
         for (uint64_t seed = 1; seed <= 16; seed++) {
+            double axis[3][3];
             rg_mesh *m = make_star(kind, 50 * (uint64_t)kind + seed, free[kind]);
+            turned_axes(seed % 2 == 0, axis);
+            turn_mesh(m, (const double(*)[3])axis);
             rg_tets t = rg_tets_make(m);
-            double before = star_height(&t), best = search_best(&t, free[kind]), x[21];
+            double before = star_height(&t), best = search_best(&t, free[kind], (const double(*)[3])axis),
+                   x[21];
             memcpy(x, m->x, sizeof x);
             assert_close(rg_tets_star_height(&t, 6), before, 0);
             bool moved = rg_tets_move(&t, 6);
             double after = star_height(&t);
             assert_int_equal(moved, after > before);
             assert_close(rg_tets_star_height(&t, 6), after, 0); /* heights are kept up */
-            for (int i = 0; i < 21; i++) {
-                assert_true(m->x[i] == x[i] ||
-                            (i >= 18 && (free[kind][i - 18] ? moved : fabs(m->x[i]) < 1e-15)));
+            assert_memory_equal(m->x, x, 18 * sizeof *x);
+            for (int i = 0; i < 3; i++) {
+                double along = 0;
+                for (int k = 0; k < 3; k++) {
+                    along += (m->x[18 + k] - x[18 + k]) * axis[i][k];
+                }
+                assert_true(free[kind][i] ? along == 0 || moved : fabs(along) < 1e-15);
             }
             worst = fmin(worst, after / best);
             rg_tets_finish(&t);
@@ -649,13 +777,15 @@ int main(void) {
         cmocka_unit_test(test_box_keeps_its_shape),
         cmocka_unit_test(test_volume_sets_stay),
         cmocka_unit_test(test_inner_faces_stay),
-        cmocka_unit_test(test_same_every_time),
         cmocka_unit_test(test_same_at_any_size),
         cmocka_unit_test(test_vertex_goes_to_the_best_place),
         cmocka_unit_test(test_edge_and_face_are_replaced),
         cmocka_unit_test(test_rings),
+        cmocka_unit_test(test_wide_fans),
+        cmocka_unit_test(test_kept_spokes),
         cmocka_unit_test(test_fans),
         cmocka_unit_test(test_faces),
+        cmocka_unit_test(test_crowded_face),
         cmocka_unit_test(test_least_gain),
         cmocka_unit_test(test_moves),
     };

@@ -78,6 +78,25 @@ static void test_generated_nodes(void **state) {
     expect(ENDS "*NGEN\n1, 4\n" FAN, said);
     expect(ENDS "*NGEN\n4, 1, 1\n" FAN, said);
     expect("*SYSTEM\n-1, 0, 0\n*NODE\n1, 1\n4, 4, 6, 9\n5, 1, 1, 0\n6, 1, 0, 1\n*NGEN\n1, 4\n" FAN, said);
+    /* in steps of 3, up and down */
+    static const char *const steps[] = {"2, 8, 3", "8, 2, 3"};
+    for (int i = 0; i < 2; i++) {
+        char words[1000];
+        snprintf(words, sizeof words,
+                 "*NODE\n2, 1, 2, 3\n8, 3, 6, 9\n1, 0, 1, 0\n9, 0, 0, 1\n*NGEN\n%s\n" SOLIDS
+                 "1, 1, 2, 5, 9\n2, 1, 5, 8, 9\n",
+                 steps[i]);
+        expect(words,
+               "x 0: 0 1 0\nx 1: 1 2 3\nx 2: 2 4 6\nx 3: 3 6 9\nx 4: 0 0 1\ne 1: 0 1 2 4\ne 2: 0 2 3 4\n");
+    }
+    /* in an instance: between its own nodes, not those of the same numbers of another one */
+    expect(
+        "*PART, NAME=a\n*NODE\n1, 0, 0, 0\n2, 9, 0, 0\n3, 0, 9, 0\n4, 0, 0, 9\n" SOLIDS
+        "1, 1, 2, 3, 4\n*PART, NAME=b\n*INSTANCE, NAME=i, PART=a\n*INSTANCE, NAME=j, PART=b\n*NODE\n"
+        "1, 20, 0, 0\n3, 22, 4, 6\n4, 20, 1, 0\n5, 20, 0, 1\n*NGEN\n1, 3\n" SOLIDS
+        "1, 1, 2, 4, 5\n2, 2, 3, 4, 5\n",
+        "x 0: 0 0 0\nx 1: 9 0 0\nx 2: 0 9 0\nx 3: 0 0 9\nx 4: 20 0 0\nx 5: 21 2 3\nx 6: 22 4 6\nx 7: 20 1 0\n"
+        "x 8: 20 0 1\ne 1: 0 1 2 3\ne 11: 4 5 7 8\ne 12: 5 6 7 8\n");
     snprintf(said, sizeof said,
              WARNING ": 1 sets of nodes hold no whole face of the surface and are left out: 'g'\n" SPREAD,
              ", h at 3", ", h at 3", ", h at 3");
@@ -109,8 +128,6 @@ static void test_generated_nodes(void **state) {
         {ENDS "*NGEN, LINE=C\n1, 4\n", ":6: *NGEN has no parameter 'LINE' that is known here"},
         {ENDS "*NODE\n1000003, 1\n*NGEN\n1, 1000003\n",
          ":9: more than 1000000 nodes and elements to be generated"},
-        {ENDS "*NODE\n600000, 1\n*NGEN\n1, 600000\n600000, 1\n",
-         ":10: more than 1000000 nodes and elements to be generated"},
         {ENDS "*NSET, NSET=a\n1\n*NFILL\na, b, 2, 1\n", ":9: *NFILL: no set of nodes 'b' so far"},
         {ENDS "*NSET, NSET=a\n1\n*NFILL\na\n", ":9: *NFILL: no set of nodes '' so far"},
         {ENDS "*NSET, NSET=a\n1\n*NSET, NSET=b\n4, 5\n*NFILL\na, b, 2, 1\n",
@@ -119,6 +136,19 @@ static void test_generated_nodes(void **state) {
          ":11: '' is not the number of a node or element"},
         {ENDS "*NSET, NSET=a\n1\n*NSET, NSET=b\n4\n*NFILL\na, b, 3, 2000000000\n",
          ":11: a number beyond 4000000000 is generated"},
+        {ENDS "*NSET, NSET=a\n1\n*NSET, NSET=b\n4\n*NFILL\na, b, 1000001, 4000000000\n",
+         ":11: a number beyond 4000000000 is generated"},
+        {ENDS "*NSET, NSET=a\n1\n*NSET, NSET=b\n4\n*NFILL\na, b, 1000002, 4000000000\n",
+         ":11: more than 1000000 nodes and elements to be generated"},
+        /* nodes and elements, by all lines together: 999,998 and 2 or 3 */
+        {ENDS
+         "*NODE\n1000000, 1\n*NGEN\n1, 1000000\n*ELEMENT, TYPE=C3D4, ELSET=a\n1, 1, 4, 5, 6\n2, 1, 4, 5, 6\n"
+         "*ELCOPY, OLD SET=a, ELEMENT SHIFT=4000000000, SHIFT NODES=1\n",
+         ":13: a number beyond 4000000000 is generated"},
+        {ENDS
+         "*NODE\n1000000, 1\n*NGEN\n1, 1000000\n*ELEMENT, TYPE=C3D4, ELSET=a\n1, 1, 4, 5, 6\n2, 1, 4, 5, 6\n"
+         "3, 1, 4, 5, 6\n*ELCOPY, OLD SET=a, ELEMENT SHIFT=4000000000, SHIFT NODES=1\n",
+         ":14: more than 1000000 nodes and elements to be generated"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         expect_refused(cases[i].words, cases[i].said);
@@ -229,6 +259,16 @@ static void test_generated_elements(void **state) {
         {NODES SOLIDS ONE "*ELGEN\n1, 1001, 1, 1, 1001, 1, 1\n",
          ":10: more than 1000000 nodes and elements to be generated"},
         {NODES SOLIDS ONE "*ELGEN\n1, 2, 1, 1, 2, 1, 1, 3000000000, 1, 1\n",
+         ":10: more than 1000000 nodes and elements to be generated"},
+        {NODES SOLIDS ONE "*ELGEN\n1, 1000001, 1, 4000000000\n",
+         ":10: a number beyond 4000000000 is generated"},
+        {NODES SOLIDS ONE "*ELGEN\n1, 101, 1, 4000000000, 9901, 1, 1\n",
+         ":10: a number beyond 4000000000 is generated"},
+        {NODES SOLIDS ONE "*ELGEN\n1, 101, 1, 4000000000, 9902, 1, 1\n",
+         ":10: more than 1000000 nodes and elements to be generated"},
+        {NODES SOLIDS ONE "*ELGEN\n1, 2, 1, 4000000000, 2, 1, 1, 250000, 1, 1\n",
+         ":10: a number beyond 4000000000 is generated"},
+        {NODES SOLIDS ONE "*ELGEN\n1, 2, 1, 4000000000, 2, 1, 1, 250001, 1, 1\n",
          ":10: more than 1000000 nodes and elements to be generated"},
         {NODES SOLIDS ONE "*ELGEN\n1, 2, 4000000000\n", ":10: a number beyond 4000000000 is generated"},
         {NODES SOLIDS ONE "*ELGEN\n1, 2, 1, 4000000000\n", ":10: a number beyond 4000000000 is generated"},
