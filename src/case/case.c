@@ -3,6 +3,10 @@
 
 #include <string.h>
 
+bool rg_boundary_has_component(const rg_boundary *b) {
+    return !b->absorbing;
+}
+
 const rg_material_input *rg_case_material(const rg_case *c, int i) {
     return i == 0 ? &c->material : &c->other[i - 1].is;
 }

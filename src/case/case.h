@@ -46,10 +46,12 @@ enum {
 typedef enum { RG_PRESCRIBED(RG_PRESCRIBED_ENUM, ) RG_PRESCRIBED_KINDS } rg_prescribed;
 
 typedef struct {
+    char *name;    /* column prefix in history.csv; NULL: it has no columns */
     char *set;     /* named set of faces */
-    int component; /* 0, 1, 2 for x, y, z */
+    int component; /* 0, 1, 2 for x, y, z; -1: of what has none */
     rg_prescribed prescribed;
     rg_expr *value;
+    bool absorbing; /* waves leave by it, and nothing is prescribed */
 } rg_boundary;
 
 /* What a load is, of which it has one: X(NAME, key, unit), with `join` between them. What each does:
@@ -206,6 +208,9 @@ typedef struct {
         int64_t keep;     /* of them, the last ones */
     } checkpoint;
 } rg_case;
+
+/* Whether an entry of `boundary` prescribes one component. */
+bool rg_boundary_has_component(const rg_boundary *b);
 
 /* Input of material i (0: `material`, then the others), and its name. */
 const rg_material_input *rg_case_material(const rg_case *c, int i);

@@ -35,6 +35,9 @@ void rg_case_check(rg_check *ck, const rg_node *root);
  * reported under `path`. */
 bool rg_value_read(rg_check *ck, const rg_key *key, const rg_node *node, const char *path, void *base);
 
+/* Reads true or false, not in quotes; false: it is neither. */
+bool rg_bool_read(const rg_node *node, bool *value);
+
 /* Reports a wrong value with what the key allows; `nearest` may be NULL. */
 void rg_value_wrong(rg_check *ck, const rg_key *key, const rg_node *node, const char *path,
                     const char *nearest, const char *what);

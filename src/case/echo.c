@@ -124,6 +124,9 @@ void rg_key_write(FILE *out, const rg_key *key, const void *base) {
     case RG_KEY_FACE:
         write_face_value(out, key, base);
         break;
+    case RG_KEY_BOOL:
+        fputs(*(const bool *)value ? "true" : "false", out);
+        break;
     case RG_KEY_INTERVAL:
         write_interval(out, base);
         break;
@@ -158,6 +161,9 @@ bool rg_key_present(const rg_key *key, const void *base) {
     }
     if (key->type == RG_KEY_TEXT || key->type == RG_KEY_EXPR) {
         return rg_pointer_get(value) != NULL;
+    }
+    if (key->type == RG_KEY_BOOL) {
+        return *(const bool *)(const void *)value;
     }
     if (key->type == RG_KEY_TABLES) {
         return ((const rg_curves *)(const void *)value)->count > 0;

@@ -87,6 +87,9 @@ static void type_words(const rg_key *key, char *text, size_t size) {
         range_words(key, text, size);
         rg_text_add(text, size, ", or expression in x, y, z, nx, ny, nz");
         break;
+    case RG_KEY_BOOL:
+        rg_text_add(text, size, "true or false");
+        break;
     case RG_KEY_INTERVAL:
         rg_text_add(text, size, "integer >= 1 (steps), or number > 0 and < 1 (simulated seconds)");
         break;
@@ -126,7 +129,8 @@ const char *rg_law_word(rg_law law) {
 }
 
 bool rg_key_has_default(const rg_key *key) {
-    return key->need != RG_NEED_REQUIRED && key->alternative == RG_NO_ALTERNATIVE;
+    return key->need != RG_NEED_REQUIRED && key->alternative == RG_NO_ALTERNATIVE &&
+           key->group != RG_GROUP_COMPONENT;
 }
 
 const char *rg_key_default(const rg_key *key, char *text, size_t size) {
@@ -202,6 +206,8 @@ bool rg_key_used(const rg_key *key, const void *base) {
         return ((const rg_case *)base)->interface.weibull.modulus > 0;
     case RG_GROUP_LAW:
         return ((const rg_case *)base)->interface.law == key->law;
+    case RG_GROUP_COMPONENT:
+        return rg_boundary_has_component(base);
     case RG_GROUP_PRESCRIBED:
         return ((const rg_boundary *)base)->prescribed == key->prescribed;
     case RG_GROUP_ALWAYS:

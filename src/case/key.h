@@ -26,6 +26,7 @@ typedef enum {
     RG_KEY_EXPR,    /* rg_expr *: number or expression */
     RG_KEY_FACE,    /* the same of a face, where place and normal are known, an rg_expr * at offset_expr; of a
                        number also double */
+    RG_KEY_BOOL,    /* bool */
     RG_KEY_INTERVAL, /* output.interval: steps or seconds, by the kind of number */
     RG_KEY_TABLES,   /* rg_curves: mapping of names to tables */
     RG_KEY_LIST,     /* array of mappings with the keys of `entry` */
@@ -51,6 +52,7 @@ typedef enum {
     RG_GROUP_SWITCH,     /* if points switch from DG to a law: there is one, and DG terms */
     RG_GROUP_ONSET,      /* ... by the conserving activation */
     RG_GROUP_WEIBULL,    /* if interface.weibull.modulus is given */
+    RG_GROUP_COMPONENT,  /* boundary entries: if one component is prescribed */
     RG_GROUP_PRESCRIBED, /* boundary entries: if that is what is prescribed */
     RG_GROUPS,
 } rg_key_group;

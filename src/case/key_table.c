@@ -299,11 +299,15 @@ static const rg_key other_material_keys[] = {
      .prescribed = RG_PRESCRIBED_##NAME, .offset = offsetof(rg_boundary, value), MEANS("prescribed " key)},
 
 static const rg_key boundary_keys[] = {
+    {.name = "name", .type = RG_KEY_TEXT, ELSE("no columns"), .offset = offsetof(rg_boundary, name),
+     MEANS("column prefix in history.csv of the force that holds it, on the solid, and its work: letters, digits, _ and -")},
     {.name = "set", .type = RG_KEY_TEXT, .choice = box_sets, REQUIRED, .offset = offsetof(rg_boundary, set),
      MEANS("a side of the box, or a surface set of the mesh file")},
-    {.name = "component", CHOICE(components), REQUIRED, .offset = offsetof(rg_boundary, component),
-     MEANS("of the motion that is prescribed")},
+    {.name = "component", CHOICE(components), DEFAULT(0), GROUP(COMPONENT), .absent = "required of a velocity or displacement",
+     .offset = offsetof(rg_boundary, component), MEANS("of the motion that is prescribed")},
     RG_PRESCRIBED(PRESCRIBED, )
+    {.name = "absorbing", .type = RG_KEY_BOOL, ELSE("a motion"), ONE_OF, .offset = offsetof(rg_boundary, absorbing),
+     MEANS("true: waves that meet it straight on leave by it (Lysmer & Kuhlemeyer 1969): the traction is -rho c_d v along the normal, -rho c_s v across")},
 };
 
 #define LOAD(member) .offset = offsetof(rg_load_input, member)

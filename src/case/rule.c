@@ -215,62 +215,16 @@ void rg_mass_rule(rg_check *ck, const rg_node *node) {
     ck->c->mass = RG_MASS_LUMPED;
 }
 
-/* ---- boundary: one prescribed motion per entry, one entry per set and component ---- */
-
-static bool one_motion(rg_check *ck, const rg_node *item, const char *path, rg_boundary *b) {
-    const char *first = NULL;
-    rg_subject subject = {.key = path, .allowed = "exactly one of " RG_PRESCRIBED(RG_PRESCRIBED_KEY, ", ")};
-    for (int k = 0; k < rg_boundary_table.keys; k++) {
-        const rg_key *key = &rg_boundary_table.key[k];
-        const rg_node *given = rg_node_find(item, key->name, strlen(key->name));
-        if (key->group != RG_GROUP_PRESCRIBED || given == NULL) {
-            continue;
-        }
-        if (first != NULL) {
-            rg_problem_add(ck->problems, given->key_at, &subject, "%s and %s both given", first, key->name);
-            return false;
-        }
-        first = key->name;
-        b->prescribed = key->prescribed;
-    }
-    if (first == NULL) {
-        rg_problem_add(ck->problems, item->at, &subject, "missing " RG_PRESCRIBED(RG_PRESCRIBED_KEY, " or "));
-    }
-    return first != NULL;
-}
-
-static const rg_node *same_motion(const rg_case *c, const rg_node *list, int i) {
-    for (int j = 0; j < i; j++) {
-        const rg_boundary *a = &c->boundary[j], *b = &c->boundary[i];
-        if (a->component == b->component && strcmp(a->set, b->set) == 0) {
-            return &list->child[j];
-        }
-    }
-    return NULL;
-}
-
-void rg_boundary_rule(rg_check *ck, const rg_node *list, int i, const char *path, bool good) {
-    rg_boundary *b = &ck->c->boundary[i];
-    bool mapping = list->child[i].kind == RG_NODE_MAPPING;
-    good = mapping && one_motion(ck, &list->child[i], path, b) && good;
-    if (!good) {
-        b->component = -1; /* equals no other */
-        return;
-    }
-    const rg_node *first = same_motion(ck->c, list, i);
-    if (first != NULL) {
-        rg_problem_add(ck->problems, list->child[i].at, &(rg_subject){.key = path},
-                       "set %s component %c is prescribed twice, first at line %d column %d", b->set,
-                       "xyz"[b->component], first -> at.line, first->at.column);
-    }
-}
-
 /* ---- names: unique, fit for a column heading ---- */
 
 /* The name of entry i of the lists that history.csv has columns of, in the order of reading; *end: there are
  * no more. */
 static const char *column_name(const rg_case *c, int i, bool *end) {
     *end = false;
+    if (i < c->boundaries) {
+        return c->boundary[i].name;
+    }
+    i -= c->boundaries;
     if (i < c->loads) {
         return c->load[i].name;
     }

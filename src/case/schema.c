@@ -193,6 +193,9 @@ static void put_single(writer *w, const rg_key *key) {
         put_words(w, "type", (const char *const[]){"number", "string"}, 2);
         put_bounds(w, key);
         break;
+    case RG_KEY_BOOL:
+        put_text(w, "type", "boolean");
+        break;
     case RG_KEY_INTERVAL:
         put_interval(w);
         break;

@@ -94,9 +94,7 @@ static bool read_file(table *t, const rg_node *node, const char *path) {
 /* ---- tables ---- */
 
 static bool read_smooth(const table *t, const rg_node *node, const char *path, bool *smooth) {
-    *smooth = node->kind == RG_NODE_SCALAR && node->plain && strcmp(node->text, "true") == 0;
-    bool no = node->kind == RG_NODE_SCALAR && node->plain && strcmp(node->text, "false") == 0;
-    return *smooth || no || wrong(t, node, path, "neither true nor false");
+    return rg_bool_read(node, smooth) || wrong(t, node, path, "neither true nor false");
 }
 
 /* {points or file, smooth} */

@@ -275,6 +275,20 @@ static bool read_face_value(rg_check *ck, const rg_key *key, const rg_node *node
     return read_expr(ck, key, node, path, base + key->offset_expr);
 }
 
+bool rg_bool_read(const rg_node *node, bool *value) {
+    bool plain = node->kind == RG_NODE_SCALAR && node->plain;
+    *value = plain && strcmp(node->text, "true") == 0;
+    return *value || (plain && strcmp(node->text, "false") == 0);
+}
+
+static bool read_bool(rg_check *ck, const rg_key *key, const rg_node *node, const char *path, bool *value) {
+    bool good = rg_bool_read(node, value);
+    if (!good) {
+        rg_value_wrong(ck, key, node, path, NULL, "neither true nor false");
+    }
+    return good;
+}
+
 static bool read_interval(rg_check *ck, const rg_key *key, const rg_node *node, const char *path,
                           rg_case *c) {
     bool integer = false;
@@ -311,6 +325,8 @@ bool rg_value_read(rg_check *ck, const rg_key *key, const rg_node *node, const c
         return read_expr(ck, key, node, path, value);
     case RG_KEY_FACE:
         return read_face_value(ck, key, node, path, base);
+    case RG_KEY_BOOL:
+        return read_bool(ck, key, node, path, value);
     case RG_KEY_INTERVAL:
         return read_interval(ck, key, node, path, base);
     case RG_KEY_TABLES:

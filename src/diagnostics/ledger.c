@@ -30,7 +30,7 @@ enum {
     PARTS = ANGULAR + 3 /* those of material m: from PARTS + PART * m on */
 };
 
-enum { ROW = 26 }; /* values of a row, but for the parts of the materials */
+enum { ROW = 27 }; /* values of a row, but for the parts of the materials */
 
 enum { PART_KINETIC, PART_BULK, PART_DISSIPATED, PART };
 
@@ -245,6 +245,7 @@ static rg_energy energy_of(const rg_solver *s, const double *v) {
                    .damage = v[RELEASED + RG_RELEASED_DAMAGE],
                    .viscous = v[VISCOUS],
                    .friction = v[FRICTION],
+                   .radiated = rg_absorbing_radiated(s->absorbing),
                    .external = v[EXTERNAL] + bodies.work + rg_loads_work(s->loads),
                    .broken_area = v[BROKEN],
                    .failed_area = v[FAILED],
@@ -279,7 +280,7 @@ const rg_energy *rg_ledger_take(rg_ledger *l, rg_solver *s) {
     *e = energy_of(s, v);
     double stored =
         e->kinetic + e->bodies + e->bulk + e->penalty + e->cohesive + e->contact + e->unresolved + e->spent;
-    e->total = stored - e->half_kick - e->external;
+    e->total = stored + e->radiated - e->half_kick - e->external;
     if (!l->begun) {
         *l = (rg_ledger){.begun = true, .start = e->total, .last = *e};
     }
@@ -341,7 +342,7 @@ void rg_energy_header(rg_csv *t, const rg_solver *s) {
     char *columns = NULL;
     FILE *f = open_memstream(&columns, &length);
     fputs("step,time,kinetic,bodies,bulk,penalty,cohesive,contact,dissipated,plastic,damage,viscous,friction,"
-          "unresolved,half_kick,"
+          "unresolved,radiated,half_kick,"
           "external_work,total,error_rel,error_dissipated,broken_area,failed_area,momentum_x,momentum_y,"
           "momentum_z,angular_x,angular_y,angular_z",
           f);
@@ -370,6 +371,7 @@ void rg_energy_row(rg_csv *t, const rg_ledger *l, const rg_solver *s) {
                                                  e->viscous,
                                                  e->friction,
                                                  e->unresolved,
+                                                 e->radiated,
                                                  e->half_kick,
                                                  e->external,
                                                  e->total,

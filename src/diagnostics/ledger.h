@@ -1,5 +1,5 @@
 /* The energy ledger: kinetic + bulk + penalty + cohesive + contact + dissipated + plastic + damage + viscous
- * + friction - external work = constant. */
+ * + friction + radiated - external work = constant. */
 #ifndef RG_LEDGER_H
 #define RG_LEDGER_H
 
@@ -19,6 +19,7 @@ typedef struct {
     double friction;    /* dissipated where closed cracks slide (J); what they store while they stick is
                          * part of contact */
     double unresolved;  /* set free where points switched, beyond what their law can take (J) */
+    double radiated;    /* taken out of the body by absorbing sides (J) */
     double half_kick;   /* dt^2/8 a . M a: by so much what a central difference keeps is below the sum (J) */
     double external;    /* work done by prescribed motions and loads (J) */
     double total;       /* sum of the parts less the external work (J) */

@@ -90,7 +90,7 @@ static void refuse_contradictions(const rg_case *c, const rg_part *part, MPI_Com
     for (int b = 0; b < c->boundaries && part->surface.combinations > 0; b++) {
         for (int a = 0; a < b; a++) {
             const rg_boundary *p = &c->boundary[a], *q = &c->boundary[b];
-            int64_t faces = p->component != q->component
+            int64_t faces = p->component != q->component || p->component < 0
                                 ? 0
                                 : count_shared(part, rg_sets_find(&part->surface, p->set),
                                                rg_sets_find(&part->surface, q->set), comm);

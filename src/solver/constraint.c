@@ -51,9 +51,13 @@ struct rg_constraints {
     size_t entries, *tile_begin; /* entries of tile t: tile_begin[t] .. tile_begin[t + 1] - 1 */
     entry *entry;
     pattern *patterns[1 << RG_NODES];
-    bool varies;      /* some value depends on time or is a displacement */
-    bool moving;      /* at the start the velocities are the initial ones */
-    rg_first_bad bad; /* where a value was not finite first, and when */
+    rg_account *account;
+    int *item;               /* [boundaries]: of the account; -1: it has no name */
+    bool named;              /* some have */
+    double dt_last, dt_kick; /* the step that led here; that of the kick */
+    bool varies;             /* some value depends on time or is a displacement */
+    bool moving;             /* at the start the velocities are the initial ones */
+    rg_first_bad bad;        /* where a value was not finite first, and when */
 };
 
 /* ---- Patterns ---- */
@@ -164,7 +168,7 @@ static unsigned constrained_nodes(const rg_constraints *k, const uint16_t *on_se
 }
 
 static bool boundary_varies(const rg_boundary *b) {
-    return b->prescribed == RG_PRESCRIBED_DISPLACEMENT || rg_expr_uses_time(b->value);
+    return !b->absorbing && (b->prescribed == RG_PRESCRIBED_DISPLACEMENT || rg_expr_uses_time(b->value));
 }
 
 static void add_entry(rg_constraints *k, double mass, size_t slot, int c, unsigned mask,
@@ -181,13 +185,16 @@ static void add_entry(rg_constraints *k, double mass, size_t slot, int c, unsign
 }
 
 rg_constraints *rg_constraints_make(const rg_case *c, const rg_domain *d, const rg_part *part,
-                                    const rg_material *m, rg_assembly *nodes) {
+                                    const rg_material *m, rg_assembly *nodes, rg_account *account) {
     rg_constraints *k = RG_NEW(rg_constraints, 1);
-    *k = (rg_constraints){.input = c, .domain = d, .bad = {.which = RG_NOWHERE}};
+    *k = (rg_constraints){.input = c, .domain = d, .account = account, .bad = {.which = RG_NOWHERE}};
     int *set = RG_NEW(int, (size_t)c->boundaries + 1);
+    k->item = RG_NEW(int, (size_t)c->boundaries + 1);
     for (int b = 0; b < c->boundaries; b++) {
         set[b] = set_number(part, c->boundary[b].set);
         k->varies = k->varies || boundary_varies(&c->boundary[b]);
+        k->item[b] = c->boundary[b].name == NULL ? -1 : rg_account_add(account, c->boundary[b].name);
+        k->named = k->named || k->item[b] >= 0;
     }
     uint16_t *on_set = list_nodes(k, &part->surface, set, nodes);
     k->tile_begin = RG_NEW(size_t, d->tiles + 1);
@@ -292,7 +299,9 @@ void rg_constraints_start(rg_constraints *k, const rg_real *u, const rg_real *ve
     }
 }
 
-void rg_constraints_set(rg_constraints *k, double time, double dt) {
+void rg_constraints_set(rg_constraints *k, double time, double dt_last, double dt) {
+    k->dt_last = dt_last;
+    k->dt_kick = 0.5 * (dt_last + dt);
     for (size_t n = 0; k->varies && n < k->entries; n++) {
         entry *e = &k->entry[n];
         for (int i = 0; e->varies && i < e->pattern->constrained; i++) {
@@ -313,20 +322,21 @@ void rg_constraints_set(rg_constraints *k, double time, double dt) {
 
 /* ---- Correction ---- */
 
-/* Adds to the velocities of an entry's nodes what brings the constrained ones to `target`; returns the work
- * of that impulse. */
-static double correct(const entry *e, const double *target, rg_real *velocity) {
+/* Adds to the velocities of an entry's nodes what brings the constrained ones to `target`, by `impulse` on
+ * these; returns the work of that. */
+static double correct(const entry *e, const double *target, rg_real *velocity, double impulse[RG_NODES]) {
     const pattern *p = e->pattern;
     double work = 0, change[RG_NODES];
     for (int i = 0; i < p->constrained; i++) {
         change[i] = target[i] - velocity[rg_node_index((size_t)e->slot, p->node[i], e->component)];
     }
     for (int i = 0; i < p->constrained; i++) {
-        double impulse = 0;
+        double sum = 0;
         for (int j = 0; j < p->constrained; j++) {
-            impulse += p->impulse[i][j] * change[j];
+            sum += p->impulse[i][j] * change[j];
         }
-        work += 0.5 * e->mass * impulse * (e->is.before[i] + target[i]);
+        impulse[i] = e->mass * sum;
+        work += 0.5 * e->mass * sum * (e->is.before[i] + target[i]);
     }
     for (int n = 0; n < RG_NODES; n++) {
         size_t at = rg_node_index((size_t)e->slot, p->node[n], e->component);
@@ -343,13 +353,40 @@ static double correct(const entry *e, const double *target, rg_real *velocity) {
     return work;
 }
 
+/* The force and work of those boundaries of an entry that have a name. */
+static void book(const rg_constraints *k, const entry *e, const double impulse[RG_NODES]) {
+    for (int i = 0; i < e->pattern->constrained; i++) {
+        rg_account_entry sum = {{0, 0, 0}, 0, 0};
+        int boundary = e->boundary[i];
+        bool told = k->item[boundary] < 0;
+        for (int j = 0; j < i; j++) {
+            told = told || e->boundary[j] == boundary;
+        }
+        for (int j = i; !told && j < e->pattern->constrained; j++) {
+            if (e->boundary[j] == boundary) {
+                double force = impulse[j] / k->dt_kick, before = 0.5 * k->dt_last * force * e->is.before[j];
+                sum.force[e->component] += force;
+                sum.before += before;
+                sum.after += 0.5 * impulse[j] * (e->is.before[j] + e->is.target[j]) - before;
+            }
+        }
+        if (!told) {
+            rg_account_book(k->account, k->item[boundary], &sum);
+        }
+    }
+}
+
 void rg_constraints_kick(rg_constraints *k, size_t tile, rg_real *velocity, rg_real *now) {
     for (size_t n = k->tile_begin[tile]; n < k->tile_begin[tile + 1]; n++) {
         entry *e = &k->entry[n];
+        double impulse[RG_NODES];
         if (now != NULL) {
-            e->is.work_now = e->is.work + correct(e, e->is.present, now);
+            e->is.work_now = e->is.work + correct(e, e->is.present, now, impulse);
         }
-        e->is.work += correct(e, e->is.target, velocity);
+        e->is.work += correct(e, e->is.target, velocity, impulse);
+        if (k->named) {
+            book(k, e, impulse);
+        }
         memcpy(e->is.before, e->is.target, sizeof e->is.before);
     }
 }
@@ -392,6 +429,7 @@ void rg_constraints_free(rg_constraints *k) {
         rg_free(k->patterns[i]);
     }
     rg_free(k->entry);
+    rg_free(k->item);
     rg_free(k->key);
     rg_free(k->tile_begin);
     rg_free(k);

@@ -14,15 +14,17 @@
 #include "case/case.h"
 #include "domain/assembly.h"
 #include "domain/domain.h"
+#include "solver/account.h"
 #include "solver/state.h"
 
 typedef struct rg_constraints rg_constraints;
 
 /* The constraints of a case, of the materials m, on this rank. Where elements share nodes by an assembly
  * (else NULL), all copies of a node on a face of the set are prescribed, also those of elements that only
- * touch the set. Keeps references to `c` and `d`. Collective; free with rg_constraints_free. */
+ * touch the set. Entries that have a name get an item of the account. Keeps references to `c`, `d` and
+ * `account`. Collective; free with rg_constraints_free. */
 rg_constraints *rg_constraints_make(const rg_case *c, const rg_domain *d, const rg_part *part,
-                                    const rg_material *m, rg_assembly *nodes);
+                                    const rg_material *m, rg_assembly *nodes, rg_account *account);
 
 /* Takes the fields at t = 0 as what the constrained nodes come from. Collective; ends the run with a message
  * (RG_USAGE) if a value is not finite then. */
@@ -32,13 +34,13 @@ void rg_constraints_start(rg_constraints *k, const rg_real *u, const rg_real *ve
  * first. */
 bool rg_constraints_told(const rg_constraints *k, char *words, size_t size, MPI_Comm comm);
 
-/* Evaluates what is prescribed for a step `dt` (> 0) from `time`: velocities in its middle, displacements at
- * its end, and velocities at `time` itself (at the start: those after it, with the work of getting there).
- * One thread. */
-void rg_constraints_set(rg_constraints *k, double time, double dt);
+/* Evaluates what is prescribed for a step `dt` (> 0) from `time`, after one of dt_last: velocities in its
+ * middle, displacements at its end, and velocities at `time` itself (at the start: those after it, with the
+ * work of getting there). One thread. */
+void rg_constraints_set(rg_constraints *k, double time, double dt_last, double dt);
 
 /* Corrects the velocities of tile `tile` after its kick; before that those at the present time, unless `now`
- * is NULL. Both are whole fields. Keeps account of the work. */
+ * is NULL. Both are whole fields. Keeps account of the work, and of the force of what has a name. */
 void rg_constraints_kick(rg_constraints *k, size_t tile, rg_real *velocity, rg_real *now);
 
 /* What has a prescribed displacement gets it after the drift of tile `tile`. */

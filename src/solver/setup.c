@@ -108,10 +108,12 @@ static rg_solver *make(const rg_case *input, rg_part *part, MPI_Comm comm) {
     if (part->original == NULL) { /* a patch has no need of them */
         rg_strength_make(s, model);
     }
-    s->constraints = rg_constraints_make(input, s->domain, s->part, model->material, s->assembly);
-    s->bodies = rg_bodies_make(input, s->domain, s->part, model->material, s->threads, comm);
     s->account = rg_account_make(comm);
+    s->constraints = rg_constraints_make(input, s->domain, s->part, model->material, s->assembly, s->account);
+    s->bodies = rg_bodies_make(input, s->domain, s->part, model->material, s->threads, comm);
     s->loads = rg_loads_make(input, s->domain, s->part, model->material, s->account, s->threads, comm);
+    s->absorbing =
+        rg_absorbing_make(input, s->domain, s->part, model->material, s->assembly, s->account, comm);
     rg_account_open(s->account, s->threads);
     allocate(s);
     rg_law_start(s);
@@ -183,6 +185,7 @@ void rg_solver_free(rg_solver *s) {
         rg_constraints_free(s->constraints);
         rg_bodies_free(s->bodies);
         rg_loads_free(s->loads);
+        rg_absorbing_free(s->absorbing);
         rg_account_free(s->account);
         rg_assembly_free(s->assembly);
         rg_conforming_faces_free((rg_conforming_faces *)s->conforming_faces);

@@ -20,6 +20,7 @@
 #include "domain/domain.h"
 #include "domain/halo.h"
 #include "kernels.h"
+#include "solver/absorbing.h"
 #include "solver/account.h"
 #include "solver/body.h"
 #include "solver/constraint.h"
@@ -71,6 +72,7 @@ struct rg_solver {
     rg_bodies *bodies;
     rg_account *account; /* of what acts from outside */
     rg_loads *loads;
+    rg_absorbing *absorbing;
     double time, dt; /* of the current state (s); dt is the step that led to it */
     double dt_next;  /* step that leads on, once kicked */
     int64_t step;

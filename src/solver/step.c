@@ -135,6 +135,7 @@ static void element_sweep(rg_solver *s, size_t tile, const rg_workspace *w, cons
     mark_cracked(s, t, t->ibegin, t->sbegin);
     if (p->constrain) {
         rg_loads_find(s->loads, tile, s->u, s->velocity);
+        rg_absorbing_note(s->absorbing, tile, s->velocity);
     }
     tile_kick(s, tile, w, p, RG_SWEEP_ELEMENT);
     if (p->constrain) {
@@ -156,8 +157,11 @@ static void tile_drift(rg_solver *s, size_t tile, const rg_workspace *w) {
 /* The velocities of a tile are complete. */
 static void tile_complete(rg_solver *s, size_t tile, const rg_workspace *w, const impulse *p) {
     if (p->constrain) {
+        rg_push damp = {p->dt, 0.5 * s->dt, p->velocity, step_velocity_of(s, tile, p)};
+        rg_absorbing_damp(s->absorbing, tile, &damp);
         rg_constraints_kick(s->constraints, tile, p->velocity, step_velocity_of(s, tile, p));
         rg_loads_book(s->loads, tile, p->velocity);
+        rg_absorbing_book(s->absorbing, tile, p->velocity);
     }
     if (s->watched[tile] && p->constrain) {
         s->watch(s->watch_context, s, tile, w);
@@ -445,8 +449,9 @@ static impulse prepare(rg_solver *s, double dt) {
     for (int m = 0; s->dt > 0 && m < s->model->materials; m++) {
         rg_material_prepare(&s->stepper->material[m], s->dt);
     }
-    rg_constraints_set(s->constraints, s->time, dt);
+    rg_constraints_set(s->constraints, s->time, s->dt, dt);
     rg_loads_set(s->loads, s->time, s->dt, dt);
+    rg_absorbing_set(s->absorbing, s->dt, dt);
     return (impulse){
         .velocity = s->velocity, .dt = 0.5 * (s->dt + dt), .constrain = true, .advance = s->dt > 0};
 }

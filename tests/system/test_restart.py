@@ -134,7 +134,12 @@ VARIANTS = {  # test_checkpoint.c has more, on one rank
     "loads": {"tables": {"pulse": {"points": [[0, 0], [5e-8, 1], [2e-7, 0.2]], "smooth": True}},
               "loads": [{"name": "pull", "set": "z+", "traction": {"x": "2e7*pulse(t)*(1 + 1e3*y)", "z": "3e8*pulse(t)"}},
                         {"where": "abs(nx) > 0.5", "pressure": "2e8*pulse(2*t)*(1 + 1e2*z)", "from": 2e-8, "until": 1.5e-7},
-                        {"set": "y-", "force": {"y": 3}}, {"name": "fall", "acceleration": {"y": -4e7, "z": "1e11*x*t/1e-7"}}]},
+                        {"set": "y-", "force": {"y": 3}}, {"name": "fall", "acceleration": {"y": -4e7, "z": "1e11*x*t/1e-7"}}],
+              "boundary": [{"name": "hold", "set": "z-", "component": "z", "velocity": "1e8*t*x"}, {"set": "x+", "absorbing": True},
+                           {"set": "z-", "absorbing": True}]},
+    "loads, continuous": {"interface.form": "continuous", "interface.faces": "nz*nz > 0.5",
+                          "boundary": [{"set": "x+", "absorbing": True}, {"set": "z-", "absorbing": True}],
+                          "loads": [{"name": "pull", "set": "z+", "traction": {"z": "3e8 + 1e12*x"}}]},
     "plain": {"output.fields": [], "output.probes": [], "boundary": []},
 }
 

@@ -359,7 +359,15 @@ static const mistake boundary[] = {
      "  - {set: z+, component: q, velocity: 1}\n"
      "  - {component: z, velocity: 1}\n"
      "  - {set: z+, component: z, velocity: y, displacement: 2}\n"
-     "  - {set: {a: 1}, component: [z], velocity: nx}\n",
+     "  - {set: {a: 1}, component: [z], velocity: nx}\n"
+     "  - {set: x-, absorbing: true}\n"
+     "  - {set: x-, absorbing: true, component: x}\n"
+     "  - {set: x+, absorbing: false}\n"
+     "  - {set: x+, absorbing: 1}\n"
+     "  - {set: x+, absorbing: true, name: a}\n"
+     "  - {set: x+, absorbing: true, component: x, velocity: 1}\n"
+     "  - {set: x+, velocity: 1}\n"
+     "  - {set: x+, component: y, velocity: 1, name: p}\n",
      ":17:5: boundary[3]: set z- component z is prescribed twice, first at line 16 column 5\n"
      ":18:5: boundary[4]: set z+ component y is prescribed twice, first at line 15 column 5\n"
      ":19:26: boundary[5].component: q: not one of the allowed words; allowed: x, y, z\n"
@@ -369,7 +377,16 @@ static const mistake boundary[] = {
      ":23:11: boundary[9].set: {a: 1}: not one of the allowed words; allowed: x-, x+, y-, y+, z-, z+\n"
      ":23:30: boundary[9].component: [z]: not one of the allowed words; allowed: x, y, z\n"
      ":23:45: boundary[9].velocity: nx: depends on a normal, which only faces have; allowed: number or "
-     "expression in x, y, z, t (m/s)\n"},
+     "expression in x, y, z, t (m/s)\n"
+     ":25:32: boundary[11].component: not used: it belongs to a velocity or displacement\n"
+     ":26:26: boundary[12].absorbing: prescribes nothing; allowed: true\n"
+     ":27:26: boundary[13].absorbing: 1: neither true nor false; allowed: true or false\n"
+     ":28:32: boundary[14].name: not used: what leaves is `radiated` in energy.csv\n"
+     ":29:15: boundary[15]: velocity and absorbing both given; " ONE_MOTION
+     ":30:5: boundary[16].component: missing; allowed: x, y, z\n"
+     ":36:14: output.probes[0].name: p: the name of an earlier one in history.csv; allowed: letters, digits, "
+     "_ "
+     "and -; unique in history.csv\n"},
 };
 
 static const mistake materials[] = {

@@ -655,7 +655,7 @@ static void check_told(void) {
         char words[400] = "";
         rg_solver_start(s);
         for (int k = 0; k < 8; k++)
-            rg_constraints_set(s->constraints, k * 1e-10, 1e-10);
+            rg_constraints_set(s->constraints, k * 1e-10, 1e-10, 1e-10);
         bool any = rg_constraints_told(s->constraints, words, sizeof words, s->comm);
         if (strcmp(words, cases[i].told) != 0)
             printf("# rank %d: %s\n", rank, words);

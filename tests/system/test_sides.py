@@ -1,0 +1,113 @@
+"""Sides: the forces that hold them, and waves that leave by them. Bits on any layout and restarts: test_parallel.py,
+test_restart.py."""
+
+import numpy as np
+import pytest
+from conftest import CASES, example, launch, rounding
+from figures import ROUNDING
+
+LOADS = CASES / "loads.yaml"
+NAMES = ("hold", "pull", "press", "push", "fall")
+
+# ---- Reactions ----
+
+
+@pytest.fixture(scope="module")
+def held(run):
+    return run(LOADS, sets={"time.steps": 1000, "output.interval": 50})
+
+
+def test_momentum_is_what_forces_and_reactions_gave(held, figure):
+    energy, history = held.energy, held.history
+    step = np.diff(history["time"])
+    kick = np.concatenate([[step[0] / 2], (step[1:] + step[:-1]) / 2, [step[-1] / 2]])
+    at = energy["step"].astype(int)
+    for axis in "xyz":
+        force = sum(history[f"{name}_force_{axis}"] for name in NAMES)
+        gained = np.cumsum(force * kick) - force * np.concatenate([step / 2, [0]])
+        error = np.abs(gained[at] - energy[f"momentum_{axis}"]).max() / np.abs(energy[f"momentum_{axis}"]).max()
+        figure(f"momentum along {axis} against the sum of forces", error, bound=rounding(5e-9 if axis == "x" else 5e-14, 1e-4),
+               why="rounding; along x at times of output the nodes of a support have just what is prescribed")
+    assert np.abs(history["hold_force_x"]).max() > 1 and not history["hold_force_y"].any()
+
+
+def test_work_of_all_is_the_external_work(held, figure):
+    history, energy = held.history, held.energy
+    work = sum(history[f"{name}_work"] for name in NAMES)[energy["step"].astype(int)]
+    scale = np.abs(history["hold_work"]).max()
+    assert scale > 1e-8
+    figure("works of loads and supports against the external work, over that of the support",
+           np.abs(work - energy["external_work"]).max() / scale, bound=rounding(3e-5, 1e-2))
+
+
+# ---- Absorbing sides ----
+
+YOUNG, POISSON, DENSITY, CELL = 200e9, 0.25, 8000.0, 1e-4
+
+
+def absorb(run, wave, cells, form="variational", mass="consistent", absorbing=True):
+    """A pulse sin^2 of so many cells, in a column of three times as many whose end absorbs."""
+    lame, shear = YOUNG * POISSON / (1 + POISSON) / (1 - 2 * POISSON), YOUNG / 2 / (1 + POISSON)
+    speed = np.sqrt((lame + 2 * shear) / DENSITY if wave == "P" else shear / DENSITY)
+    length, pulse = 3 * cells * CELL, cells * CELL
+    begin = length - 2.5 * pulse
+    axis = "z" if wave == "P" else "x"
+    phase, inside = f"pi*(z - {begin})/{pulse}", f"z > {begin} && z < {begin + pulse}"
+    velocity = f"{inside} ? sin({phase})^2 : 0"
+    whole = pulse / 2 / speed
+    way = f"z < {begin} ? {whole} : z > {begin + pulse} ? 0 : {whole} - ((z - {begin})/2 - {pulse}/(4*pi)*sin(2*{phase}))/{speed}"
+    held = {"P": [("x", "x"), ("y", "y")], "S": [("x", "z"), ("y", "z"), ("y", "y")]}[wave]
+    boundary = [{"set": side + end, "component": component, "velocity": 0} for side, component in held for end in "-+"]
+    law = {"law": "none", "form": form, **({"beta_s": 2} if form != "continuous" else {})}
+    sets = {"mesh": {"cells": [1, 1, 3 * cells], "size": [CELL, CELL, length]}, "mass": mass, "interface": law,
+            "material": {"model": "linear-elastic", "young": YOUNG, "poisson": POISSON, "density": DENSITY},
+            "boundary": [*boundary, *([{"set": "z+", "absorbing": True}] if absorbing else [])],
+            "initial": {"velocity": {axis: velocity}, "displacement": {axis: way}}, "time": {"end": 3 * pulse / speed, "safety": 0.9},
+            "output": {"fields": [], "probes": [{"name": "p", "at": [CELL / 3, CELL / 3, length - pulse]}]}}
+    done = run(example("spall.yaml"), sets=sets)
+    time, signal = done.history["time"], np.abs(done.history[f"p_v{axis}"])
+    left = signal[time > 1.8 * pulse / speed].max()  # the pulse has passed the probe; what comes back has not yet
+    return done, left / signal.max()
+
+
+@pytest.mark.parametrize("wave, cells, form, mass, bound", [
+    ("P", 10, "variational", "consistent", 0.008), ("S", 10, "variational", "consistent", 0.009),
+    # the lumped mass leaves a wake of its own behind the pulse
+    ("P", 20, "variational", "lumped", 0.009), ("S", 20, "continuous", "lumped", 0.006)])
+def test_a_plane_wave_leaves(run, figure, wave, cells, form, mass, bound):
+    done, left = absorb(run, wave, cells, form, mass)
+    what = f"{wave} wave of {cells} elements, form {form}, mass {mass}"
+    figure(f"{what}: left of its amplitude by an absorbing side", left, bound=bound)
+    energy = done.energy
+    error = np.abs(energy["total"] - energy["total"][0]).max() / energy["total"][0]
+    figure(f"{what}: energy error with what is radiated", error, bound=rounding(1e-5, 1e-4), why="the lumped mass is the worst; as the time integration has it")
+    assert energy["radiated"][-1] > 0.99 * energy["total"][0] and (np.diff(energy["radiated"]) > -1e-9 * energy["total"][0]).all()
+
+
+def test_the_step_stays(run):
+    free, absorbing = (absorb(run, "P", 10, absorbing=absorbing)[0].summary for absorbing in (False, True))
+    assert free["dt_first"] == absorbing["dt_first"]
+
+
+def test_a_block_with_all_sides_absorbing_comes_to_rest(run, figure):
+    """Edges and corners, where elements have two and three damped faces; a prescribed side and a load beside them."""
+    sides = [{"set": side, "absorbing": True} for side in ("x-", "x+", "y-", "z-", "z+")]
+    sets = {"boundary": [*sides, {"set": "y+", "component": "x", "velocity": 0}], "time.steps": 1500,
+            "loads": [{"set": "y+", "traction": {"x": 2e7, "y": "t < 3e-7 ? -1e8 : 0"}, "until": 4e-7}], "output.interval": 20,
+            "material.model": "linear-elastic"}
+    for form, mass in (("variational", "consistent"), ("continuous", "lumped")):
+        law = {"form": form, "law": "none", **({"beta_s": 2} if form == "variational" else {})}
+        energy = run(LOADS, sets={**sets, "interface": law, "mass": mass}).energy
+        stored = energy["kinetic"] + energy["bulk"]
+        assert stored[-1] < 1e-3 * stored.max() and (np.diff(energy["radiated"]) > -1e-6 * stored.max()).all()
+        figure(f"block with absorbing sides, form {form}: energy error over what is radiated",
+               np.abs(energy["total"] - energy["total"][0]).max() / energy["radiated"][-1], bound=rounding(2e-12, 1e-4),
+               why=ROUNDING)
+
+
+def test_a_side_without_faces_is_refused(tmp_path):
+    case = tmp_path / "none.yaml"
+    case.write_text("mesh: {cells: [1, 1, 1], size: [1, 1, 1]}\nmaterial: {model: neo-hookean, young: 1, poisson: 0, density: 1}\n"
+                    "interface: {law: none}\ntime: {end: 1}\nloads: [{where: z > 2, pressure: 1}]\n")
+    told = launch("check", case)
+    assert told.returncode == 2 and told.stderr.endswith("loads[0]: no face of the surface is in it, where: z > 2\n")
