@@ -36,7 +36,7 @@ RG_INLINE rg_vec contact_pressure(const interface *s, const point_opening *o) {
     rg_vec depth = rg_max(-o->normal, rg_splat(0.0)), pressure = s->contact * depth;
     if (s->args->law.contact == RG_CONTACT_POTENTIAL) { /* -dE/dw_n */
         rg_vec root = facing_root(s, o);
-        rg_vec fading = 2.0 * DEPTHS * depth * depth / rg_max(s->area, rg_splat(RG_NO_AREA));
+        rg_vec fading = rg_splat(2.0 * DEPTHS) * depth * depth / rg_max(s->area, rg_splat(RG_NO_AREA));
         pressure *= root * rg_max(root - fading, rg_splat(0.0));
     }
     return pressure;
