@@ -44,7 +44,7 @@ RG_INLINE void turn_with_frame(int q, vec3 g[2], const surface_frame *f, const r
     for (int c = 0; c < 3; c++) {
         v[c] = -o->normal * (drag[0] * f->along[0][c] + drag[1] * f->along[1][c]) -
                spin * f->rise * f->along[1][c];
-        rg_vec end = rg_select(broken, rg_splat(-0.5 * p->weight) * spin * f->along[1][c], rg_splat(0.0));
+        rg_vec end = rg_select(broken, rg_splat(-0.5) * p->weight * spin * f->along[1][c], rg_splat(0.0));
         turn[1][c] += end;
         turn[0][c] -= end;
     }
