@@ -7,51 +7,53 @@ import fnmatch
 
 ROOMS = {
     "kernels": (["kernels/*"],
-                """kernels interface tile_faces reference laws friction viscosity elastic j2 bulk_history deshpande_evans
-                deshpande_evans_kernel cost_model material step test_invariance.py test_contact.py test_friction.py test_viscosity.py
-                test_laws.py test_ceramic.py test_solids.py test_ledger.py test_spall.py"""),
+                """kernels mixed_mode interface tile_faces reference laws friction viscosity elastic j2 bulk_history
+                deshpande_evans deshpande_evans_kernel cost_model material step test_invariance.py test_contact.py
+                test_friction.py test_viscosity.py test_laws.py test_ceramic.py test_solids.py test_ledger.py
+                test_spall.py"""),
     "mesh/import": (["src/mesh/import/*"],
                     """frame gmsh_errors inp inp_nodes inp_sets inp_split import vtk sets mesh mesh_file mesh_command
-                    fuzz-inp fuzz-vtk test_abaqus.py
-                    test_gmsh.py test_mesh_faults.py test_meshes.py"""),
+                    fuzz-inp fuzz-vtk test_abaqus.py test_gmsh.py test_mesh_faults.py test_meshes.py"""),
     "mesh/improve": (["src/mesh/improve/*"], "improve test_meshes.py"),
     "mesh": (["src/mesh/*"],
              """sets mesh mesh_check mesh_command mesh_damage mesh_info mesh_file tiles part part_read domain
-             fuzz-mesh test_mesh_faults.py test_meshes.py test_invariance.py
-             test_partition.py test_cli.py"""),
+             fuzz-mesh test_mesh_faults.py test_meshes.py test_invariance.py test_partition.py test_cli.py"""),
     "partition": (["src/partition/*"],
-                  """tiles part part_read patch material materials material_map spectrum step verify test_mesh_faults.py test_bimaterials.py test_partition.py test_meshes.py
-                  test_cli.py test_continuous.py test_parallel.py"""),
+                  """tiles part part_read patch material materials material_map spectrum step verify
+                  test_mesh_faults.py test_bimaterials.py test_partition.py test_meshes.py test_cli.py
+                  test_continuous.py test_parallel.py"""),
     "domain": (["src/domain/*"],
-               """domain assembly slab patch step spectrum fragment verify fragment_twin ledger snapshot test_invariance.py
-               test_contact.py test_bodies.py test_continuous.py test_fragments.py test_solids.py test_bimaterials.py
-               test_ledger.py test_spall.py test_parallel.py"""),
+               """domain assembly slab patch step spectrum fragment verify fragment_twin ledger snapshot
+               test_invariance.py test_contact.py test_bodies.py test_continuous.py test_fragments.py
+               test_solids.py test_bimaterials.py test_ledger.py test_spall.py test_parallel.py"""),
     "solver": (["src/solver/*"],
-               """step spectrum body checkpoint step_limiter strength patch material verify case checkpoint_file ledger snapshot
-               test_invariance.py test_contact.py
-               test_friction.py test_viscosity.py test_bodies.py test_output.py test_continuous.py test_ceramic.py
-               test_laws.py test_ledger.py test_spall.py test_solids.py test_waves.py test_bimaterials.py
-               test_fragments.py test_impact.py test_partition.py test_parallel.py test_restart.py"""),
+               """step spectrum body load mixed_mode checkpoint step_limiter strength patch material verify case
+               checkpoint_file ledger snapshot test_invariance.py test_contact.py test_friction.py
+               test_viscosity.py test_bodies.py test_output.py test_continuous.py test_ceramic.py test_laws.py
+               test_ledger.py test_spall.py test_solids.py test_waves.py test_bimaterials.py test_fragments.py
+               test_impact.py test_partition.py test_parallel.py test_restart.py"""),
     "diagnostics": (["src/diagnostics/*"],
-                    """step fragment fragment_table fragment_twin ledger probe verify test_output.py test_invariance.py
-                    test_friction.py test_viscosity.py test_bodies.py test_ceramic.py test_fragments.py test_ledger.py
-                    test_spall.py test_faults.py test_bimaterials.py test_cli.py test_impact.py test_parallel.py
-                    test_restart.py"""),
+                    """step exact_sum fragment fragment_table fragment_twin ledger probe verify test_output.py
+                    test_invariance.py test_friction.py test_viscosity.py test_bodies.py test_ceramic.py
+                    test_fragments.py test_ledger.py test_spall.py test_faults.py test_bimaterials.py test_cli.py
+                    test_impact.py test_parallel.py test_restart.py"""),
     "output": (["src/output/*"],
-               """writer slab estimate progress snapshot summary xdmf test_output.py test_invariance.py test_spall.py
-               test_cli.py test_bimaterials.py test_fragments.py test_faults.py test_parallel.py test_restart.py"""),
+               """writer slab estimate fragment_table progress snapshot summary xdmf test_output.py test_invariance.py
+               test_spall.py test_cli.py test_bimaterials.py test_fragments.py test_faults.py test_parallel.py
+               test_restart.py"""),
     "restart": (["src/restart/*"],
-                """checksum slab schedule restart checkpoint checkpoint_file fuzz-checkpoint test_output.py test_faults.py
-                test_cli.py test_restart.py test_partition.py"""),
+                """checksum slab schedule restart checkpoint checkpoint_file fuzz-checkpoint test_output.py
+                test_faults.py test_cli.py test_restart.py test_partition.py"""),
     "verify": (["src/verify/*"], "verify test_verify.py"),
     "case": (["src/case/*"],
-             """case case_text case_echo case_ranges case_rules case_values case_mistakes keys expressions numbers strength fuzz-case
-             test_keys.py test_output.py test_laws.py test_bodies.py test_cli.py
+             """case tables load case_text case_echo case_ranges case_rules case_values case_mistakes keys expressions
+             numbers strength fuzz-case test_keys.py test_output.py test_laws.py test_bodies.py test_cli.py
              test_bimaterials.py test_continuous.py test_restart.py"""),
     "base": (["src/*"],
-             """numbers exchange files interrupt run mesh_command h5_parallel rebalance slab checksum writer fragment verify
-             checkpoint_file fragment_table fragment_twin ledger probe summary test_keys.py test_output.py test_mesh_faults.py test_faults.py test_cli.py
-             test_fragments.py test_meshes.py test_partition.py test_restart.py"""),
+             """numbers mem exact_sum exchange files interrupt run mesh_command h5_parallel rebalance slab checksum
+             writer fragment verify checkpoint_file fragment_table fragment_twin ledger probe summary test_keys.py
+             test_output.py test_mesh_faults.py test_faults.py test_cli.py test_fragments.py test_meshes.py
+             test_partition.py test_restart.py"""),
     "plot": (["bench/plot", "bench/drawing.py", "bench/theory.py", "bench/rhegma.py",
               "bench/page.py"],
              "test_plot.py test_page.py test_bench_modules.py test_plot_impact.py test_studies.py test_scripts.py"),

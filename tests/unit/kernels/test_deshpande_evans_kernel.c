@@ -1,6 +1,6 @@
 /* The vector functions of the Deshpande-Evans ceramic, on every instruction set: exponentials and the matrix
- * logarithm to rounding, a million states against the scalar reference, and what must hold exactly of a lane.
- */
+ * logarithm to rounding, two hundred thousand states against the scalar reference, and what must hold exactly
+ * of a lane. */
 #include <stdarg.h>
 #include <stddef.h>
 #include <setjmp.h>
@@ -145,9 +145,9 @@ static void test_hencky(void **state) {
 
 /* ---- Against the reference ---- */
 
-enum { CHUNK = 20000, CHUNKS = 50 };
+enum { CHUNK = 20000, CHUNKS = 10 };
 
-/* What the states were, so that a test of a million equal ones cannot pass. */
+/* What the states were, so that a test of many equal ones cannot pass. */
 typedef struct {
     size_t regime[4], moved; /* after the step; changed by it */
     size_t near, flow_slow, flow_fast, virgin_flow, euler, panels, saturated, still;
@@ -245,7 +245,7 @@ static void check_census(const census *c) {
                              c->near,      c->flow_slow, c->flow_fast, c->virgin_flow,
                              c->euler,     c->panels,    c->saturated, c->still};
     for (size_t k = 0; k < sizeof counts / sizeof *counts; k++)
-        assert_true(counts[k] >= 5000);
+        assert_true(counts[k] >= 1000);
 }
 
 static void test_against_reference(void **state) {
@@ -263,7 +263,8 @@ static void test_against_reference(void **state) {
         print_message("# %s: P %.1e, X %.1e, ep %.1e, Cp^-1 %.1e, stiffening %.1e, energy %.1e\n",
                       sets[s].name, w->P, w->growth, w->ep, w->flow, w->stiffening, w->energy);
         assert_true(w->P < 1e-9 && w->energy < 1e-9 && w->stiffening < 1e-10);
-        /* near the arrest of a crack its rate is sensitive to the last digits of the strain */
+        /* near the arrest of a crack its rate is sensitive to the last digits of the strain: 1.2e-9 among a
+         * million states */
         assert_true(w->growth < 1e-8 && w->coarse < CHUNK * CHUNKS / 10000);
         /* RG_DE_NO_FLOW, where one flows and the other does not */
         assert_true(w->ep < 1.5 * RG_DE_NO_FLOW && w->flow < 3 * RG_DE_NO_FLOW);

@@ -511,12 +511,12 @@ static void check_partition(const rg_mesh *m, int tile, int parts) {
 
 static void test_partition_balance(void **state) {
     (void)state;
-    const int64_t n[3] = {12, 14, 16};
+    const int64_t n[3] = {8, 9, 10};
     const double origin[3] = {0, 0, 0}, size[3] = {1, 1, 1};
     rg_mesh *m = rg_mesh_box(n, origin, size, 0, 0);
-    const int tiles[] = {1, 8, 40, rg_tile_elements(m->elements)};
+    const int tiles[] = {8, 40};
     for (size_t k = 0; k < sizeof tiles / sizeof tiles[0]; k++) {
-        for (int parts = 1; parts <= 16; parts += parts < 4 ? 1 : 4) {
+        for (int parts = 1; parts <= 8; parts += parts < 4 ? 1 : 4) {
             check_partition(m, tiles[k], parts);
         }
     }

@@ -180,7 +180,7 @@ static void test_slabs(void **state) {
     int64_t tiles = rg_mesh_file_header(f)->tiles;
     assert_int_equal(tiles, TILES);
     for (int64_t begin = 0; begin < tiles; begin++) {
-        for (int64_t end = begin; end <= tiles; end++) {
+        for (int64_t end = begin; end <= tiles; end += 1 + (end - begin) / 8) {
             rg_input_errors input_errors = {.name = path};
             rg_mesh_slab *s = rg_mesh_file_slab(f, begin, end, &input_errors);
             assert_int_equal(input_errors.count, 0);
@@ -310,14 +310,14 @@ static void test_truncated(void **state) {
 
 /* A flipped bit is refused with a message that names the file, or it changes nothing. */
 static void test_flipped(void **state) {
-    enum { TRIES = 600 };
+    enum { TRIES = 150 };
     size_t size;
     char *bytes = load(&size), said[600];
     int refused = 0;
     expected = *state;
     for (int i = 0; i < TRIES; i++) { /* the header densely, the rest at random */
         uint64_t h = rg_hash(1, (uint64_t)i);
-        size_t at = i < TRIES / 3 ? (size_t)i * 4 % size : h % size;
+        size_t at = i < TRIES / 2 ? (size_t)i * 11 % size : h % size;
         char good = bytes[at];
         bytes[at] = (char)(good ^ (1 << (h >> 40) % 8));
         store(bytes, size);
