@@ -91,6 +91,7 @@ typedef struct {
     double opening;  /* delta_c (m) */
     double beta;     /* weight of shear, in the criterion (5.3) and in the law; 0: normal only (5.17) */
     rg_form form;    /* intrinsic: every point is broken from the start and takes the total jump */
+    rg_criterion criterion; /* mohr-coulomb: with Coulomb's friction and a conserving activation */
     rg_activation activation;
     double onset;  /* conserving activation: opening from which the law starts, in units as RG_ONSET's */
     double beta_s; /* of the penalty; likewise read by it alone */
@@ -125,7 +126,8 @@ typedef struct {
     uint8_t *active;   /* [block] in/out: not 0 where some lane of the block has a broken point */
     rg_real *crack;    /* crack state, in/out */
     size_t crack_stride; /* values from one block's crack state to the next: RG_CRACK_BLOCK, the memory of the
-                            law and, with Coulomb's friction, RG_FRICTION_BLOCK; or 0 to share one */
+                            law, with Mohr and Coulomb's criterion RG_LOAN_BLOCK and with Coulomb's friction
+                            RG_FRICTION_BLOCK; or 0 to share one */
     rg_real *force;      /* out: g, nodal force on the minus side (N) */
     rg_real *turn;       /* out, of contact as a potential and only of broken faces: nodal force on either
                             side (N), laid out as `force` */

@@ -21,7 +21,8 @@
  *   interface geometry              [interface block][RG_IGEOM][lane]
  *   interface nodal force           [interface block][6 nodes][3][lane]
  *   crack state                     [interface block]: [6 points][RG_CRACK][lane], then
- *                                   [6 points][memory of the law][lane], then, with friction,
+ *                                   [6 points][memory of the law][lane], then, with Mohr and Coulomb's
+ *                                   criterion, [6 points][lane], lent at the switch (J), then, with friction,
  *                                   [6 points][RG_FRICTION][lane]
  *   ghost traces                    [tile face block][6 nodes][3][lane]
  *   trace rows, traction rows       [row][6 nodes][3], [row][3 corners][3]
@@ -110,6 +111,7 @@ enum { /* values per row, and per block */
        RG_IFORCE_BLOCK = RG_IFORCE_ROW * RG_LANES,
        RG_CRACK_BLOCK = RG_POINTS * RG_CRACK * RG_LANES,
        RG_FRICTION_BLOCK = RG_POINTS * RG_FRICTION * RG_LANES,
+       RG_LOAN_BLOCK = RG_POINTS * RG_LANES,
        RG_TRACE_ROW = RG_FNODES * 3,
        RG_TILE_FACE_ROW = RG_FCORNERS * 3, /* tractions of one face */
        RG_GHOST_BLOCK = RG_TRACE_ROW * RG_LANES,
@@ -155,6 +157,12 @@ static inline size_t rg_crack_index(size_t i, int q, int k) {
 /* Index of value k of friction at point q of interface i, in crack state of `stride` values a block. */
 static inline size_t rg_friction_index(size_t i, int q, int k, size_t stride) {
     return (i / RG_LANES + 1) * stride - RG_FRICTION_BLOCK + (size_t)(q * RG_FRICTION + k) * RG_LANES +
+           i % RG_LANES;
+}
+
+/* Likewise of what was lent to point q, where friction follows it. */
+static inline size_t rg_loan_index(size_t i, int q, size_t stride) {
+    return (i / RG_LANES + 1) * stride - RG_FRICTION_BLOCK - RG_LOAN_BLOCK + (size_t)q * RG_LANES +
            i % RG_LANES;
 }
 

@@ -13,6 +13,10 @@ typedef enum { RG_GRADIENT_OWN, RG_GRADIENT_LIFTED } rg_gradient;
 /* A_N of the interior penalty (2): the acoustic tensor at rest, or (lambda + 2 mu) I. */
 typedef enum { RG_PENALTY_ELASTIC, RG_PENALTY_ISOTROPIC } rg_penalty;
 
+/* When a point breaks (6): by the quadratic criterion of tension and shear; or by that, where pressure adds
+ * its friction to the strength of shear. */
+typedef enum { RG_CRITERION_QUADRATIC, RG_CRITERION_MOHR_COULOMB } rg_criterion;
+
 /* What the opening of a point is when it switches to its law (6). */
 typedef enum { RG_ACTIVATION_CONTINUOUS, RG_ACTIVATION_TOTAL, RG_ACTIVATION_CONSERVING } rg_activation;
 enum { RG_ACTIVATIONS = 3 };

@@ -39,6 +39,10 @@ RG_INLINE rg_real *friction_state(const interface *s, int q, int k) {
     return s->args->crack + rg_friction_index(s->block * RG_LANES, q, k, s->args->crack_stride) + s->lane;
 }
 
+RG_INLINE rg_real *loan_state(const interface *s, int q) {
+    return s->args->crack + rg_loan_index(s->block * RG_LANES, q, s->args->crack_stride) + s->lane;
+}
+
 /* Strength (k = 0) or critical opening (k = 1) of these faces, over that of the law. */
 RG_INLINE rg_vec scale(const interface *s, int k) {
     return rg_load(s->args->scale + (s->block * 2 + (size_t)k) * RG_LANES + s->lane);

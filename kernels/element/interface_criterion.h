@@ -4,6 +4,7 @@
 #define RG_INTERFACE_CRITERION_H
 
 #include "cohesive/conserving.h"
+#include "cohesive/friction.h"
 #include "element/interface_crack.h"
 
 /* The Piola traction below which a point is not tested: half the strength, as an area-weighted square. */
@@ -29,7 +30,28 @@ RG_INLINE bool any_to_test(const interface *s) {
     return rg_any(largest > bound);
 }
 
-/* Cauchy traction t of a point: its shear tau, its tension <t_n>, and what of both meets the strength. */
+/* Whether pressure adds its friction to the strength of shear (Mohr and Coulomb). */
+RG_INLINE bool is_frictional(const interface *s) {
+    return s->args->law.criterion == RG_CRITERION_MOHR_COULOMB;
+}
+
+/* The part h of the traction (N) that friction holds: along tau, mu p of it, or all that there is; p is the
+ * pressure. */
+RG_INLINE void held_by_friction(const interface *s, int q, const vec3 n, vec3 held) {
+    rg_vec along = rg_dot(s->mean[q], n), zero = rg_splat(0.0);
+    for (int c = 0; c < 3; c++) {
+        held[c] = s->mean[q][c] - along * n[c];
+    }
+    rg_vec most = of_face(s, s->args->friction, s->args->law.friction) * rg_max(-along, zero);
+    rg_vec share = most / rg_max(rg_sqrt(rg_dot(held, held)), rg_splat(RG_FORCE_FLOOR));
+    share = rg_min(share, rg_splat(1.0));
+    for (int c = 0; c < 3; c++) {
+        held[c] *= share;
+    }
+}
+
+/* Cauchy traction t of a point: its shear tau, less what friction holds of it, its tension <t_n>, and what of
+ * both meets the strength. */
 typedef struct {
     vec3 tau;
     rg_vec tension, shear; /* shear: weight of tau, 1/beta^2 (beta = 0: 0) */
@@ -54,6 +76,13 @@ RG_INLINE void cauchy_traction(const interface *s, int q, const vec3 n, rg_vec a
     t->tension = rg_max(tn, rg_splat(0.0));
     for (int c = 0; c < 3; c++) {
         t->tau[c] = all[c] - tn * n[c];
+    }
+    if (is_frictional(s)) {
+        vec3 held;
+        held_by_friction(s, q, n, held);
+        for (int c = 0; c < 3; c++) {
+            t->tau[c] -= held[c] / rg_max(area, rg_splat(RG_NO_AREA));
+        }
     }
     t->effective = rg_sqrt(t->tension * t->tension + t->shear * rg_dot(t->tau, t->tau));
 }
@@ -106,7 +135,9 @@ RG_INLINE rg_vec point_onset(const interface *s, int q, rg_activation activation
  *   continuous  [u] - ([u]_s - eps d), d = (tau/beta^2 + <t_n> n)/sigma_s along the traction: so that the
  *               cohesive traction continues the one at the switch in direction and size (Papoulia et al.)
  *   conserving  [u] - ([u]_s - delta_0 d - w_p n), of which d_0 is damage already and w_p what contact is
- *               pressed by, so that pressure goes on, too (cohesive/conserving.h) */
+ *               pressed by, so that pressure goes on, too (cohesive/conserving.h)
+ * With Mohr and Coulomb's criterion d_0 is not made smaller by what contact and the springs of friction begin
+ * with, or the traction would fall where the pressure is high: that is lent, and booked. */
 RG_INLINE void activate(const interface *s, int q, const vec3 n, const cauchy *t, rg_mask now,
                         rg_activation activation, int mixed) {
     if (mixed > 0) {
@@ -117,7 +148,13 @@ RG_INLINE void activate(const interface *s, int q, const vec3 n, const cauchy *t
     rg_vec start = onset(s, activation), first = start, pressed = rg_splat(0.0);
     if (activation == RG_ACTIVATION_CONSERVING) {
         pressed = pressed_at_switch(s, q, n);
-        rg_vec given = given_free(s, q, pressed);
+        rg_vec given = given_free(s, q, is_frictional(s) ? rg_splat(0.0) : pressed);
+        if (is_frictional(s)) {
+            vec3 held;
+            held_by_friction(s, q, n, held);
+            store_where(loan_state(s, q), now,
+                        0.5 * (s->contact * pressed * pressed + rg_dot(held, held) / s->pen_iso));
+        }
         store_where(crack_state(s, q, RG_CRACK_GIVEN), now, given);
         start = rg_conserving_onset(given, start);
         first = rg_conserving_first(given, critical_opening(s, q, mixed));

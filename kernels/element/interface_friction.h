@@ -5,6 +5,7 @@
 
 #include "cohesive/friction.h"
 #include "element/interface_contact.h"
+#include "element/interface_criterion.h"
 
 /* Tangents of the deformed mid-surface at a point of normal n: along the chord from corner 0 to 1, and across
  * it. */
@@ -51,9 +52,13 @@ RG_INLINE void turn_with_frame(int q, vec3 g[2], const surface_frame *f, const r
     add_turn_along(q, g, v, rg_splat(1.0), broken, turn);
 }
 
-/* mu D p of a point (N); 0 where it is open, or broke in this very state. */
+/* mu D p of a point (N); 0 where it is open, or broke in this very state. With Mohr and Coulomb's criterion
+ * mu p, from the first state on: it is what that adds to the strength. */
 RG_INLINE rg_vec friction_limit(const interface *s, int q, const point_opening *o, rg_mask broken_before) {
     const rg_cohesive *law = &s->args->law;
+    if (is_frictional(s)) {
+        return of_face(s, s->args->friction, law->friction) * contact_pressure(s, o);
+    }
     rg_vec damage = rg_splat(1.0);
     if (law->separation > 0) {
         damage = rg_min(
@@ -64,7 +69,19 @@ RG_INLINE rg_vec friction_limit(const interface *s, int q, const point_opening *
                      rg_splat(0.0));
 }
 
-/* The elastic predictor and the return to |t_t| <= mu D p (cohesive/friction.h). */
+/* Springs of points that break now hold what friction held of the traction, so that it goes on. */
+RG_INLINE void load_springs(const interface *s, int q, const vec3 n, const surface_frame *f,
+                            const rg_friction_point *p, rg_mask now, rg_vec state[RG_FRICTION]) {
+    vec3 held;
+    held_by_friction(s, q, n, held);
+    for (int k = 0; k < 2; k++) {
+        rg_vec stretch = rg_dot(held, f->along[k]) / p->stiffness;
+        state[RG_FRICTION_STRETCH + k] = rg_select(now, stretch, state[RG_FRICTION_STRETCH + k]);
+        state[RG_FRICTION_ANCHOR + k] = rg_select(now, p->slip[k] - stretch, state[RG_FRICTION_ANCHOR + k]);
+    }
+}
+
+/* The elastic predictor and the return to the limit (cohesive/friction.h). */
 RG_INLINE void add_coulomb(interface *s, int q, vec3 g[2], const vec3 n, const point_opening *o,
                            rg_mask broken, rg_mask now, vec3 turn[RG_FNODES]) {
     surface_frame f;
@@ -76,6 +93,9 @@ RG_INLINE void add_coulomb(interface *s, int q, vec3 g[2], const vec3 n, const p
                            .weight = rg_splat(rg_tri[q / 3].weight)};
     for (int k = 0; k < RG_FRICTION; k++) {
         state[k] = rg_load(friction_state(s, q, k));
+    }
+    if (is_frictional(s) && rg_any(now)) {
+        load_springs(s, q, n, &f, &p, now, state);
     }
     rg_friction_return(&p, state, drag);
     for (int k = 0; k < RG_FRICTION; k++) {

@@ -97,11 +97,12 @@ RG_INLINE void cohesive_energy(const interface *s, int q, const point_opening *o
     }
 }
 
-/* What came free where a point broke by a conserving activation beyond what its law can take (J, of the whole
- * face). */
+/* What came free where a point broke by a conserving activation beyond what its law can take, less what was
+ * lent to it (J, of the whole face). */
 RG_INLINE rg_vec unresolved_energy(const interface *s, int q, int mixed) {
     rg_vec given = rg_load(crack_state(s, q, RG_CRACK_GIVEN));
-    return s->area * s->strength * rg_conserving_unresolved(given, critical_opening(s, q, mixed));
+    rg_vec beyond = s->area * s->strength * rg_conserving_unresolved(given, critical_opening(s, q, mixed));
+    return is_frictional(s) ? beyond - rg_load(loan_state(s, q)) : beyond;
 }
 
 #endif

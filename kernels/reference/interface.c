@@ -9,6 +9,7 @@
 typedef struct {
     double strength, opening, contact; /* of the law here; stiffness of closed points, area-weighted */
     double beta, friction;
+    double held[3]; /* part of the traction that friction holds, by Mohr and Coulomb, area-weighted */
     double weight, shape[RG_FNODES];
     double area, iso, norm; /* reference area and the two penalty factors, area-weighted */
     double jump[3];
@@ -28,7 +29,7 @@ typedef struct {
 
 /* Crack state of a point, the memory of its law, and its friction. */
 typedef struct {
-    rg_real *state[RG_CRACK], *memory[RG_LAW_MEMORY], *friction[RG_FRICTION];
+    rg_real *state[RG_CRACK], *memory[RG_LAW_MEMORY], *friction[RG_FRICTION], *loan;
 } crack;
 
 /* Whether side k of interface i is what `side[0]` names: the minus side, or the own one of a tile-boundary
@@ -144,7 +145,9 @@ static void sample_traction(const rg_interface_args *args, size_t i, int q, poin
 static crack crack_of(const rg_interface_args *args, size_t i, int q) {
     rg_real *block = args->crack + i / RG_LANES * args->crack_stride;
     int memory = rg_law_facts_of(args->law.law, args->law.shape, args->law.beta).memory;
-    crack found = {{NULL}, {NULL}, {NULL}};
+    crack found = {{NULL}, {NULL}, {NULL}, NULL};
+    if (args->law.criterion == RG_CRITERION_MOHR_COULOMB)
+        found.loan = args->crack + rg_loan_index(i, q, args->crack_stride);
     for (int k = 0; k < RG_CRACK; k++)
         found.state[k] = block + rg_crack_index(i % RG_LANES, q, k);
     for (int m = 0; m < memory; m++)
@@ -157,7 +160,7 @@ static crack crack_of(const rg_interface_args *args, size_t i, int q) {
 /* ---- 1. Criterion (5.3, 5.17), and the opening with which a point that breaks starts ---- */
 
 /* Whether an unbroken point breaks now; if so, `direction` is that of its first opening. */
-static bool breaks(const rg_cohesive *law, const point *p, double direction[3]) {
+static bool breaks(const rg_cohesive *law, point *p, double direction[3]) {
     double beta2 = p->beta * p->beta, shear[3];
     double weight = p->beta > 0 ? fmax(1, 1 / beta2) : 1;
     double limit = p->strength * p->area;
@@ -169,6 +172,11 @@ static bool breaks(const rg_cohesive *law, const point *p, double direction[3]) 
     double pull = fmax(0, across);
     for (int c = 0; c < 3; c++)
         shear[c] = p->traction[c] / p->current - across * p->normal[c];
+    double sheared = sqrt(rg_reference_dot(shear, shear)), friction = p->friction * fmax(0, -across);
+    for (int c = 0; c < 3 && law->criterion == RG_CRITERION_MOHR_COULOMB && sheared > 0; c++) {
+        p->held[c] = p->current * shear[c] * fmin(1, friction / sheared);
+        shear[c] -= p->held[c] / p->current;
+    }
     double effective = pull;
     if (p->beta > 0)
         effective = sqrt(pull * pull + rg_reference_dot(shear, shear) / beta2);
@@ -224,7 +232,11 @@ static void activate(const rg_interface_args *args, const point *p, const double
     double end = critical_opening(&args->law, p, k);
     if (args->law.activation == RG_ACTIVATION_CONSERVING) {
         pressed = fmin(0, rg_reference_dot(p->traction, p->normal)) / p->contact;
-        double given = given_free(&args->law, p, pressed);
+        bool lends = args->law.criterion == RG_CRITERION_MOHR_COULOMB;
+        double given = given_free(&args->law, p, lends ? 0 : pressed);
+        if (lends)
+            *k->loan =
+                (rg_real)((p->contact * pressed * pressed + rg_reference_dot(p->held, p->held) / p->iso) / 2);
         double left = sqrt(fmax(0, 1 - 2 * fmax(0, given) / end)); /* of the strength */
         first = fmax(RG_REFERENCE_NOTHING, end * (1 - left));
         double eps = fmax(start, -2 * given);
@@ -434,9 +446,15 @@ static void add_coulomb(const rg_interface_args *args, size_t i, const point *p,
     sample_tangents(chord, p, tangent);
     double parts = critical_opening(law, p, k) * (law->separation / law->opening);
     double damage = parts > 0 ? fmin(1, *k->state[RG_CRACK_OPENING] / parts) : 1;
-    double limit = fresh || o->normal >= 0 ? 0 : p->friction * damage * pressure_of(law, p, o);
+    bool all = law->criterion == RG_CRITERION_MOHR_COULOMB;
+    damage = all ? 1 : damage;
+    double limit = (fresh && !all) || o->normal >= 0 ? 0 : p->friction * damage * pressure_of(law, p, o);
     for (int d = 0; d < 2; d++) {
         slip[d] = rg_reference_dot(o->shear, tangent[d]);
+        if (fresh && all) {
+            *k->friction[RG_FRICTION_STRETCH + d] = (rg_real)(rg_reference_dot(p->held, tangent[d]) / p->iso);
+            *k->friction[RG_FRICTION_ANCHOR + d] = (rg_real)(slip[d] - *k->friction[RG_FRICTION_STRETCH + d]);
+        }
         spring[d] = p->iso * (slip[d] - *k->friction[RG_FRICTION_ANCHOR + d]);
     }
     double force = hypot(spring[0], spring[1]), part = force > limit ? limit / force : 1;
@@ -461,7 +479,7 @@ static void set_bit(uint8_t *mask, int q, bool on) {
 /* ---- The point ---- */
 
 /* Traction of point q, area-weighted; advances its state. */
-static void point_traction(const rg_interface_args *args, size_t i, int q, const point *p, double t[3],
+static void point_traction(const rg_interface_args *args, size_t i, int q, point *p, double t[3],
                            double turning[RG_FNODES][3]) {
     double direction[3] = {0, 0, 0};
     bool broken = args->broken[i] >> q & 1;
@@ -539,6 +557,8 @@ static void point_energy(const rg_interface_args *args, size_t i, int q, double 
     if (law->activation == RG_ACTIVATION_CONSERVING)
         energy[RG_E_UNRESOLVED] += p.weight * p.area * p.strength *
                                    fmax(0, *k.state[RG_CRACK_GIVEN] - critical_opening(law, &p, &k) / 2);
+    if (law->criterion == RG_CRITERION_MOHR_COULOMB)
+        energy[RG_E_UNRESOLVED] -= p.weight * *k.loan;
 }
 
 void rg_reference_interface_state(const rg_interface_state_args *args, size_t begin, size_t end) {

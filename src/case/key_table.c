@@ -70,6 +70,10 @@ static const char *const activations_meaning[] = {
     "the opening counts from the jump at the moment of breaking, so the traction is continuous in time",
     "the whole jump enters at once (the thesis's): gains energy",
     "like continuous, and so that the energy of the switch adds up, for long runs of violent breaks (form variational, contact penalty or potential; law linear, rate or benzeggagh-kenane)"};
+static const char *const criteria[] = {"quadratic", "mohr-coulomb", NULL};
+static const char *const criteria_meaning[] = {
+    "where (tension/strength)^2 + (shear/(beta strength))^2 reaches 1; pressure does not matter",
+    "the same in tension; under a pressure p where shear reaches beta strength + friction p: with activation conserving, beta and friction"};
 static const char *const contacts[] = {"penalty", "flux", "potential", NULL};
 static const char *const contacts_meaning[] = {
     "one-sided penalty on the normal opening",
@@ -176,6 +180,8 @@ static const rg_key case_keys[] = {
      CASE(interface.contact), MEANS("how closed cracks push")},
     {.name = "interface.friction", REAL, FROM(0), DEFAULT(0), GROUP(COHESIVE), CASE(interface.friction),
      MEANS("Coulomb's coefficient of closed cracks, with contact penalty or potential")},
+    {.name = "interface.criterion", EXPLAINED(criteria), ELSE("quadratic"), GROUP(SWITCH),
+     CASE(interface.criterion), MEANS("when a face breaks")},
 #define RG_LAW_PARAMETER(NAME, index, word, unit_, low_, high_, fallback_, words)                            \
     {.name = word, .unit = unit_, REAL, FROM_TO(low_, high_), DEFAULT(fallback_), GROUP(LAW),                \
      .law = RG_LAW_##NAME, CASE(interface.shape[RG_LAW_##NAME][index]), MEANS(words)},

@@ -201,6 +201,24 @@ void rg_friction_rule(rg_check *ck, const rg_node *node) {
     }
 }
 
+void rg_criterion_rule(rg_check *ck, const rg_node *node) {
+    const rg_case *c = ck->c;
+    if (c->interface.criterion != RG_CRITERION_MOHR_COULOMB || ck->usage[RG_GROUP_ONSET] == RG_UNSURE) {
+        return;
+    }
+    bool conserving = ck->usage[RG_GROUP_ONSET] == RG_USED;
+    const char *wrong =
+        !conserving ? "needs interface.activation conserving, by which pressure goes on at the switch"
+        : !(c->interface.friction > 0) ? "needs interface.friction, by which pressure adds to the strength"
+        : !(c->interface.beta > 0)
+            ? "needs interface.beta, the strength of shear without pressure over strength"
+            : NULL;
+    if (wrong != NULL) {
+        rg_subject subject = {.key = "interface.criterion", .value = node->text};
+        rg_problem_add(ck->problems, node->at, &subject, "%s", wrong);
+    }
+}
+
 void rg_mass_rule(rg_check *ck, const rg_node *node) {
     if (ck->c->interface.form != RG_FORM_CONTINUOUS) {
         return;

@@ -44,6 +44,7 @@ rg_cohesive rg_law_make(const rg_case *c) {
                        .strength = rg_law_number(c->interface.strength, c->interface.strength_at),
                        .beta = c->interface.beta,
                        .form = c->interface.form,
+                       .criterion = c->interface.criterion,
                        .activation = c->interface.activation,
                        .onset = c->interface.onset * fmax(1, c->interface.beta * c->interface.beta),
                        .beta_s = c->interface.beta_s,
@@ -72,7 +73,8 @@ double rg_law_steps(const rg_cohesive *law) {
 
 size_t rg_crack_stride(const rg_cohesive *law) {
     size_t friction = law->sliding == RG_SLIDING_COULOMB ? RG_FRICTION_BLOCK : 0;
-    return RG_CRACK_BLOCK + (size_t)facts_of(law).memory * RG_POINTS * RG_LANES + friction;
+    size_t loan = law->criterion == RG_CRITERION_MOHR_COULOMB ? RG_LOAN_BLOCK : 0;
+    return RG_CRACK_BLOCK + (size_t)facts_of(law).memory * RG_POINTS * RG_LANES + loan + friction;
 }
 
 void rg_law_start(rg_solver *s) {

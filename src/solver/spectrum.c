@@ -295,7 +295,8 @@ static rg_model linear_model(const rg_model *of, double stiffest, state which, r
     m.history_stride = m.crack_stride = 0;
     m.law.slope *= stiffest;
     m.law.opening = 1;
-    m.law.strength = 1e300;            /* never reached */
+    m.law.strength = 1e300; /* never reached */
+    m.law.criterion = RG_CRITERION_QUADRATIC;
     m.law.contact = RG_CONTACT_LINEAR; /* that of a potential too where nothing has slid */
     m.law.sliding = m.law.sliding == RG_SLIDING_FREE ? RG_SLIDING_FREE : RG_SLIDING_STUCK;
     m.law.law = RG_LAW_LINEAR; /* failed, so contact alone acts; and without memory */

@@ -128,6 +128,25 @@ def test_block_slips_above_it(run, figure):
     assert slipped.energy["friction"][-1] > 0
 
 
+PRESSED_BY, SHEAR_STRENGTH, SHEAR_RATE = 80e6, 60e6, 1600  # Pa, Pa, 1/s
+
+
+def test_block_under_pressure_breaks_where_mohr_and_coulomb_say(run, figure):
+    """A block in uniform pressure, uniformly sheared by its sides, whose middle plane alone can break."""
+    sides = [{"set": f"{c}{sign}", "component": k, "displacement": u} for c in "xyz" for sign in "-+"
+             for k, u in (("x", f"{SHEAR_RATE}*t*z"), ("y", 0), ("z", f"-{PRESSED_BY / MODULUS}*z"))]
+    block = run(CASES / "sliding.yaml", sets={
+        "mesh.cells": [2, 2, 2], "boundary": sides, "initial": {"displacement": {"z": f"-{PRESSED_BY / MODULUS}*z"}, "velocity": {"x": f"{SHEAR_RATE}*z"}},
+        "interface": {"law": "linear", "strength": SHEAR_STRENGTH / 1.5, "energy": 1e-3, "beta": 1.5, "activation": "conserving", "onset": 0.3, "beta_s": 4,
+                      "contact": "potential", "friction": 0.6, "criterion": "mohr-coulomb", "sets": [{"where": "abs(z) > 1e-6", "law": "none"}]},
+        "time": {"end": 0.8e-6, "safety": 0.5}})
+    shear = SHEAR_STRENGTH + 0.6 * PRESSED_BY
+    figure("block under pressure: shear at which it breaks", block.summary["first_fracture_time_s"] * SHEAR_RATE * MODULUS / 2e6,
+           theory=shear / 1e6, bound=0.0016, unit="MPa", relative=True)
+    figure("block under pressure: energy error over what was dissipated", block.summary["energy_error_dissipated"], bound=0.0026)
+    assert block.summary["friction_J"] > 0
+
+
 def test_friction_needs_faces_that_slide(tmp_path):
     process = launch("run", CASES / "sliding.yaml", "-q", "-o", tmp_path / "out", "--set", "interface.contact=flux")
     assert process.returncode == 2

@@ -14,7 +14,7 @@ VARIANTS = {
     "incomplete": {"interface.form": "incomplete"},
     "lumped": {"mass": "lumped"},
     "thesis": {"interface.activation": "total", "interface.contact": "flux"},
-    "conserving": {"interface.activation": "conserving"},
+    "conserving": {"interface.activation": "conserving", "interface.criterion": "mohr-coulomb", "interface.friction": 0.4},
     "isotropic": {"interface.penalty": "isotropic"},
     "friction": {"interface.friction": 0.5, "interface.contact": "potential", "interface.activation": "conserving",
                  "interface.law": "benzeggagh-kenane", "interface.strength": "4e8*(1.05 + 0.05*nx)", "interface.sets": [

@@ -123,7 +123,7 @@ def test_restart_of_less_output_on_other_ranks(run, tmp_path):
 VARIANTS = {  # test_checkpoint.c has more, on one rank
     "incomplete": {"interface.form": "incomplete", "mass": "lumped"},
     "thesis": {"interface.activation": "total", "interface.contact": "flux"},
-    "conserving": {"interface.activation": "conserving", "interface.law": "linear" if SINGLE else "rate"},
+    "conserving": {"interface.activation": "conserving", "interface.criterion": "mohr-coulomb", "interface.friction": 0.4, "interface.law": "linear" if SINGLE else "rate"},
     "intrinsic": {"interface.form": "intrinsic", "interface.law": "xu-needleman"},
     "friction": {"interface.friction": 0.5, "interface.contact": "potential", "interface.activation": "conserving",
                  "interface.law": "benzeggagh-kenane", "interface.strength": "4e8*(1.05 + 0.05*nx)", "interface.sets": [

@@ -280,6 +280,28 @@ static const mistake law_and_form[] = {
      "slide; allowed: with contact flux: 0\n"},
     {"  law: linear\n",
      "  law: linear\n"
+     "  activation: total\n"
+     "  criterion: mohr-coulomb\n",
+     ":12:14: interface.criterion: mohr-coulomb: needs interface.activation conserving, by which pressure "
+     "goes on "
+     "at the switch\n"},
+    {"  law: linear\n",
+     "  law: linear\n"
+     "  activation: conserving\n"
+     "  criterion: mohr-coulomb\n",
+     ":12:14: interface.criterion: mohr-coulomb: needs interface.friction, by which pressure adds to the "
+     "strength\n"},
+    {"  law: linear\n",
+     "  law: linear\n"
+     "  activation: conserving\n"
+     "  criterion: mohr-coulomb\n"
+     "  friction: 0.5\n"
+     "  beta: 0\n",
+     ":12:14: interface.criterion: mohr-coulomb: needs interface.beta, the strength of shear without "
+     "pressure over "
+     "strength\n"},
+    {"  law: linear\n",
+     "  law: linear\n"
      "  contact: flux\n"
      "  sets:\n"
      "    - {where: 1, law: none, strength: 3, weibull: {modulus: 3, area: 1}}\n"
@@ -510,6 +532,8 @@ static void test_good(void **state) {
     expect_good("  law: linear\n", "  law: linear\n  sets: [{where: nx, strength: 3}]\n");
     expect_good("  law: linear\n", "  law: linear\n  contact: flux\n  sets: [{where: nx, friction: 0}]\n");
     expect_good("  law: linear\n", "  law: linear\n  sets: [{where: nx, law: none}]\n");
+    expect_good("  law: linear\n",
+                "  law: linear\n  activation: conserving\n  criterion: mohr-coulomb\n  friction: 0.5\n");
     expect_good("boundary:\n", "mass: lumped\nboundary:\n");
     expect_good("  energy: 34\n", "  energy: 34\n  form: continuous\n  faces: nx\nmass: lumped\n");
     expect_good("output:\n", "output:\n  times: [0, 1e-6]\n  fields: [rank, triaxiality, material]\n");

@@ -116,9 +116,90 @@ static void test_benzeggagh_kenane(void **state) {
     assert_true(state_figure(lost));
 }
 
+/* ---- Strength that grows with pressure ---- */
+
+#define PHI   0.6 /* friction, tan(phi) */
+#define BETA  1.5
+#define SHEAR (BETA * SIGMA)
+
+/* Heat of friction, of all points. */
+static double heat_of(const point *p) {
+    double sum = 0;
+    for (int q = 0; q < RG_POINTS; q++)
+        sum += p->bench.crack[rg_friction_index(0, q, RG_FRICTION_HEAT, p->bench.args.crack_stride)];
+    return sum / AREA;
+}
+
+/* A face under pressure p holds up to c + p tan(phi) of shear and no more; it goes on with just that, slides
+ * by (1 - D) c + p tan(phi), and takes its fracture energy and p tan(phi) times what it slides. */
+static void slide(const rg_kernels *set, rg_contact contact, double pressure, figure *held, figure *slid,
+                  figure *gone) {
+    static const double none[2] = {0, 0};
+    rg_cohesive law = {.strength = SIGMA,
+                       .opening = DELTA,
+                       .separation = DELTA,
+                       .beta = BETA,
+                       .criterion = RG_CRITERION_MOHR_COULOMB,
+                       .activation = RG_ACTIVATION_CONSERVING,
+                       .onset = 0.3 * BETA * BETA,
+                       .beta_s = 4,
+                       .contact = contact,
+                       .sliding = RG_SLIDING_COULOMB,
+                       .friction = PHI};
+    point p;
+    point_make(&p, set, law);
+    double strength = SHEAR + PHI * pressure, all[2], before;
+    load(&p, (double[2]){-pressure, 0.9999 * strength}, none);
+    assert_int_equal(p.bench.broken[0], 0);
+    const double pull[2] = {-pressure, 1.0001 * strength};
+    load(&p, pull, none);
+    assert_int_equal(p.bench.broken[0], FACE_BENCH_ALL);
+    traction(&p, all);
+    raise_figure(held, all[0], -pressure, strength);
+    raise_figure(held, all[1], strength, strength);
+    double stored = energy(&p, RG_E_COHESIVE) + energy(&p, RG_E_CONTACT) + energy(&p, RG_E_UNRESOLVED);
+    raise_figure(held, stored, 0, SHEAR * SHEAR / FACE_BENCH_ISO); /* what is lent and what stores it */
+    before = all[1];
+    double work = 0, step = DELTA / BETA / STEPS, first = stored + energy(&p, RG_E_DISSIPATED);
+    for (int k = 1; k <= STEPS + 100; k++) {
+        load(&p, pull, (double[2]){0, step});
+        traction(&p, all);
+        double damage = fmin(1, (double)k / STEPS);
+        raise_figure(slid, all[1], SHEAR * (1 - damage) + PHI * pressure, strength);
+        raise_figure(slid, all[0], -pressure, strength);
+        work += 0.5 * (before + all[1]) * step;
+        before = all[1];
+    }
+    double found = energy(&p, RG_E_COHESIVE) + energy(&p, RG_E_CONTACT) + energy(&p, RG_E_UNRESOLVED) +
+                   energy(&p, RG_E_DISSIPATED) - first;
+    raise_figure(gone, energy(&p, RG_E_DISSIPATED), GC, GC);
+    double rubbed = PHI * pressure * step * (STEPS + 100);
+    raise_figure(gone, work - found, rubbed, work);
+    raise_figure(gone, heat_of(&p), rubbed, work);
+}
+
+static void test_mohr_coulomb(void **state) {
+    const rg_kernels *sets[INPUT_SETS];
+    int n = input_sets(sets, INPUT_SETS);
+    figure held = {"Mohr-Coulomb: traction and energy through the switch",
+                   .bound = sizeof(rg_real) == 8 ? 2e-12 : 1e-4, .why = ROUNDING},
+           slid = {"Mohr-Coulomb: traction of a face that slides",
+                   .bound = sizeof(rg_real) == 8 ? 2e-12 : 1e-4, .why = ROUNDING},
+           gone = {"Mohr-Coulomb: energy that sliding takes", .bound = sizeof(rg_real) == 8 ? 2e-12 : 1e-4,
+                   .why = ROUNDING};
+    (void)state;
+    for (int k = 0; k < n; k++)
+        for (int p = 0; p <= 6; p++)
+            slide(sets[k], RG_CONTACT_PENALTY, p * SIGMA, &held, &slid, &gone);
+    assert_true(state_figure(held));
+    assert_true(state_figure(slid));
+    assert_true(state_figure(gone));
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_benzeggagh_kenane),
+        cmocka_unit_test(test_mohr_coulomb),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
