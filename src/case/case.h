@@ -99,6 +99,7 @@ typedef struct {
     int names;
     char **between; /* names of the materials on both sides */
     rg_breaking breaking;
+    bool open; /* broken from the start */
     /* Numbers, or where the expression beside them is no number that: of these faces (Pa, J/m^2); without an
      * expression the interface's. */
     double strength, energy, beta, friction;

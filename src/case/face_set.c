@@ -70,6 +70,18 @@ static void check_breaking(rg_check *ck, const rg_node *item, const rg_face_set 
     }
 }
 
+/* Faces that are open have no law, only contact and friction. */
+static void check_open(rg_check *ck, const rg_node *item, const rg_face_set *set, const char *path) {
+    static const char *const keys[] = {"law",          "strength",    "energy", "beta", "weibull.modulus",
+                                       "weibull.area", "weibull.seed"};
+    for (size_t i = 0; set->open && i < sizeof keys / sizeof *keys; i++) {
+        refuse(ck, item, path, keys[i], "not used, because this set is open");
+    }
+    if (set->open && ck->c->interface.law == RG_LAW_FREE) {
+        refuse(ck, item, path, "open", "law free has no end: its faces are never without traction");
+    }
+}
+
 static void check_shear(rg_check *ck, const rg_node *item, const rg_face_set *set, const char *path) {
     char why[128];
     if (ck->usage[RG_GROUP_SHEAR] == RG_UNUSED) {
@@ -113,6 +125,7 @@ void rg_face_set_rule(rg_check *ck, const rg_node *list, int i, const char *path
     }
     if (good) {
         check_breaking(ck, item, set, path);
+        check_open(ck, item, set, path);
         check_shear(ck, item, set, path);
         check_weibull(ck, item, set, path);
     }

@@ -272,6 +272,8 @@ static const rg_key face_set_keys[] = {
      .offset_count = offsetof(rg_face_set, names), MEANS("names of the materials on both sides, or one twice; with `where` both hold")},
     {.name = "law", EXPLAINED(breakings), ELSE("interface"), .offset = offsetof(rg_face_set, breaking),
      MEANS("whether they can break")},
+    {.name = "open", .type = RG_KEY_BOOL, ELSE("false"), .offset = offsetof(rg_face_set, open),
+     MEANS("true: a crack from the start, whose faces press and rub where they are closed; nothing was dissipated there")},
     {.name = "strength", .unit = "Pa", FACE, ABOVE(0), ELSE("interface.strength"), OF_SET(strength),
      MEANS("tensile strength of these faces")},
     {.name = "energy", .unit = "J/m2", FACE, ABOVE(0), ELSE("interface.energy"), OF_SET(energy),

@@ -182,7 +182,9 @@ static void interface_energies(rg_solver *s, const rg_tile *t, const rg_workspac
         if (s->broken[i]) {
             size_t row = (i / RG_LANES - t->ibegin) * RG_E_INTERFACE + RG_E_DISSIPATED;
             share_out(sum, s, i, energy[row * RG_LANES + i % RG_LANES]);
-            add_areas(sum, s, i);
+            if (!rg_face_is_open(s, i)) {
+                add_areas(sum, s, i);
+            }
             add_friction(sum, s, i);
         }
     }
@@ -326,7 +328,7 @@ bool rg_ledger_off(const rg_ledger *l, const rg_case *c, char *why, size_t size)
 double rg_first_fracture(const rg_solver *s) {
     double first = INFINITY;
     for (size_t i = 0; i < s->domain->iblocks * RG_LANES; i++) {
-        for (int q = 0; s->broken[i] && q < RG_POINTS; q++) {
+        for (int q = 0; s->broken[i] && !rg_face_is_open(s, i) && q < RG_POINTS; q++) {
             if (rg_point_is_broken(s, i, q)) {
                 first = fmin(first, *rg_crack_value(s, i, q, RG_CRACK_TIME));
             }

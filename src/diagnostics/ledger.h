@@ -25,7 +25,7 @@ typedef struct {
     double total;       /* sum of the parts less the external work (J) */
     double error;       /* change of the total since the start, over the largest energy seen (or what
                          * rounding of F makes of the energy, if that is more: 1000 eps mu V) */
-    double broken_area; /* of the points that switched (m^2) */
+    double broken_area; /* of the points that switched, without faces open from the start (m^2) */
     double failed_area; /* of those that carry nothing any more (m^2) */
     double momentum[3], angular_momentum[3]; /* with free bodies: kg m/s, kg m^2/s about the origin */
     double spent;                            /* dissipated + plastic + damage + viscous + friction (J) */
@@ -65,7 +65,8 @@ bool rg_ledger_off(const rg_ledger *l, const rg_case *c, char *why, size_t size)
  * ranks and threads. Collective; returns &l->last. */
 const rg_energy *rg_ledger_take(rg_ledger *l, rg_solver *s);
 
-/* Time at which the first point switched (s); infinite if none has. Collective. */
+/* Time at which the first point switched (s), but for faces open from the start; infinite if none has.
+ * Collective. */
 double rg_first_fracture(const rg_solver *s);
 
 /* Columns of energy.csv, and a row of it: of more than one material, also the parts of each. */

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "cohesive/facts.h"
+#include "solver/tile.h"
 
 static rg_law_facts facts_of(const rg_cohesive *law) {
     return rg_law_facts_of(law->law, law->shape, law->beta);
@@ -77,7 +78,33 @@ size_t rg_crack_stride(const rg_cohesive *law) {
     return RG_CRACK_BLOCK + (size_t)facts_of(law).memory * RG_POINTS * RG_LANES + loan + friction;
 }
 
+/* Breaks a face whose elements are of tile t and opens it beyond full separation. */
+static void open_face(rg_solver *s, const rg_tile *t, size_t i) {
+    const rg_domain *d = s->domain;
+    double most = isfinite(s->model->law.separation) ? s->model->law.separation : 1e3 * s->model->law.opening;
+    s->broken[i] = s->unlinked[i] = (1 << RG_POINTS) - 1;
+    s->active[i / RG_LANES] = 1;
+    for (int q = 0; q < RG_POINTS; q++) {
+        *rg_crack_value(s, i, q, RG_CRACK_OPENING) = (rg_real)(2 * most);
+    }
+    for (int k = 0; k < (i < t->sbegin * RG_LANES ? 2 : 1); k++) {
+        s->cracked[t->begin + (size_t)d->side[k][i] / (RG_FACES * RG_LANES)] = 1;
+    }
+}
+
+static void open_faces(rg_solver *s) {
+    const rg_domain *d = s->domain;
+    for (size_t t = 0; t < d->tiles && s->model->scale != NULL; t++) {
+        for (size_t i = d->tile[t].ibegin * RG_LANES; i < d->tile[t].iend * RG_LANES; i++) {
+            if (rg_face_is_open(s, i)) {
+                open_face(s, &d->tile[t], i);
+            }
+        }
+    }
+}
+
 void rg_law_start(rg_solver *s) {
+    open_faces(s);
     if (s->model->law.form != RG_FORM_INTRINSIC) {
         return;
     }

@@ -11,7 +11,7 @@
 
 /* What a face has. */
 typedef struct {
-    bool breaks;
+    bool breaks, open;
     double strength, energy, beta, friction; /* before they differ at random (Pa, J/m^2) */
     double modulus, area;                    /* of Weibull's distribution (m^2); modulus 0: none */
     int64_t seed;
@@ -138,6 +138,7 @@ static properties find_properties(search *look, size_t face, const double *x[RG_
     }
     bool random = set->modulus > 0;
     return (properties){.breaks = set->breaking != RG_BREAKING_NEVER,
+                        .open = set->open,
                         .strength = value[STRENGTH],
                         .energy = value[ENERGY],
                         .beta = value[BETA],
@@ -157,12 +158,15 @@ static void apply_weibull(const properties *p, rg_keep keep, const double *x[RG_
     f->opening /= keep == RG_KEEP_ENERGY ? w : 1;
 }
 
-/* Of a face that never breaks the strength is infinite. */
+/* Of a face that never breaks the strength is infinite, of one that is open 0. */
 static factors factors_of(const search *look, const properties *p, const double *x[RG_FCORNERS],
                           double area) {
     const rg_cohesive *law = &look->s->model->law;
     if (!p->breaks) {
         return (factors){INFINITY, 1};
+    }
+    if (p->open) {
+        return (factors){0, 1};
     }
     factors f = {p->strength / law->strength,
                  look->work > 0 ? p->energy / (look->work * p->strength) / law->opening : 1};
@@ -199,7 +203,7 @@ static void fill_face(search *look, const rg_tile *t, size_t i, fields *to) {
     if (to->friction != NULL) {
         to->friction[i] = (rg_real)p.friction;
     }
-    if (p.breaks) {
+    if (p.breaks && !p.open) {
         to->stiffest = fmax(to->stiffest, f.strength / f.opening);
         to->toughness = fmin(to->toughness, p.energy / (p.strength * p.strength));
     }

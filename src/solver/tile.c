@@ -101,6 +101,10 @@ static bool is_mixed(const rg_cohesive *law) {
            (rg_law_facts_of(law->law, law->shape, law->beta).forms & RG_MIXED) != 0;
 }
 
+bool rg_face_is_open(const rg_solver *s, size_t i) {
+    return s->model->scale != NULL && !(s->model->scale[i / RG_LANES * 2 * RG_LANES + i % RG_LANES] > 0);
+}
+
 double rg_separation(const rg_solver *s, size_t i, int q) {
     const rg_real *scale =
         s->model->scale == NULL ? NULL : s->model->scale + (i / RG_LANES * 2 + 1) * RG_LANES;

@@ -69,6 +69,9 @@ static inline rg_real *rg_friction_value(const rg_solver *s, size_t i, int q, in
  * points follow theirs from the start, it is fully separated. */
 bool rg_point_is_broken(const rg_solver *s, size_t i, int q);
 
+/* Whether interface i is open from the start: it has no strength. */
+bool rg_face_is_open(const rg_solver *s, size_t i);
+
 /* Opening of full separation at point q of interface i (m), which is broken if the law is RG_MIXED. */
 double rg_separation(const rg_solver *s, size_t i, int q);
 

@@ -324,6 +324,16 @@ static const mistake law_and_form[] = {
      "number > 0, or expression in x, y, z, nx, ny, nz (Pa)\n"
      ":17:42: interface.sets[4].weibull: 3: not a mapping of keys\n"},
     {"  law: linear\n",
+     "  law: linear\n"
+     "  sets: [{where: 1, open: true, strength: 3, beta: 1, weibull: {modulus: 1, area: 1}, friction: 0.1}, "
+     "{where: 1, open: 1},\n"
+     "    {where: 1, open: false, energy: 3}]\n",
+     ":11:33: interface.sets[0].strength: 3: not used, because this set is open\n"
+     ":11:46: interface.sets[0].beta: 1: not used, because this set is open\n"
+     ":11:65: interface.sets[0].weibull.modulus: 1: not used, because this set is open\n"
+     ":11:77: interface.sets[0].weibull.area: 1: not used, because this set is open\n"
+     ":11:120: interface.sets[1].open: 1: neither true nor false; allowed: true or false\n"},
+    {"  law: linear\n",
      "  law: tvergaard\n"
      "  form: intrinsic\n"
      "  sets: [{where: 1, law: none}, {where: 1, beta: 1}]\n",

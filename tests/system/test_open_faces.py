@@ -1,0 +1,60 @@
+"""Faces that are open from the start: a free surface to tension, none to pressure. Bits on any layout and restarts, with
+fracture beside them: test_parallel.py, test_restart.py."""
+
+import numpy as np
+import pytest
+from conftest import CASES, example, launch, rounding
+
+PRESSURE = 1e8
+BAR = {
+    "mesh": {"cells": [1, 1, 40], "size": [5e-5, 5e-5, 2e-3]},
+    "material": {"model": "linear-elastic", "young": 200e9, "poisson": 0, "density": 8000},
+    "tables": {"rise": {"points": [[0, 0], [8e-8, 1]], "smooth": True}},
+    "time": {"end": 4.8e-7, "safety": 0.9}, "boundary": [], "initial": {},
+    "output": {"fields": ["crack"], "probes": [{"name": "near", "at": [2e-5, 2e-5, 0.9e-3]}, {"name": "far", "at": [2e-5, 2e-5, 1.5e-3]}]},
+}
+
+
+def bar(run, sign, contact, friction=0):
+    """A step of traction from below on a bar that is cut in the middle."""
+    crack = {"where": "abs(z - 1e-3) < 1e-6 && abs(nz) > 0.9", "open": True}
+    law = {"law": "linear", "strength": 1e10, "energy": 1e3, "beta_s": 2, "contact": contact, "friction": friction, "sets": [crack]}
+    return run(example("spall.yaml"), sets={**BAR, "interface": law,
+                                            "loads": [{"name": "push", "set": "z-", "traction": {"z": f"{sign * PRESSURE}*rise(t)"}}]})
+
+
+@pytest.mark.parametrize("contact, friction", [("penalty", 0), ("penalty", 0.3), ("potential", 0)])
+def test_pressure_passes_and_tension_does_not(run, figure, contact, friction):
+    pressed, pulled = bar(run, 1, contact, friction), bar(run, -1, contact, friction)
+    what = f"bar with an open face, contact {contact}, friction {friction}"
+    figure(f"{what}: pressure behind it", -pressed.history["far_szz"][-1], theory=PRESSURE, bound=2.5e-4, unit="Pa", relative=True)
+    figure(f"{what}: velocity of the free end that it makes in tension", -pulled.history["near_vz"][-1],
+           theory=2 * PRESSURE / (8000 * 5000), bound=5e-4, unit="m/s", relative=True)
+    assert np.abs(pulled.history["far_szz"]).max() < 1e-3 * PRESSURE > np.abs(pulled.history["near_szz"][-1])
+    for done in (pressed, pulled):
+        energy = done.energy
+        error = np.abs(energy["total"] - energy["total"][0]).max() / energy["external_work"].max()
+        figure(f"{what}: energy error", error, bound=rounding(1e-7, 1e-4), why="the worse of the two")
+        assert not energy["dissipated"].any() and not energy["broken_area"].any() and not energy["failed_area"].any()
+        assert done.summary["first_fracture_time_s"] is None
+        frame = done.frames()[-1]
+        assert frame["crack/damage"] == pytest.approx(1, abs=1e-12) and len(frame["crack/damage"]) == 2
+
+
+def test_what_breaks_later_counts(run):
+    """Half of the plane is open; the other half tears."""
+    crack = {"where": "abs(z) < 5e-5 && abs(nz) > 0.8 && x > 0", "open": True}
+    plain, cut = (run(CASES / "fragments.yaml", sets={"time.end": 0.3e-6, "interface.sets": sets, "output.fields": []}) for sets in ([], [crack]))
+    assert plain.summary["first_fracture_time_s"] > cut.summary["first_fracture_time_s"] > 0
+    energy = cut.energy
+    assert energy["broken_area"][0] == 0 and energy["dissipated"][0] == 0 and energy["broken_area"][-1] > 0
+    assert (energy["dissipated"] <= 34 * energy["broken_area"] * (1 + 1e-12)).all()
+
+
+def test_a_law_without_an_end_is_refused(tmp_path):
+    case = tmp_path / "open.yaml"
+    case.write_text("mesh: {cells: [1, 1, 2], size: [1, 1, 2]}\nmaterial: {model: neo-hookean, young: 1, poisson: 0, density: 1}\n"
+                    "interface: {law: free, form: intrinsic, strength: 1, free: {normal: 1, shear: 1}, sets: [{where: z, open: true}]}\n"
+                    "time: {end: 1}\n")
+    told = launch("check", case)
+    assert told.returncode == 2 and "sets[0].open: true: law free has no end: its faces are never without traction\n" in told.stderr
