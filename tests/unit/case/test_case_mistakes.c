@@ -47,6 +47,9 @@ static const mistake mistakes[] = {
      ":2:3: mesh.cels: unknown key; did you mean 'mesh.cells'?\n:2:3: mesh.cells: missing; " CELLS},
     {"material:\n", "material:\n  poisson_ratio: 0.2\n",
      ":5:3: material.poisson_ratio: unknown key; did you mean 'material.poisson'?\n"},
+    {"  density: 3690\n", "  density: 3690\n  weibull: {modulus: 3}\n",
+     ":9:3: material.weibull: unknown key; did you mean 'interface.weibull'?\n"}, /* a section at the wrong
+                                                                                     place */
     {"mesh:\n", "cells: [1, 1, 1]\nmesh:\n", ":1:1: cells: unknown key; did you mean 'mesh.cells'?\n"},
     {"mesh:\n", "fracture: true\nmesh:\n", ":1:1: fracture: unknown key; " BLOCKS "\n"},
     {"velocity: 6.086", "velocity: 6.086, unit: 1",
@@ -131,6 +134,10 @@ static const mistake mistakes[] = {
      ":12:10: interface.faces: t: depends on t, but this is the state at the start; allowed: number or "
      "expression in "
      "x, y, z, nx, ny, nz\n"},
+    /* of a wrong value nothing more is told than that it is wrong */
+    {"  energy: 34\n", "  energy: 34\n  form: continuous\n  faces: 1\nmass: lumpy\n",
+     ":15:7: mass: lumpy: not one of the allowed words; allowed: consistent, lumped; did you mean "
+     "'lumped'?\n"},
     {"  energy: 34\n", "  energy: 34\n  form: continuous\n  faces: 1\nmass: consistent\n",
      ":15:7: mass: consistent: couples all nodes that elements share, so that each step would have to solve "
      "with it; allowed: with form continuous: lumped\n"},

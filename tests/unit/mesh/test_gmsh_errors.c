@@ -58,6 +58,13 @@ WRAP(gmshModelGetEntitiesForPhysicalGroup, (int dim, int group, int **tag, size_
 WRAP(gmshModelGetPhysicalName, (int dim, int group, char **name, int *error), (dim, group, name, error))
 /* clang-format on */
 
+void __wrap_gmshOptionSetString(const char *name, const char *value, int *error);
+
+void __wrap_gmshOptionSetString(const char *name, const char *value, int *error) {
+    fprintf(stderr, "%s = %s\n", name, value);
+    *error = 0;
+}
+
 static const char *log_lines[4]; /* what Gmsh has said; NULL: ends */
 
 void __wrap_gmshLoggerGet(char ***line, size_t *lines, int *error);
@@ -127,6 +134,38 @@ static void test_reasons(void **state) {
     }
 }
 
+static char other[sizeof path + 8]; /* the same file with another ending */
+
+static void read_other(void) {
+    assert_non_null(freopen("/dev/null", "w", stdout)); /* where OpenCASCADE complains */
+    rg_mesh_free(rg_gmsh_read(other, 1));
+}
+
+/* Files that say their unit are asked for metres, whatever the case of their endings; others have none. */
+static void test_units(void **state) {
+    (void)state;
+    static const struct {
+        const char *ending;
+        bool unit;
+    } cases[] = {{".step", true}, {".stp", true},  {".iges", true},  {".igs", true},       {".STEP", true},
+                 {".Igs", true},  {".geo", false}, {".brep", false}, {".step.geo", false}, {"step", false}};
+    failing = "gmshOpen";
+    turn = 1;
+    log_lines[0] = NULL;
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char said[1000], wanted[1000];
+        snprintf(other, sizeof other, "%.*s%s", (int)(strrchr(path, '.') - path), path, cases[i].ending);
+        assert_true(strcmp(other, path) == 0 || link(path, other) == 0);
+        met = 0;
+        int status = run_child(read_other, said, sizeof said);
+        assert_true(strcmp(other, path) == 0 || unlink(other) == 0);
+        snprintf(wanted, sizeof wanted, "%srhegma: %s: Gmsh: no reason given\n",
+                 cases[i].unit ? "Geometry.OCCTargetUnit = M\n" : "", other);
+        assert_int_equal(status, RG_USAGE);
+        assert_string_equal(said, wanted);
+    }
+}
+
 static int set_up(void **state) {
     (void)state;
     int file = mkstemps(path, 4);
@@ -139,6 +178,7 @@ static int tear_down(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_calls), cmocka_unit_test(test_reasons)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_calls), cmocka_unit_test(test_reasons),
+                                       cmocka_unit_test(test_units)};
     return cmocka_run_group_tests_name("gmsh_errors", tests, set_up, tear_down);
 }

@@ -7,9 +7,11 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "base/first_bad.h"
 #include "base/mem.h"
 #include "case/expr.h"
 #include "partition/material_map.h"
+#include "support/fatal.h"
 #include "support/tap.h"
 
 static const int64_t cells[3] = {4, 3, 7};
@@ -95,6 +97,68 @@ static void check_claims(const rg_mesh *m, int tile) {
     rg_expr_free(other[2].where);
 }
 
+/* Whether rank 0 ends the run with these words; the others wait for it, which rank 0 lets them do no longer
+ * then. */
+static bool refused(const rg_mesh *m, int others, rg_other_material *other, const char *words) {
+    rg_case c = {.path = (char[]){"a.yaml"}, .others = others, .other = other};
+    c.mesh.file = (char[]){"m.h5"};
+    rg_part *part = rg_part_distribute(rank == 0 ? m : NULL, 25, MPI_COMM_WORLD);
+    volatile bool ended = true;
+    said[0] = '\0';
+    expect_fatal = true;
+    if (setjmp(escape) == 0) {
+        rg_materials_assign(&c, part, MPI_COMM_WORLD);
+        ended = false;
+    }
+    expect_fatal = false;
+    if (rank == 0 && ended) {
+        MPI_Barrier(MPI_COMM_WORLD);
+    }
+    rg_part_free(part);
+    if (strcmp(said, words) != 0) {
+        printf("# %s\n", said);
+    }
+    return ended && fatal_status == RG_USAGE && strcmp(said, words) == 0;
+}
+
+static void check_refusals(void) {
+    static const double zero[3] = {0, 0, 0}, three[3] = {3, 2, 2};
+    rg_mesh *m = rg_mesh_box((const int64_t[]){3, 2, 2}, zero, three, 0, 3);
+    m->region = RG_NEW(int32_t, (size_t)m->elements);
+    rg_sets_add(&m->volume, "core");
+    rg_sets_add(&m->volume, "shell");
+    rg_other_material other[3] = {
+        {.set = (char[]){"core"}}, {.set = (char[]){"shel"}}, {.where = expression("x > 1")}};
+    report(refused(m, 3, other,
+                   "a.yaml: materials[1].set: shel: m.h5 has no such volume set; allowed: core, shell; did "
+                   "you mean 'shell'?"),
+           "refused", "a set that is not there");
+    other[1].set = (char[]){"shell"};
+    report(refused(m, 3, other, "a.yaml: materials[1].set: shell: no element is in it"), "refused",
+           "a set without elements");
+    other[1] = (rg_other_material){.where = expression("x > 2.75 && y > 1.5")};
+    report(refused(m, 3, other, "a.yaml: materials[1].where: x > 2.75 && y > 1.5: no element is in it"),
+           "refused", "an expression that is nowhere true");
+    rg_expr_free(other[1].where);
+    /* of all places the lowest, of the first entry that has any: the lowest centroids beyond x = 1 and 2 */
+    other[1].where = expression("x > 2 ? 1/0 : x > 1 ? 0/0 : 1");
+    rg_expr_free(other[2].where);
+    other[2].where = expression("1/0");
+    report(
+        refused(m, 3, other,
+                "a.yaml: materials[1].where: x > 2 ? 1/0 : x > 1 ? 0/0 : 1 is -nan at (1.25, 0.5, 0.75), the "
+                "centroid of "
+                "an element") ||
+            strcmp(
+                said,
+                "a.yaml: materials[1].where: x > 2 ? 1/0 : x > 1 ? 0/0 : 1 is nan at (1.25, 0.5, 0.75), the "
+                "centroid of an element") == 0,
+        "refused", "the first value that is not finite");
+    rg_expr_free(other[1].where);
+    rg_expr_free(other[2].where);
+    rg_mesh_free(m);
+}
+
 int main(int argc, char **argv) {
     MPI_Init(&argc, &argv);
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);
@@ -102,5 +166,6 @@ int main(int argc, char **argv) {
     check_claims(m, 4);
     check_claims(m, 25);
     rg_mesh_free(m);
+    check_refusals();
     return finish();
 }

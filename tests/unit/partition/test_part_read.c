@@ -12,6 +12,7 @@
 #include "mesh/mesh.h"
 #include "partition/mesh_case.h"
 #include "partition/tile_weight.h"
+#include "support/fatal.h"
 #include "support/tap.h"
 
 static int ranks;
@@ -26,7 +27,7 @@ static const struct box {
     {"bar", {3, 3, 30}, {-0.2e-3, -0.2e-3, -2e-3}, {0.4e-3, 0.4e-3, 4e-3}, 0.12},
     {"block", {24, 22, 27}, {1, 2, 3}, {1.6, 1.2, 2.0}, 0.1}, /* more tiles than are read at once */
 };
-enum { BOXES = sizeof boxes / sizeof boxes[0], CHECKS = 12 };
+enum { BOXES = sizeof boxes / sizeof boxes[0], CHECKS = 12, REFUSALS = 3 };
 
 static bool same_counts(const rg_part *a, const rg_part *b) {
     bool good = a->total == b->total && a->interfaces == b->interfaces && a->tile == b->tile &&
@@ -244,18 +245,83 @@ static void check_box(const struct box *b) {
     rg_mesh_free(mesh);
 }
 
+/* ---- what a case's boundary asks of the sets of a file ---- */
+
+/* Whether rank 0 ends the run with these words, for which the others wait; NULL: nobody ends it. */
+static bool ends_with(const rg_boundary *boundary, int boundaries, const char *words) {
+    rg_boundary copy[3];
+    memcpy(copy, boundary, (size_t)boundaries * sizeof *boundary);
+    rg_case c = {.path = (char[]){"a.yaml"}, .boundaries = boundaries, .boundary = copy};
+    c.mesh.file = path;
+    volatile bool ended = true;
+    expect_fatal = true;
+    said[0] = '\0';
+    if (setjmp(escape) == 0) {
+        rg_part_free(rg_part_of_case(&c, NULL, MPI_COMM_WORLD));
+        ended = false;
+    }
+    expect_fatal = false;
+    if (rank == 0 && ended) {
+        MPI_Barrier(MPI_COMM_WORLD);
+    }
+    bool good = words == NULL ? !ended : ended && fatal_status == RG_USAGE && strcmp(said, words) == 0;
+    if (!good) {
+        printf("# %s\n", said);
+    }
+    return good;
+}
+
+/* Set 6 of the mesh, `both`, has all faces of x+ and of y-: 2 * 2 * 4 and 2 * 3 * 4. */
+static void check_boundary(void) {
+    static const struct box b = {"overlapping", {3, 2, 4}, {0, 0, 0}, {3, 2, 4}, 0};
+    enum { X, Y, Z };
+    char high_x[] = "x+", low_y[] = "y-", low_x[] = "x-", both[] = "both", wrong[] = "x*", words[200];
+    if (rank == 0) {
+        rg_mesh *mesh = make_mesh(&b);
+        rg_mesh_file_write(path, mesh, 0, NULL);
+        rg_mesh_free(mesh);
+    }
+    MPI_Barrier(MPI_COMM_WORLD);
+    const rg_boundary x_z = {.set = high_x, .component = Z}, y_z = {.set = low_y, .component = Z},
+                      low_z = {.set = low_x, .component = Z}, both_y = {.set = both, .component = Y},
+                      both_z = {.set = both, .component = Z}, nowhere = {.set = wrong, .component = X},
+                      absorbs = {.set = both, .component = -1},
+                      absorbs_too = {.set = high_x, .component = -1};
+    snprintf(words, sizeof words,
+             "a.yaml: boundary[1].set: x*: %s has no such surface set; allowed: x-, x+, y-, y+, z-, z+, "
+             "both; did you mean 'x-'?",
+             path);
+    /* rank 0 looks, and ends the run before the others read */
+    report(ranks > 1 || ends_with((const rg_boundary[]){x_z, nowhere}, 2, words), b.name,
+           "a set that is not there");
+    report(ends_with((const rg_boundary[]){x_z, y_z, both_y}, 3, NULL) &&
+               ends_with((const rg_boundary[]){low_z, both_z}, 2, NULL) && ends_with(&both_z, 1, NULL) &&
+               ends_with((const rg_boundary[]){absorbs, absorbs_too}, 2, NULL),
+           b.name, "sets that share no face, or share them in another direction");
+    report(ends_with((const rg_boundary[]){low_z, x_z, both_z}, 3,
+                     "a.yaml: boundary[1] and boundary[2] both prescribe component z of 16 faces, which are "
+                     "in sets 'x+' "
+                     "and 'both'") &&
+               ends_with((const rg_boundary[]){both_z, both_y, y_z}, 3,
+                         "a.yaml: boundary[0] and boundary[2] both prescribe component z of 24 faces, which "
+                         "are in sets "
+                         "'both' and 'y-'"),
+           b.name, "contradictions");
+}
+
 int main(int argc, char **argv) {
     MPI_Init(&argc, &argv);
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);
     MPI_Comm_size(MPI_COMM_WORLD, &ranks);
     if (rank == 0) {
-        printf("1..%d\n", BOXES * CHECKS);
+        printf("1..%d\n", BOXES * CHECKS + REFUSALS);
         close(mkstemp(path));
     }
     MPI_Bcast(path, sizeof path, MPI_CHAR, 0, MPI_COMM_WORLD);
     for (int b = 0; b < BOXES; b++) {
         check_box(&boxes[b]);
     }
+    check_boundary();
     if (rank == 0) {
         unlink(path);
     }
