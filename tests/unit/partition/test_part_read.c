@@ -9,6 +9,7 @@
 #include "base/mem.h"
 #include "case/expr.h"
 #include "mesh/file.h"
+#include "layout.h"
 #include "mesh/mesh.h"
 #include "partition/mesh_case.h"
 #include "partition/tile_weight.h"
@@ -27,7 +28,7 @@ static const struct box {
     {"bar", {3, 3, 30}, {-0.2e-3, -0.2e-3, -2e-3}, {0.4e-3, 0.4e-3, 4e-3}, 0.12},
     {"block", {24, 22, 27}, {1, 2, 3}, {1.6, 1.2, 2.0}, 0.1}, /* more tiles than are read at once */
 };
-enum { BOXES = sizeof boxes / sizeof boxes[0], CHECKS = 12, REFUSALS = 3 };
+enum { BOXES = sizeof boxes / sizeof boxes[0], CHECKS = 12, REFUSALS = 3, FAULTY = 2 };
 
 static bool same_counts(const rg_part *a, const rg_part *b) {
     bool good = a->total == b->total && a->interfaces == b->interfaces && a->tile == b->tile &&
@@ -309,12 +310,139 @@ static void check_boundary(void) {
            b.name, "contradictions");
 }
 
+/* ---- meshes that are open, or where three elements share a face ---- */
+
+/* What is told of a mesh, in order. */
+typedef struct {
+    rg_gid key[2];
+    char words[200];
+} line;
+
+static int by_key(const void *a, const void *b) {
+    const line *p = a, *q = b;
+    int k = p->key[0] == q->key[0];
+    return (p->key[k] > q->key[k]) - (p->key[k] < q->key[k]);
+}
+
+static bool same_face(const rg_mesh *m, rg_gid slot, rg_gid other) {
+    bool same = true;
+    for (int i = 0; i < 3; i++) {
+        same = same && m->corner[slot / 4 * 4 + rg_face_node[slot % 4][i]] ==
+                           m->corner[other / 4 * 4 + rg_face_node[other % 4][i]];
+    }
+    return same;
+}
+
+/* By looking at all pairs of faces: the elements of two open ones at the same place, next to each other in
+ * the order of all there, once; and an open one where two others are neighbours. */
+static int list_lines(const rg_mesh *m, line *list) {
+    int lines = 0;
+    for (rg_gid s = 0; s < 4 * m->elements; s++) {
+        rg_gid next = -1;
+        for (rg_gid o = 0; o < 4 * m->elements; o++) {
+            bool open = m->neighbour[o] < 0 && o / 4 != s / 4 && same_face(m, s, o);
+            next = open && o / 4 > s / 4 && (next < 0 || o / 4 < next) ? o / 4 : next;
+            if (open && m->neighbour[s] > s / 4) {
+                list[lines].key[0] = s / 4;
+                list[lines].key[1] = s % 4 - 4;
+                snprintf(list[lines++].words, sizeof list->words, "elements %d, %d and %d share a face",
+                         (int)m->original[s / 4], (int)m->original[m->neighbour[s]], (int)m->original[o / 4]);
+            }
+        }
+        if (m->neighbour[s] < 0 && next >= 0) {
+            bool told = false;
+            for (int i = 0; i < lines; i++) {
+                told = told || (list[i].key[0] == s / 4 && list[i].key[1] == next);
+            }
+            list[lines].key[0] = s / 4;
+            list[lines].key[1] = next;
+            snprintf(list[lines].words, sizeof list->words,
+                     "elements %d and %d have a face at the same place, but are not neighbours: the mesh is "
+                     "open there",
+                     (int)m->original[s / 4], (int)m->original[next]);
+            lines += !told;
+        }
+    }
+    qsort(list, (size_t)lines, sizeof *list, by_key);
+    return lines;
+}
+
+/* The box and a copy of element `twice` that has no neighbours; `alone`: neither has that element. */
+static rg_mesh *make_faulty(rg_gid twice, bool alone) {
+    static const struct box b = {"faulty", {1, 1, 2}, {0, 0, 0}, {1, 1, 2}, 0};
+    rg_mesh *box = make_mesh(&b), *m = RG_NEW(rg_mesh, 1);
+    size_t all = (size_t)box->elements + 1;
+    *m = *box;
+    m->elements++;
+    m->corner = RG_NEW(rg_gid, 4 * all);
+    m->neighbour = RG_NEW(rg_gid, 4 * all);
+    m->face = RG_NEW(int8_t, 4 * all);
+    m->set = RG_NEW(int32_t, 4 * all);
+    m->region = RG_NEW(int32_t, all);
+    m->original = RG_NEW(rg_gid, all);
+    for (rg_gid slot = 0; slot < 4 * m->elements; slot++) {
+        bool copy = slot / 4 == box->elements;
+        rg_gid from = copy ? 4 * twice + slot % 4 : slot, other = copy ? -1 : box->neighbour[from];
+        bool cut = other < 0 || (alone && (from / 4 == twice || other == twice));
+        m->corner[slot] = box->corner[from];
+        m->neighbour[slot] = cut ? -1 : other;
+        m->face[slot] = (int8_t)(cut ? -1 : box->face[from]);
+        m->set[slot] = -1;
+        m->region[slot / 4] = -1;
+        m->original[slot / 4] = 3 * (slot / 4) + 7;
+    }
+    rg_free(box->corner);
+    rg_free(box->neighbour);
+    rg_free(box->face);
+    rg_free(box->set);
+    rg_free(box->region);
+    rg_free(box->original);
+    rg_free(box);
+    return m;
+}
+
+static bool reading_ends(void) {
+    volatile bool ended = true;
+    expect_fatal = true;
+    if (setjmp(escape) == 0) {
+        rg_part_free(rg_part_read(path, NULL, MPI_COMM_WORLD));
+        ended = false;
+    }
+    expect_fatal = false;
+    return ended;
+}
+
+/* On one rank: the others would go on where rank 0 has ended the run. */
+static bool faulty_told(bool alone) {
+    bool good = true;
+    for (rg_gid twice = 0; twice < 12 && ranks == 1; twice++) {
+        rg_mesh *m = make_faulty(twice, alone);
+        line list[40];
+        char expected[5000] = "";
+        int lines = list_lines(m, list);
+        for (int i = 0; i < lines; i++) {
+            sprintf(expected + strlen(expected), "%s%s: %s", i > 0 ? "\nrhegma: " : "", path, list[i].words);
+        }
+        rg_mesh_file_write(path, m, 0, NULL);
+        rg_mesh_free(m);
+        bool ended = reading_ends();
+        size_t seen = strlen(said); /* not all, if they are many */
+        bool right = ended && lines > 2 && lines <= 10 && seen > 200 && strncmp(said, expected, seen) == 0 &&
+                     (seen == sizeof said - 1 || seen == strlen(expected));
+        if (!right) {
+            printf("# %s\n# instead of\n# %s\n", said, expected);
+        }
+        good = good && right;
+    }
+    return good;
+}
+
 int main(int argc, char **argv) {
     MPI_Init(&argc, &argv);
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);
     MPI_Comm_size(MPI_COMM_WORLD, &ranks);
     if (rank == 0) {
-        printf("1..%d\n", BOXES * CHECKS + REFUSALS);
+        printf("1..%d\n", BOXES * CHECKS + REFUSALS + FAULTY);
         close(mkstemp(path));
     }
     MPI_Bcast(path, sizeof path, MPI_CHAR, 0, MPI_COMM_WORLD);
@@ -322,6 +450,8 @@ int main(int argc, char **argv) {
         check_box(&boxes[b]);
     }
     check_boundary();
+    report(faulty_told(true), "faulty", "elements that do not know of each other");
+    report(faulty_told(false), "faulty", "three elements at a face");
     if (rank == 0) {
         unlink(path);
     }
