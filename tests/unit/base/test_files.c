@@ -520,6 +520,7 @@ static void test_energy_table(void **state) {
                                   .viscous = 11,
                                   .friction = 12,
                                   .unresolved = 13,
+                                  .radiated = 13.5,
                                   .half_kick = 14,
                                   .external = 15,
                                   .total = 16,
@@ -532,10 +533,11 @@ static void test_energy_table(void **state) {
                          .material = {{26, 27, 28}, {29, 30, 31}}};
     static const char header[] =
         "step,time,kinetic,bodies,bulk,penalty,cohesive,contact,dissipated,plastic,damage,viscous,friction,"
-        "unresolved,half_kick,external_work,total,error_rel,error_dissipated,broken_area,failed_area,"
+        "unresolved,radiated,half_kick,external_work,total,error_rel,error_dissipated,broken_area,failed_"
+        "area,"
         "momentum_x,momentum_y,"
         "momentum_z,angular_x,angular_y,angular_z";
-    static const char row[] = "41,1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16,17,nan,18,19,20,21,22,23,24,25";
+    static const char row[] = "41,1,2,3,4,5,6,7,8,9,10,11,12,13,13.5,14,15,16,17,nan,18,19,20,21,22,23,24,25";
     char wanted[1000];
     for (int two = 0; two < 2; two++) {
         rg_csv *t = rg_csv_open(".", "e.csv", 0);

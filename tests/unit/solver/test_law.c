@@ -128,10 +128,26 @@ static void test_friction(void **state) {
     rg_expr_free(field);
 }
 
+/* Values of a block of faces: those of all laws, what a law remembers at each point, then what sliding needs.
+ */
+static void test_stride(void **state) {
+    (void)state;
+    rg_cohesive law = {.law = RG_LAW_LINEAR};
+    assert_int_equal(rg_crack_stride(&law), RG_CRACK_BLOCK);
+    law.sliding = RG_SLIDING_COULOMB;
+    assert_int_equal(rg_crack_stride(&law), RG_CRACK_BLOCK + RG_FRICTION_BLOCK);
+    law.criterion = RG_CRITERION_MOHR_COULOMB;
+    assert_int_equal(rg_crack_stride(&law), RG_CRACK_BLOCK + RG_LOAN_BLOCK + RG_FRICTION_BLOCK);
+    law.sliding = RG_SLIDING_FREE;
+    assert_int_equal(rg_crack_stride(&law), RG_CRACK_BLOCK + RG_LOAN_BLOCK);
+    law = (rg_cohesive){.law = RG_LAW_FATIGUE};
+    assert_int_equal(rg_crack_stride(&law), RG_CRACK_BLOCK + 4 * RG_POINTS * RG_LANES);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_linear), cmocka_unit_test(test_intrinsic), cmocka_unit_test(test_expressions),
-        cmocka_unit_test(test_none),   cmocka_unit_test(test_friction),
+        cmocka_unit_test(test_none),   cmocka_unit_test(test_friction),  cmocka_unit_test(test_stride),
     };
     return cmocka_run_group_tests_name("law", tests, NULL, NULL);
 }
