@@ -99,7 +99,8 @@ typedef struct {
     double shape[RG_LAW_SHAPE]; /* the law's own parameters */
     double separation;          /* effective opening of full separation (m) */
     rg_contact contact;         /* potential: tractions turn the mid-surface besides */
-    double slope; /* contact is at least so stiff (Pa/m): the law's own slope where it starts with one */
+    double slope;   /* contact is at least so stiff (Pa/m): the law's own slope where it starts with one */
+    rg_shear shear; /* fading: with a conserving activation */
     rg_sliding sliding;
     double friction; /* coefficient mu of Coulomb's */
 } rg_cohesive;
@@ -126,8 +127,8 @@ typedef struct {
     uint8_t *active;   /* [block] in/out: not 0 where some lane of the block has a broken point */
     rg_real *crack;    /* crack state, in/out */
     size_t crack_stride; /* values from one block's crack state to the next: RG_CRACK_BLOCK, the memory of the
-                            law, with Mohr and Coulomb's criterion RG_LOAN_BLOCK and with Coulomb's friction
-                            RG_FRICTION_BLOCK; or 0 to share one */
+                            law, with shear that fades RG_BOND_BLOCK, with Mohr and Coulomb's criterion
+                            RG_LOAN_BLOCK and with Coulomb's friction RG_FRICTION_BLOCK; or 0 to share one */
     rg_real *force;      /* out: g, nodal force on the minus side (N) */
     rg_real *turn;       /* out, of contact as a potential and only of broken faces: nodal force on either
                             side (N), laid out as `force` */

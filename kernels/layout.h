@@ -21,7 +21,8 @@
  *   interface geometry              [interface block][RG_IGEOM][lane]
  *   interface nodal force           [interface block][6 nodes][3][lane]
  *   crack state                     [interface block]: [6 points][RG_CRACK][lane], then
- *                                   [6 points][memory of the law][lane], then, with Mohr and Coulomb's
+ *                                   [6 points][memory of the law][lane], then, with shear that fades,
+ *                                   [6 points][RG_BOND][lane], then, with Mohr and Coulomb's
  *                                   criterion, [6 points][lane], lent at the switch (J), then, with friction,
  *                                   [6 points][RG_FRICTION][lane]
  *   ghost traces                    [tile face block][6 nodes][3][lane]
@@ -96,6 +97,16 @@ enum {                          /* friction at one interface point (cohesive/fri
        RG_FRICTION = 5,
 };
 
+enum {                      /* shear that fades at one interface point (element/interface_bond.h) */
+       RG_BOND_ANCHOR = 0,  /* slip at which its spring is relaxed, 2 components (m) */
+       RG_BOND_STRETCH = 2, /* of the spring, 2 components (m) */
+       RG_BOND_START = 4,   /* square of the stretch at the switch (m2) */
+       RG_BOND_DAMAGE = 5,  /* of the state before */
+       RG_BOND_HEAT = 6,    /* dissipated so far, of the whole face (J) */
+       RG_BOND_GIVEN = 7,   /* what lift and penalty held by the shear at the switch, likewise (J) */
+       RG_BOND = 8,
+};
+
 /* History of a material with n values per point: those of the 4 points of the element, then the energy that
  * the element has set free since the start (J), by cause. */
 enum { RG_RELEASED_PLASTIC, RG_RELEASED_DAMAGE, RG_RELEASED };
@@ -112,6 +123,7 @@ enum { /* values per row, and per block */
        RG_CRACK_BLOCK = RG_POINTS * RG_CRACK * RG_LANES,
        RG_FRICTION_BLOCK = RG_POINTS * RG_FRICTION * RG_LANES,
        RG_LOAN_BLOCK = RG_POINTS * RG_LANES,
+       RG_BOND_BLOCK = RG_POINTS * RG_BOND * RG_LANES,
        RG_TRACE_ROW = RG_FNODES * 3,
        RG_TILE_FACE_ROW = RG_FCORNERS * 3, /* tractions of one face */
        RG_GHOST_BLOCK = RG_TRACE_ROW * RG_LANES,

@@ -17,6 +17,10 @@ typedef enum { RG_PENALTY_ELASTIC, RG_PENALTY_ISOTROPIC } rg_penalty;
  * its friction to the strength of shear. */
 typedef enum { RG_CRITERION_QUADRATIC, RG_CRITERION_MOHR_COULOMB } rg_criterion;
 
+/* What becomes of the shear traction of a point that breaks by opening alone, beta = 0 (6): nothing, or a
+ * spring goes on with it and fades. */
+typedef enum { RG_SHEAR_RELEASED, RG_SHEAR_FADING } rg_shear;
+
 /* What the opening of a point is when it switches to its law (6). */
 typedef enum { RG_ACTIVATION_CONTINUOUS, RG_ACTIVATION_TOTAL, RG_ACTIVATION_CONSERVING } rg_activation;
 enum { RG_ACTIVATIONS = 3 };

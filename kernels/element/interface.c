@@ -5,6 +5,7 @@
  *     2. law         traction of the opening and its history     section 7       interface_law.h
  *     3. contact     of closed points                            section 6       interface_contact.h
  *     4. friction    likewise                                    section 6       interface_friction.h
+ *        and shear that fades, of points that break by opening alone             interface_bond.h
  * The same code does the faces inside a tile and its tile-boundary faces.
  *
  * A face without damage costs only the DG terms and a bound on its traction; the normal of the deformed
@@ -12,6 +13,7 @@
  * once around each law and activation. Lanes that do not need them keep their bits: a face's result never
  * depends on the faces that share its block. */
 #include "cohesive/facts.h"
+#include "element/interface_bond.h"
 #include "element/interface_contact.h"
 #include "element/interface_criterion.h"
 #include "element/interface_face.h"
@@ -94,7 +96,9 @@ static __attribute__((noinline)) void rub(interface *s, const uint8_t before[RG_
     for (int q = 0; q < RG_POINTS; q++) {
         rg_mask broken = bit_mask(bits, q);
         if (rg_any(broken)) {
-            add_friction(s, q, g[q], n[q], broken, broken & ~bit_mask(before, q), turn);
+            rg_mask now = broken & ~bit_mask(before, q);
+            add_friction(s, q, g[q], n[q], broken, now, turn);
+            add_bond(s, q, g[q], n[q], broken, now, turn);
         }
     }
     if (s->args->law.contact == RG_CONTACT_POTENTIAL) {
@@ -138,7 +142,7 @@ RG_INLINE void damaged_face(interface *s) {
     uint8_t before[RG_VLEN];
     memcpy(before, s->args->broken + s->block * RG_LANES + s->lane, sizeof before);
     damaged_by_law[law->law][law->activation](s);
-    if (law->sliding != RG_SLIDING_FREE) {
+    if (law->sliding != RG_SLIDING_FREE || law->shear != RG_SHEAR_RELEASED) {
         rub(s, before);
     }
 }
@@ -242,6 +246,14 @@ static __attribute__((noinline)) void rubbing_energy(const interface *s, rg_vec 
     }
 }
 
+static __attribute__((noinline)) void bonding_energy(interface *s, rg_vec sum[RG_E_INTERFACE]) {
+    const uint8_t *bits = s->args->broken + s->block * RG_LANES + s->lane;
+    load_law(s);
+    for (int q = 0; q < RG_POINTS; q++) {
+        bond_energy(s, q, bit_mask(bits, q), sum);
+    }
+}
+
 RG_INLINE void state_vector(const rg_interface_state_args *args, size_t block, size_t row, int lane) {
     interface s;
     load_interface(&s, args->interface, block, lane, block >= args->interface->first_tile_face);
@@ -258,6 +270,9 @@ RG_INLINE void state_vector(const rg_interface_state_args *args, size_t block, s
         energy_by_law[s.args->law.law][s.args->law.activation](&s, sum);
         if (s.args->law.sliding == RG_SLIDING_COULOMB) {
             rubbing_energy(&s, sum);
+        }
+        if (s.args->law.shear == RG_SHEAR_FADING) {
+            bonding_energy(&s, sum);
         }
     }
     for (size_t k = 0; k < RG_E_INTERFACE; k++) {

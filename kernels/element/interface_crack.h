@@ -90,6 +90,26 @@ RG_INLINE int mixed_memory(rg_law law) {
     return memories[law];
 }
 
+/* Values that a point remembers of a law. */
+RG_INLINE int law_memory(rg_law law) {
+    static const int8_t memories[] = {
+#define RG_LAW(NAME, name, word, meaning, forms, work, separation, normal_slope, shear_slope, memory) memory,
+#include "laws.h"
+#undef RG_LAW
+    };
+    return memories[law];
+}
+
+RG_INLINE rg_real *bond_state(const interface *s, int q, int k) {
+    int before = law_memory(s->args->law.law) * RG_POINTS + q * RG_BOND + k;
+    return s->args->crack + s->block * s->args->crack_stride + RG_CRACK_BLOCK + before * RG_LANES + s->lane;
+}
+
+/* Faces whose shear fades: those of beta = 0, where it is asked for. */
+RG_INLINE rg_mask fading(const interface *s) {
+    return s->args->law.shear == RG_SHEAR_FADING ? s->beta2 == 0.0 : (rg_mask){0};
+}
+
 /* Critical opening at a broken point (m); `mixed`: mixed_memory of the law. */
 RG_INLINE rg_vec critical_opening(const interface *s, int q, int mixed) {
     return mixed == 0 ? s->opening : s->opening * (1.0 + rg_load(memory_state(s, mixed, q, 0)));
@@ -98,6 +118,16 @@ RG_INLINE rg_vec critical_opening(const interface *s, int q, int mixed) {
 /* Effective opening of full separation there (m). */
 RG_INLINE rg_vec separation(const interface *s, int q, int mixed) {
     return critical_opening(s, q, mixed) * rg_splat(s->args->law.separation / s->args->law.opening);
+}
+
+/* Damage of a broken point: largest opening over that of full separation, at most 1; 1 without such a one. */
+RG_INLINE rg_vec point_damage(const interface *s, int q) {
+    const rg_cohesive *law = &s->args->law;
+    if (!(law->separation > 0)) {
+        return rg_splat(1.0);
+    }
+    rg_vec share = rg_load(crack_state(s, q, RG_CRACK_OPENING)) / separation(s, q, mixed_memory(law->law));
+    return rg_min(share, rg_splat(1.0));
 }
 
 /* Opening of a broken point: w = [u] - origin, split along n (section 6 of kernels/README.md). */

@@ -111,14 +111,25 @@ RG_INLINE rg_vec pressed_at_switch(const interface *s, int q, const vec3 n) {
     return rg_min(rg_dot(s->mean[q], n), rg_splat(0.0)) / s->contact;
 }
 
+/* What comes free at a point that breaks, but for contact: F = sigma_c area g of cohesive/conserving.h (J).
+ */
+RG_INLINE rg_vec released(const interface *s, rg_vec mean_jump, rg_vec penalty) {
+    double beta_s = s->args->law.beta_s, kept = beta_s > RG_LIFT ? 0.5 * (1 - RG_LIFT / beta_s) : 0;
+    return mean_jump + rg_splat(kept) * penalty;
+}
+
 /* g of cohesive/conserving.h: what comes free at a point that breaks, over its area and strength (m). */
 RG_INLINE rg_vec given_free(const interface *s, int q, rg_vec pressed) {
     rg_vec along = rg_dot(s->normal, s->jump[q]);
     rg_vec penalty = s->pen_iso * rg_dot(s->jump[q], s->jump[q]) + s->pen_norm * along * along;
-    double beta_s = s->args->law.beta_s, kept = beta_s > RG_LIFT ? 0.5 * (1 - RG_LIFT / beta_s) : 0;
-    rg_vec free =
-        rg_dot(s->mean[q], s->jump[q]) + rg_splat(kept) * penalty - 0.5 * s->contact * pressed * pressed;
+    rg_vec free = released(s, rg_dot(s->mean[q], s->jump[q]), penalty) - 0.5 * s->contact * pressed * pressed;
     return free / (s->area * s->strength);
+}
+
+/* That part of it which comes of shear (J). */
+RG_INLINE rg_vec given_by_shear(const interface *s, int q, const vec3 n) {
+    rg_vec along = rg_dot(s->jump[q], n), square = rg_dot(s->jump[q], s->jump[q]) - along * along;
+    return released(s, rg_dot(s->mean[q], s->jump[q]) - rg_dot(s->mean[q], n) * along, s->pen_iso * square);
 }
 
 /* eps of a broken point, of a conserving activation its own. */
@@ -154,6 +165,11 @@ RG_INLINE void activate(const interface *s, int q, const vec3 n, const cauchy *t
             held_by_friction(s, q, n, held);
             store_where(loan_state(s, q), now,
                         0.5 * (s->contact * pressed * pressed + rg_dot(held, held) / s->pen_iso));
+        }
+        if (rg_any(now & fading(s))) { /* is the spring's, and none of the law's */
+            rg_vec sheared = rg_max(given_by_shear(s, q, n), rg_splat(0.0));
+            store_where(bond_state(s, q, RG_BOND_GIVEN), now & fading(s), sheared);
+            given = rg_select(fading(s), given - sheared / (s->area * s->strength), given);
         }
         store_where(crack_state(s, q, RG_CRACK_GIVEN), now, given);
         start = rg_conserving_onset(given, start);

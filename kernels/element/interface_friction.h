@@ -59,11 +59,7 @@ RG_INLINE rg_vec friction_limit(const interface *s, int q, const point_opening *
     if (is_frictional(s)) {
         return of_face(s, s->args->friction, law->friction) * contact_pressure(s, o);
     }
-    rg_vec damage = rg_splat(1.0);
-    if (law->separation > 0) {
-        damage = rg_min(
-            rg_load(crack_state(s, q, RG_CRACK_OPENING)) / separation(s, q, mixed_memory(law->law)), damage);
-    }
+    rg_vec damage = point_damage(s, q);
     rg_vec pressure = contact_pressure(s, o);
     return rg_select(broken_before, of_face(s, s->args->friction, law->friction) * damage * pressure,
                      rg_splat(0.0));

@@ -29,7 +29,7 @@ typedef struct {
 
 /* Crack state of a point, the memory of its law, and its friction. */
 typedef struct {
-    rg_real *state[RG_CRACK], *memory[RG_LAW_MEMORY], *friction[RG_FRICTION], *loan;
+    rg_real *state[RG_CRACK], *memory[RG_LAW_MEMORY], *friction[RG_FRICTION], *loan, *bond[RG_BOND];
 } crack;
 
 /* Whether side k of interface i is what `side[0]` names: the minus side, or the own one of a tile-boundary
@@ -145,7 +145,10 @@ static void sample_traction(const rg_interface_args *args, size_t i, int q, poin
 static crack crack_of(const rg_interface_args *args, size_t i, int q) {
     rg_real *block = args->crack + i / RG_LANES * args->crack_stride;
     int memory = rg_law_facts_of(args->law.law, args->law.shape, args->law.beta).memory;
-    crack found = {{NULL}, {NULL}, {NULL}, NULL};
+    crack found = {{NULL}, {NULL}, {NULL}, NULL, {NULL}};
+    for (int b = 0; b < RG_BOND && args->law.shear == RG_SHEAR_FADING; b++)
+        found.bond[b] =
+            block + RG_CRACK_BLOCK + (size_t)(memory * RG_POINTS + q * RG_BOND + b) * RG_LANES + i % RG_LANES;
     if (args->law.criterion == RG_CRITERION_MOHR_COULOMB)
         found.loan = args->crack + rg_loan_index(i, q, args->crack_stride);
     for (int k = 0; k < RG_CRACK; k++)
@@ -221,6 +224,21 @@ static double critical_opening(const rg_cohesive *law, const point *p, const cra
     return p->opening * (is_mixed(law) ? 1 + *k->memory[0] : 1);
 }
 
+/* Whether the shear traction of a point goes on in a spring that fades. */
+static bool fades(const rg_cohesive *law, const point *p) {
+    return law->shear == RG_SHEAR_FADING && !(p->beta > 0);
+}
+
+/* What of given_free comes of shear (J). */
+static double given_by_shear(const rg_cohesive *law, const point *p) {
+    double free = 0, across = rg_reference_dot(p->jump, p->normal), share = fmax(0, 1 - 1.5 / law->beta_s);
+    for (int c = 0; c < 3; c++) {
+        double slid = p->jump[c] - across * p->normal[c];
+        free += (p->traction[c] + share * p->iso * slid / 2) * slid;
+    }
+    return free;
+}
+
 /* First crack state of a point. */
 static void activate(const rg_interface_args *args, const point *p, const double direction[3],
                      const crack *k) {
@@ -234,6 +252,11 @@ static void activate(const rg_interface_args *args, const point *p, const double
         pressed = fmin(0, rg_reference_dot(p->traction, p->normal)) / p->contact;
         bool lends = args->law.criterion == RG_CRITERION_MOHR_COULOMB;
         double given = given_free(&args->law, p, lends ? 0 : pressed);
+        if (fades(&args->law, p)) {
+            double sheared = fmax(0, given_by_shear(&args->law, p));
+            *k->bond[RG_BOND_GIVEN] = (rg_real)sheared;
+            given -= sheared / (p->area * p->strength);
+        }
         if (lends)
             *k->loan =
                 (rg_real)((p->contact * pressed * pressed + rg_reference_dot(p->held, p->held) / p->iso) / 2);
@@ -472,6 +495,43 @@ static void add_coulomb(const rg_interface_args *args, size_t i, const point *p,
         turn_frame(p, o, chord, tangent, drag, turning);
 }
 
+/* Adds the spring that goes on with the shear traction of the switch and fades with damage. */
+static void add_bond(const rg_interface_args *args, size_t i, const point *p, const opening *o,
+                     const crack *k, bool fresh, double t[3], double turning[RG_FNODES][3]) {
+    const rg_cohesive *law = &args->law;
+    double chord[3], tangent[2][3], drag[2], product = 0, square = 0;
+    sample_chord(args, i, chord);
+    sample_tangents(chord, p, tangent);
+    double parts = critical_opening(law, p, k) * (law->separation / law->opening);
+    double damage = parts > 0 ? fmin(1, *k->state[RG_CRACK_OPENING] / parts) : 1;
+    for (int d = 0; d < 2; d++) {
+        double slip = rg_reference_dot(o->shear, tangent[d]);
+        double held =
+            (rg_reference_dot(p->traction, tangent[d]) - rg_reference_dot(p->held, tangent[d])) / p->iso;
+        if (fresh) {
+            *k->bond[RG_BOND_ANCHOR + d] = (rg_real)(slip - held);
+            *k->bond[RG_BOND_STRETCH + d] = (rg_real)held;
+            square += held * held;
+        }
+        double stretch = slip - *k->bond[RG_BOND_ANCHOR + d];
+        product += *k->bond[RG_BOND_STRETCH + d] * stretch;
+        *k->bond[RG_BOND_STRETCH + d] = (rg_real)stretch;
+        drag[d] = (1 - damage) * p->iso * stretch;
+        for (int c = 0; c < 3; c++)
+            t[c] += drag[d] * tangent[d][c];
+    }
+    if (fresh) {
+        *k->bond[RG_BOND_START] = (rg_real)square;
+        *k->bond[RG_BOND_DAMAGE] = (rg_real)damage;
+        *k->bond[RG_BOND_HEAT] = 0;
+    }
+    double worn = damage - *k->bond[RG_BOND_DAMAGE];
+    *k->bond[RG_BOND_HEAT] += (rg_real)(p->iso * worn * (product - *k->bond[RG_BOND_START]) / 2);
+    *k->bond[RG_BOND_DAMAGE] = (rg_real)damage;
+    if (law->contact == RG_CONTACT_POTENTIAL)
+        turn_frame(p, o, chord, tangent, drag, turning);
+}
+
 static void set_bit(uint8_t *mask, int q, bool on) {
     *mask = (uint8_t)(on ? *mask | 1 << q : *mask & ~(1 << q));
 }
@@ -503,6 +563,8 @@ static void point_traction(const rg_interface_args *args, size_t i, int q, point
     }
     if (args->law.sliding == RG_SLIDING_COULOMB)
         add_coulomb(args, i, p, &o, &k, !broken, t, turning);
+    if (fades(&args->law, p))
+        add_bond(args, i, p, &o, &k, !broken, t, turning);
     for (int c = 0; c < 3 && args->law.sliding == RG_SLIDING_STUCK; c++)
         t[c] += p->iso * o.shear[c];
     set_bit(&args->unlinked[i], q, !closed);
@@ -557,6 +619,13 @@ static void point_energy(const rg_interface_args *args, size_t i, int q, double 
     if (law->activation == RG_ACTIVATION_CONSERVING)
         energy[RG_E_UNRESOLVED] += p.weight * p.area * p.strength *
                                    fmax(0, *k.state[RG_CRACK_GIVEN] - critical_opening(law, &p, &k) / 2);
+    if (fades(law, &p)) {
+        double x = *k.bond[RG_BOND_STRETCH], y = *k.bond[RG_BOND_STRETCH + 1];
+        double more = x * x + y * y - *k.bond[RG_BOND_START];
+        energy[RG_E_COHESIVE] += p.weight * p.iso * (1 - *k.bond[RG_BOND_DAMAGE]) * more / 2;
+        energy[RG_E_DISSIPATED] += p.weight * *k.bond[RG_BOND_HEAT];
+        energy[RG_E_UNRESOLVED] += p.weight * *k.bond[RG_BOND_GIVEN];
+    }
     if (law->criterion == RG_CRITERION_MOHR_COULOMB)
         energy[RG_E_UNRESOLVED] -= p.weight * *k.loan;
 }

@@ -154,6 +154,7 @@ typedef struct {
         rg_law law;
         double strength, energy, beta;
         rg_criterion criterion;
+        rg_shear shear;                   /* of faces with beta 0 */
         rg_expr *strength_at, *energy_at; /* as in rg_face_set; NULL: the number */
         rg_activation activation;
         double onset; /* of a conserving activation (kernels.h: RG_ONSET) */

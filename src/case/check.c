@@ -280,6 +280,8 @@ static void learn(rg_check *ck, const rg_key *key, const rg_node *node, bool goo
         rg_contact_rule(ck, node);
     } else if (key->offset == offsetof(rg_case, interface.friction) && good) {
         rg_friction_rule(ck, node);
+    } else if (key->offset == offsetof(rg_case, interface.shear) && node != NULL && good) {
+        rg_shear_rule(ck, node);
     } else if (key->offset == offsetof(rg_case, interface.criterion) && node != NULL && good) {
         rg_criterion_rule(ck, node);
     } else if (key->offset == offsetof(rg_case, mass) && good && ck->form) {

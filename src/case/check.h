@@ -76,6 +76,9 @@ void rg_activation_rule(rg_check *ck, const rg_node *node, bool good);
  */
 void rg_contact_rule(rg_check *ck, const rg_node *node);
 
+/* Shear that fades needs a conserving activation. */
+void rg_shear_rule(rg_check *ck, const rg_node *node);
+
 /* Mohr and Coulomb's criterion: what it needs beside it. */
 void rg_criterion_rule(rg_check *ck, const rg_node *node);
 

@@ -70,6 +70,10 @@ static const char *const activations_meaning[] = {
     "the opening counts from the jump at the moment of breaking, so the traction is continuous in time",
     "the whole jump enters at once (the thesis's): gains energy",
     "like continuous, and so that the energy of the switch adds up, for long runs of violent breaks (form variational, contact penalty or potential; law linear, rate or benzeggagh-kenane)"};
+static const char *const shears[] = {"released", "fading", NULL};
+static const char *const shears_meaning[] = {
+    "it drops from one step to the next, whatever it is",
+    "a spring of the penalty goes on with it and fades as the face opens: with activation conserving"};
 static const char *const criteria[] = {"quadratic", "mohr-coulomb", NULL};
 static const char *const criteria_meaning[] = {
     "where (tension/strength)^2 + (shear/(beta strength))^2 reaches 1; pressure does not matter",
@@ -180,6 +184,8 @@ static const rg_key case_keys[] = {
      CASE(interface.contact), MEANS("how closed cracks push")},
     {.name = "interface.friction", REAL, FROM(0), DEFAULT(0), GROUP(COHESIVE), CASE(interface.friction),
      MEANS("Coulomb's coefficient of closed cracks, with contact penalty or potential")},
+    {.name = "interface.shear", EXPLAINED(shears), ELSE("released"), GROUP(SWITCH), CASE(interface.shear),
+     MEANS("what becomes of the shear traction of faces with beta 0 where they break")},
     {.name = "interface.criterion", EXPLAINED(criteria), ELSE("quadratic"), GROUP(SWITCH),
      CASE(interface.criterion), MEANS("when a face breaks")},
 #define RG_LAW_PARAMETER(NAME, index, word, unit_, low_, high_, fallback_, words)                            \

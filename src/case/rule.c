@@ -201,6 +201,14 @@ void rg_friction_rule(rg_check *ck, const rg_node *node) {
     }
 }
 
+void rg_shear_rule(rg_check *ck, const rg_node *node) {
+    if (ck->c->interface.shear == RG_SHEAR_FADING && ck->usage[RG_GROUP_ONSET] == RG_UNUSED) {
+        rg_subject subject = {.key = "interface.shear", .value = node->text};
+        rg_problem_add(ck->problems, node->at, &subject,
+                       "needs interface.activation conserving, which counts what the spring begins with");
+    }
+}
+
 void rg_criterion_rule(rg_check *ck, const rg_node *node) {
     const rg_case *c = ck->c;
     if (c->interface.criterion != RG_CRITERION_MOHR_COULOMB || ck->usage[RG_GROUP_ONSET] == RG_UNSURE) {

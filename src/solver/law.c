@@ -50,6 +50,7 @@ rg_cohesive rg_law_make(const rg_case *c) {
                        .onset = c->interface.onset * fmax(1, c->interface.beta * c->interface.beta),
                        .beta_s = c->interface.beta_s,
                        .contact = c->interface.contact,
+                       .shear = c->interface.shear,
                        .sliding = has_friction(c) ? RG_SLIDING_COULOMB : RG_SLIDING_FREE,
                        .friction = c->interface.friction};
     memcpy(law.shape, c->interface.shape[law.law], sizeof law.shape);
@@ -74,8 +75,9 @@ double rg_law_steps(const rg_cohesive *law) {
 
 size_t rg_crack_stride(const rg_cohesive *law) {
     size_t friction = law->sliding == RG_SLIDING_COULOMB ? RG_FRICTION_BLOCK : 0;
+    size_t bond = law->shear == RG_SHEAR_FADING ? RG_BOND_BLOCK : 0;
     size_t loan = law->criterion == RG_CRITERION_MOHR_COULOMB ? RG_LOAN_BLOCK : 0;
-    return RG_CRACK_BLOCK + (size_t)facts_of(law).memory * RG_POINTS * RG_LANES + loan + friction;
+    return RG_CRACK_BLOCK + (size_t)facts_of(law).memory * RG_POINTS * RG_LANES + bond + loan + friction;
 }
 
 /* Breaks a face whose elements are of tile t and opens it beyond full separation. */

@@ -298,7 +298,9 @@ static rg_model linear_model(const rg_model *of, double stiffest, state which, r
     m.law.strength = 1e300; /* never reached */
     m.law.criterion = RG_CRITERION_QUADRATIC;
     m.law.contact = RG_CONTACT_LINEAR; /* that of a potential too where nothing has slid */
-    m.law.sliding = m.law.sliding == RG_SLIDING_FREE ? RG_SLIDING_FREE : RG_SLIDING_STUCK;
+    bool held = m.law.sliding != RG_SLIDING_FREE || m.law.shear != RG_SHEAR_RELEASED;
+    m.law.sliding = held ? RG_SLIDING_STUCK : RG_SLIDING_FREE;
+    m.law.shear = RG_SHEAR_RELEASED;
     m.law.law = RG_LAW_LINEAR; /* failed, so contact alone acts; and without memory */
     if (which == COHESIVE) { /* contact, no softer than the law, both ways; the law's own slope in sliding */
         m.law.law = RG_LAW_FREE;

@@ -17,8 +17,8 @@ VARIANTS = {
     "conserving": {"interface.activation": "conserving", "interface.criterion": "mohr-coulomb", "interface.friction": 0.4},
     "isotropic": {"interface.penalty": "isotropic"},
     "friction": {"interface.friction": 0.5, "interface.contact": "potential", "interface.activation": "conserving",
-                 "interface.law": "benzeggagh-kenane", "interface.strength": "4e8*(1.05 + 0.05*nx)", "interface.sets": [
-        {"where": "x > 0", "beta": "1.5 + 0.2*ny", "energy": "30 + 5e4*x", "friction": 0.2, "weibull": {"modulus": 20, "area": 1e-9}},
+                 "interface.law": "benzeggagh-kenane", "interface.shear": "fading", "interface.strength": "4e8*(1.05 + 0.05*nx)", "interface.sets": [
+        {"where": "x > 0", "beta": "y > 0 ? 0 : 1.5 + 0.2*ny", "energy": "30 + 5e4*x", "friction": 0.2, "weibull": {"modulus": 20, "area": 1e-9}},
         {"where": "z*z < 1e-8", "law": "none"}]},
     "continuous": {"interface.form": "continuous", "interface.faces": "nz*nz > 0.5"},
     "prescribed": {"boundary": [{"set": "z+", "component": "z", "velocity": "1e8*t*(1 + 1e3*x)"},

@@ -126,8 +126,8 @@ VARIANTS = {  # test_checkpoint.c has more, on one rank
     "conserving": {"interface.activation": "conserving", "interface.criterion": "mohr-coulomb", "interface.friction": 0.4, "interface.law": "linear" if SINGLE else "rate"},
     "intrinsic": {"interface.form": "intrinsic", "interface.law": "xu-needleman"},
     "friction": {"interface.friction": 0.5, "interface.contact": "potential", "interface.activation": "conserving",
-                 "interface.law": "benzeggagh-kenane", "interface.strength": "4e8*(1.05 + 0.05*nx)", "interface.sets": [
-        {"where": "x > 0", "beta": "1.5 + 0.2*ny", "energy": "30 + 5e4*x", "friction": 0.2, "weibull": {"modulus": 20, "area": 1e-9}},
+                 "interface.law": "benzeggagh-kenane", "interface.shear": "fading", "interface.strength": "4e8*(1.05 + 0.05*nx)", "interface.sets": [
+        {"where": "x > 0", "beta": "y > 0 ? 0 : 1.5 + 0.2*ny", "energy": "30 + 5e4*x", "friction": 0.2, "weibull": {"modulus": 20, "area": 1e-9}},
         {"where": "z*z < 1e-8", "law": "none"}]},
     "viscosity": {"viscosity": {"linear": 0.06, "quadratic": 1.2}},
     "continuous": {"interface.form": "continuous", "interface.faces": "nz*nz > 0.5"},

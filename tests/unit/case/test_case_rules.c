@@ -281,6 +281,13 @@ static const mistake law_and_form[] = {
     {"  law: linear\n",
      "  law: linear\n"
      "  activation: total\n"
+     "  shear: fading\n",
+     ":12:10: interface.shear: fading: needs interface.activation conserving, which counts what the spring "
+     "begins "
+     "with\n"},
+    {"  law: linear\n",
+     "  law: linear\n"
+     "  activation: total\n"
      "  criterion: mohr-coulomb\n",
      ":12:14: interface.criterion: mohr-coulomb: needs interface.activation conserving, by which pressure "
      "goes on "
@@ -544,6 +551,7 @@ static void test_good(void **state) {
     expect_good("  law: linear\n", "  law: linear\n  sets: [{where: nx, law: none}]\n");
     expect_good("  law: linear\n",
                 "  law: linear\n  activation: conserving\n  criterion: mohr-coulomb\n  friction: 0.5\n");
+    expect_good("  law: linear\n", "  law: linear\n  activation: conserving\n  beta: 0\n  shear: fading\n");
     expect_good("boundary:\n", "mass: lumped\nboundary:\n");
     expect_good("  energy: 34\n", "  energy: 34\n  form: continuous\n  faces: nx\nmass: lumped\n");
     expect_good("output:\n", "output:\n  times: [0, 1e-6]\n  fields: [rank, triaxiality, material]\n");

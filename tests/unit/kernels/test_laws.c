@@ -343,7 +343,8 @@ typedef struct {
 static size_t stride_of(const input *in) {
     size_t friction = in->law.sliding == RG_SLIDING_COULOMB ? RG_FRICTION_BLOCK : 0;
     size_t loan = in->law.criterion == RG_CRITERION_MOHR_COULOMB ? RG_LOAN_BLOCK : 0;
-    return RG_CRACK_BLOCK + friction + loan +
+    size_t bond = in->law.shear == RG_SHEAR_FADING ? RG_BOND_BLOCK : 0;
+    return RG_CRACK_BLOCK + friction + loan + bond +
            (size_t)rg_law_facts_of(in->law.law, in->law.shape, in->law.beta).memory * RG_POINTS * RG_LANES;
 }
 
@@ -496,6 +497,10 @@ static void check_kernel(const rg_kernels *set, input_kind kind, const rg_cohesi
     size_t stride = stride_of(in), memory = (size_t)rg_law_facts_of(law->law, law->shape, law->beta).memory;
     compare_cracks(set->name, word, &out, &ref, stride);
     compare_kept(set->name, word, &(kept){"memory", stride, RG_CRACK_BLOCK, memory}, &out, &ref);
+    if (law->shear == RG_SHEAR_FADING)
+        compare_kept(set->name, word,
+                     &(kept){"bond", stride, RG_CRACK_BLOCK + memory * RG_POINTS * RG_LANES, RG_BOND}, &out,
+                     &ref);
     if (law->criterion == RG_CRITERION_MOHR_COULOMB)
         compare_kept(set->name, word, &(kept){"loan", stride, stride - RG_FRICTION_BLOCK - RG_LOAN_BLOCK, 1},
                      &out, &ref);
@@ -567,9 +572,13 @@ static void test_kernels(void **state) {
                 if (s.onset > 0) {
                     check_kernel(sets[k], (input_kind)kind, &law, NULL);
                     check_kernel(sets[k], (input_kind)kind, &law, &all);
+                    law.shear = RG_SHEAR_FADING; /* of those with beta 0 */
+                    law.contact = kind == 0 ? RG_CONTACT_POTENTIAL : RG_CONTACT_PENALTY;
+                    check_kernel(sets[k], (input_kind)kind, &law, &all);
                     law.sliding = RG_SLIDING_COULOMB;
                     law.criterion = RG_CRITERION_MOHR_COULOMB;
-                    law.contact = kind == 0 ? RG_CONTACT_POTENTIAL : RG_CONTACT_PENALTY;
+                    check_kernel(sets[k], (input_kind)kind, &law, &all);
+                    law.shear = RG_SHEAR_RELEASED;
                     check_kernel(sets[k], (input_kind)kind, &law, NULL);
                     check_kernel(sets[k], (input_kind)kind, &law, &all);
                 }

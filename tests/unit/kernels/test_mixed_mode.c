@@ -196,10 +196,67 @@ static void test_mohr_coulomb(void **state) {
     assert_true(state_figure(gone));
 }
 
+/* ---- Shear that fades ---- */
+
+/* A point that breaks by opening goes on with all of its traction; opened by x critical openings and slid by
+ * s it has 1 - x of it and of k s; work is what it stores and takes. */
+static void open_and_slide(const rg_kernels *set, figure *held, figure *balance) {
+    static const double none[2] = {0, 0}, pull[2] = {1.0001 * SIGMA, 0.7 * SIGMA};
+    rg_cohesive law = {.strength = SIGMA,
+                       .opening = DELTA,
+                       .separation = DELTA,
+                       .activation = RG_ACTIVATION_CONSERVING,
+                       .onset = 0.3,
+                       .beta_s = 4,
+                       .contact = RG_CONTACT_POTENTIAL,
+                       .shear = RG_SHEAR_FADING};
+    point p;
+    point_make(&p, set, law);
+    double before[2], now[2], work = 0, opened = 0, slid = 0;
+    load(&p, pull, none);
+    assert_int_equal(p.bench.broken[0], FACE_BENCH_ALL);
+    traction(&p, before);
+    raise_figure(held, before[0], SIGMA, SIGMA);
+    raise_figure(held, before[1], pull[1], SIGMA);
+    double first = energy(&p, RG_E_COHESIVE) + energy(&p, RG_E_DISSIPATED);
+    for (int k = 1; k <= STEPS; k++) { /* there and some of the way back along the face */
+        double step[2] = {1.02 * DELTA / STEPS, 2e-10 * cos(0.005 * k)};
+        load(&p, pull, step);
+        traction(&p, now);
+        opened += step[0];
+        slid += step[1];
+        double left = fmax(0, 1 - opened / DELTA);
+        raise_figure(held, now[0], SIGMA * left, SIGMA);
+        raise_figure(held, now[1], left * (pull[1] + FACE_BENCH_ISO * slid), SIGMA);
+        for (int c = 0; c < 2; c++) {
+            work += 0.5 * (before[c] + now[c]) * step[c];
+            before[c] = now[c];
+        }
+    }
+    raise_figure(balance, energy(&p, RG_E_COHESIVE) + energy(&p, RG_E_DISSIPATED) - first, work, GC);
+    assert_true(fabs(energy(&p, RG_E_COHESIVE)) < 1e-12 * GC && energy(&p, RG_E_UNRESOLVED) <= 0);
+    assert_true(fabs(energy(&p, RG_E_DISSIPATED) - GC) > 0.1 * GC); /* shear has its share */
+}
+
+static void test_fading(void **state) {
+    const rg_kernels *sets[INPUT_SETS];
+    int n = input_sets(sets, INPUT_SETS);
+    figure held = {"shear that fades: traction", .bound = sizeof(rg_real) == 8 ? 5e-12 : 1e-4,
+                   .why = ROUNDING},
+           balance = {"shear that fades: work against what is stored and taken",
+                      .bound = sizeof(rg_real) == 8 ? 2.6e-6 : 1e-4};
+    (void)state;
+    for (int k = 0; k < n; k++)
+        open_and_slide(sets[k], &held, &balance);
+    assert_true(state_figure(held));
+    assert_true(state_figure(balance));
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_benzeggagh_kenane),
         cmocka_unit_test(test_mohr_coulomb),
+        cmocka_unit_test(test_fading),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
