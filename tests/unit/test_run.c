@@ -148,16 +148,22 @@ static table read_energy(void) {
     FILE *f = fopen("out/energy.csv", "r");
     assert_non_null(f);
     assert_non_null(fgets(line, sizeof line, f));
+    int columns = 0; /* before the total */
+    char *total = strstr(line, ",total,");
+    for (char *at = line; total != NULL && at <= total; at++) {
+        columns += *at == ',';
+    }
+    assert_true(columns > 2 && columns < 32);
     while (fgets(line, sizeof line, f) != NULL && t.rows < MOST) {
-        double column[17];
+        double column[32];
         char *at = line;
-        for (int k = 0; k < 17; k++) {
+        for (int k = 0; k <= columns; k++) {
             column[k] = strtod(at, &at);
             at++;
         }
         t.step[t.rows] = (int64_t)column[0];
         t.time[t.rows] = column[1];
-        t.total[t.rows] = column[16];
+        t.total[t.rows] = column[columns];
         t.rows++;
     }
     fclose(f);
