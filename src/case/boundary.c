@@ -49,6 +49,24 @@ static bool check_component(rg_check *ck, const rg_node *item, const char *path,
     return needed == (node != NULL);
 }
 
+static bool check_times(rg_check *ck, const rg_node *item, const char *path, const rg_boundary *b) {
+    static const char *const keys[] = {"from", "until"};
+    const rg_node *node[2];
+    bool good = true;
+    for (int i = 0; i < 2; i++) {
+        node[i] = rg_node_find(item, keys[i], strlen(keys[i]));
+        if (node[i] != NULL && b->absorbing) {
+            wrong(ck, path, keys[i], node[i]->key_at, NULL, "not used: a side absorbs all the time");
+            good = false;
+        }
+    }
+    if (good && b->until > 0 && b->until <= b->from) {
+        wrong(ck, path, "until", node[1]->at, NULL, "not after `from`");
+        good = false;
+    }
+    return good;
+}
+
 static bool check_absorbing(rg_check *ck, const rg_node *item, const char *path, const rg_boundary *b) {
     const rg_node *node = rg_node_find(item, "absorbing", strlen("absorbing"));
     const rg_node *name = rg_node_find(item, "name", strlen("name"));
@@ -77,7 +95,8 @@ void rg_boundary_rule(rg_check *ck, const rg_node *list, int i, const char *path
         rg_name_rule(ck, item, path, b->name);
     }
     good = item->kind == RG_NODE_MAPPING && one_kind(ck, item, path, b) && good;
-    good = good && check_absorbing(ck, item, path, b) && check_component(ck, item, path, b);
+    good = good && check_absorbing(ck, item, path, b) && check_times(ck, item, path, b) &&
+           check_component(ck, item, path, b);
     if (!good || !rg_boundary_has_component(b)) {
         b->component = -1; /* equals no other */
         return;

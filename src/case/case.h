@@ -51,7 +51,8 @@ typedef struct {
     int component; /* 0, 1, 2 for x, y, z; -1: of what has none */
     rg_prescribed prescribed;
     rg_expr *value;
-    bool absorbing; /* waves leave by it, and nothing is prescribed */
+    bool absorbing;     /* waves leave by it, and nothing is prescribed */
+    double from, until; /* a motion is prescribed in between (s); until 0: without end */
 } rg_boundary;
 
 /* What a load is, of which it has one: X(NAME, key, unit), with `join` between them. What each does:

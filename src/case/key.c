@@ -130,7 +130,7 @@ const char *rg_law_word(rg_law law) {
 
 bool rg_key_has_default(const rg_key *key) {
     return key->need != RG_NEED_REQUIRED && key->alternative == RG_NO_ALTERNATIVE &&
-           key->group != RG_GROUP_COMPONENT;
+           !(key->group == RG_GROUP_COMPONENT && key->type == RG_KEY_CHOICE);
 }
 
 const char *rg_key_default(const rg_key *key, char *text, size_t size) {

@@ -322,6 +322,10 @@ static const rg_key boundary_keys[] = {
     RG_PRESCRIBED(PRESCRIBED, )
     {.name = "absorbing", .type = RG_KEY_BOOL, ELSE("a motion"), ONE_OF, .offset = offsetof(rg_boundary, absorbing),
      MEANS("true: waves that meet it straight on leave by it (Lysmer & Kuhlemeyer 1969): the traction is -rho c_d v along the normal, -rho c_s v across")},
+    {.name = "from", .unit = "s", REAL, FROM(0), ELSE("0"), GROUP(COMPONENT), .offset = offsetof(rg_boundary, from),
+     MEANS("the motion is prescribed from this time on, and free before")},
+    {.name = "until", .unit = "s", REAL, ABOVE(0), ELSE("the end of the run"), GROUP(COMPONENT), .offset = offsetof(rg_boundary, until),
+     MEANS("and no more from this one on: the side is released")},
 };
 
 #define LOAD(member) .offset = offsetof(rg_load_input, member)

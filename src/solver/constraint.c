@@ -55,6 +55,7 @@ struct rg_constraints {
     int *item;               /* [boundaries]: of the account; -1: it has no name */
     bool named;              /* some have */
     double dt_last, dt_kick; /* the step that led here; that of the kick */
+    bool timed, *acts;       /* some begin or end; [boundaries]: which act at present */
     bool varies;             /* some value depends on time or is a displacement */
     bool moving;             /* at the start the velocities are the initial ones */
     rg_first_bad bad;        /* where a value was not finite first, and when */
@@ -184,17 +185,43 @@ static void add_entry(rg_constraints *k, double mass, size_t slot, int c, unsign
     }
 }
 
+/* The patterns of all that an entry can be while some of its boundaries act and others do not. */
+static void make_parts(rg_constraints *k, const entry *e) {
+    unsigned of[RG_NODES], parts = 0; /* nodes of each boundary that the entry has */
+    int16_t known[RG_NODES];
+    for (int i = 0; i < e->pattern->constrained; i++) {
+        unsigned p = 0;
+        while (p < parts && known[p] != e->boundary[i]) {
+            p++;
+        }
+        if (p == parts) {
+            known[parts] = e->boundary[i];
+            of[parts++] = 0;
+        }
+        of[p] |= 1u << e->pattern->node[i];
+    }
+    for (unsigned acting = 0; acting < 1u << parts; acting++) {
+        unsigned mask = 0;
+        for (unsigned p = 0; p < parts; p++) {
+            mask |= (acting >> p & 1) != 0 ? of[p] : 0;
+        }
+        pattern_of(k, mask);
+    }
+}
+
 rg_constraints *rg_constraints_make(const rg_case *c, const rg_domain *d, const rg_part *part,
                                     const rg_material *m, rg_assembly *nodes, rg_account *account) {
     rg_constraints *k = RG_NEW(rg_constraints, 1);
     *k = (rg_constraints){.input = c, .domain = d, .account = account, .bad = {.which = RG_NOWHERE}};
     int *set = RG_NEW(int, (size_t)c->boundaries + 1);
     k->item = RG_NEW(int, (size_t)c->boundaries + 1);
+    k->acts = RG_NEW(bool, (size_t)c->boundaries + 1);
     for (int b = 0; b < c->boundaries; b++) {
         set[b] = set_number(part, c->boundary[b].set);
         k->varies = k->varies || boundary_varies(&c->boundary[b]);
         k->item[b] = c->boundary[b].name == NULL ? -1 : rg_account_add(account, c->boundary[b].name);
         k->named = k->named || k->item[b] >= 0;
+        k->timed = k->timed || c->boundary[b].from > 0 || c->boundary[b].until > 0;
     }
     uint16_t *on_set = list_nodes(k, &part->surface, set, nodes);
     k->tile_begin = RG_NEW(size_t, d->tiles + 1);
@@ -211,6 +238,9 @@ rg_constraints *rg_constraints_make(const rg_case *c, const rg_domain *d, const 
         }
     }
     k->tile_begin[d->tiles] = k->entries;
+    for (size_t n = 0; k->timed && n < k->entries; n++) {
+        make_parts(k, &k->entry[n]);
+    }
     rg_free(on_set);
     rg_free(set);
     return k;
@@ -274,13 +304,14 @@ void rg_constraints_start(rg_constraints *k, const rg_real *u, const rg_real *ve
             size_t at = rg_node_index((size_t)e->slot, e->pattern->node[i], e->component);
             e->is.before[i] = velocity[at];
             e->is.displacement[i] = u[at];
-            e->is.target[i] = e->is.present[i] = velocity_at(k, e, i, 0, 0);
-            double first = value_at(k, e, i, 0);
+            double begin = k->input->boundary[e->boundary[i]].from;
+            e->is.target[i] = e->is.present[i] = velocity_at(k, e, i, begin, 0);
+            double first = value_at(k, e, i, begin);
             if (!isfinite(first)) {
-                note(k, e, i, 0);
+                note(k, e, i, begin);
             }
             double volume = k->domain->geom[rg_geom_index((size_t)e->slot, RG_GEOM_VOLUME)];
-            jumps += is_placed(k, e, i) && fabs(first - u[at]) > JUMP * cbrt(volume);
+            jumps += is_placed(k, e, i) && !(begin > 0) && fabs(first - u[at]) > JUMP * cbrt(volume);
         }
     }
     char words[400];
@@ -302,9 +333,16 @@ void rg_constraints_start(rg_constraints *k, const rg_real *u, const rg_real *ve
 void rg_constraints_set(rg_constraints *k, double time, double dt_last, double dt) {
     k->dt_last = dt_last;
     k->dt_kick = 0.5 * (dt_last + dt);
+    for (int b = 0; b < k->input->boundaries; b++) {
+        const rg_boundary *of = &k->input->boundary[b];
+        k->acts[b] = time >= of->from && !(of->until > 0 && time >= of->until);
+    }
     for (size_t n = 0; k->varies && n < k->entries; n++) {
         entry *e = &k->entry[n];
         for (int i = 0; e->varies && i < e->pattern->constrained; i++) {
+            if (!k->acts[e->boundary[i]]) {
+                continue;
+            }
             if (is_placed(k, e, i)) {
                 double next = value_at(k, e, i, time + dt);
                 e->is.target[i] = (next - e->is.displacement[i]) / dt;
@@ -322,26 +360,46 @@ void rg_constraints_set(rg_constraints *k, double time, double dt_last, double d
 
 /* ---- Correction ---- */
 
-/* Adds to the velocities of an entry's nodes what brings the constrained ones to `target`, by `impulse` on
- * these; returns the work of that. */
-static double correct(const entry *e, const double *target, rg_real *velocity, double impulse[RG_NODES]) {
-    const pattern *p = e->pattern;
+static int position(const pattern *p, int node) {
+    int i = 0;
+    while (p->node[i] != node) {
+        i++;
+    }
+    return i;
+}
+
+/* That of the nodes of an entry whose boundaries act at present. */
+static const pattern *pattern_now(const rg_constraints *k, const entry *e) {
+    unsigned mask = 0;
+    for (int i = 0; k->timed && i < e->pattern->constrained; i++) {
+        mask |= (k->acts[e->boundary[i]] ? 1u : 0u) << e->pattern->node[i];
+    }
+    return k->timed ? k->patterns[mask] : e->pattern;
+}
+
+/* Adds to the velocities of an entry's nodes what brings those that are constrained now, by pattern p, to
+ * `target`, by `impulse` on these; returns the work of that. */
+static double correct(const entry *e, const pattern *p, const double *target, rg_real *velocity,
+                      double impulse[RG_NODES]) {
+    int of[RG_NODES]; /* positions in the entry's own pattern */
     double work = 0, change[RG_NODES];
+    memset(impulse, 0, RG_NODES * sizeof *impulse);
     for (int i = 0; i < p->constrained; i++) {
-        change[i] = target[i] - velocity[rg_node_index((size_t)e->slot, p->node[i], e->component)];
+        of[i] = p == e->pattern ? i : position(e->pattern, p->node[i]);
+        change[i] = target[of[i]] - velocity[rg_node_index((size_t)e->slot, p->node[i], e->component)];
     }
     for (int i = 0; i < p->constrained; i++) {
         double sum = 0;
         for (int j = 0; j < p->constrained; j++) {
             sum += p->impulse[i][j] * change[j];
         }
-        impulse[i] = e->mass * sum;
-        work += 0.5 * e->mass * sum * (e->is.before[i] + target[i]);
+        impulse[of[i]] = e->mass * sum;
+        work += 0.5 * e->mass * sum * (e->is.before[of[i]] + target[of[i]]);
     }
     for (int n = 0; n < RG_NODES; n++) {
         size_t at = rg_node_index((size_t)e->slot, p->node[n], e->component);
         if (n < p->constrained) {
-            velocity[at] = (rg_real)target[n];
+            velocity[at] = (rg_real)target[of[n]];
             continue;
         }
         double v = velocity[at];
@@ -379,25 +437,33 @@ static void book(const rg_constraints *k, const entry *e, const double impulse[R
 void rg_constraints_kick(rg_constraints *k, size_t tile, rg_real *velocity, rg_real *now) {
     for (size_t n = k->tile_begin[tile]; n < k->tile_begin[tile + 1]; n++) {
         entry *e = &k->entry[n];
+        const pattern *p = pattern_now(k, e);
         double impulse[RG_NODES];
         if (now != NULL) {
-            e->is.work_now = e->is.work + correct(e, e->is.present, now, impulse);
+            e->is.work_now = e->is.work + correct(e, p, e->is.present, now, impulse);
         }
-        e->is.work += correct(e, e->is.target, velocity, impulse);
+        e->is.work += correct(e, p, e->is.target, velocity, impulse);
         if (k->named) {
             book(k, e, impulse);
         }
         memcpy(e->is.before, e->is.target, sizeof e->is.before);
+        for (int i = 0; p != e->pattern && i < e->pattern->constrained; i++) {
+            if (!k->acts[e->boundary[i]]) { /* where it may begin */
+                e->is.before[i] = velocity[rg_node_index((size_t)e->slot, e->pattern->node[i], e->component)];
+            }
+        }
     }
 }
 
-void rg_constraints_drift(const rg_constraints *k, size_t tile, rg_real *u) {
+void rg_constraints_drift(rg_constraints *k, size_t tile, rg_real *u) {
     for (size_t n = k->tile_begin[tile]; n < k->tile_begin[tile + 1]; n++) {
-        const entry *e = &k->entry[n];
+        entry *e = &k->entry[n];
         for (int i = 0; i < e->pattern->constrained; i++) {
-            if (is_placed(k, e, i)) {
-                u[rg_node_index((size_t)e->slot, e->pattern->node[i], e->component)] =
-                    (rg_real)e->is.displacement[i];
+            rg_real *here = &u[rg_node_index((size_t)e->slot, e->pattern->node[i], e->component)];
+            if (is_placed(k, e, i) && k->acts[e->boundary[i]]) {
+                *here = (rg_real)e->is.displacement[i];
+            } else if (is_placed(k, e, i)) {
+                e->is.displacement[i] = *here;
             }
         }
     }
@@ -430,6 +496,7 @@ void rg_constraints_free(rg_constraints *k) {
     }
     rg_free(k->entry);
     rg_free(k->item);
+    rg_free(k->acts);
     rg_free(k->key);
     rg_free(k->tile_begin);
     rg_free(k);

@@ -44,7 +44,7 @@ void rg_constraints_set(rg_constraints *k, double time, double dt_last, double d
 void rg_constraints_kick(rg_constraints *k, size_t tile, rg_real *velocity, rg_real *now);
 
 /* What has a prescribed displacement gets it after the drift of tile `tile`. */
-void rg_constraints_drift(const rg_constraints *k, size_t tile, rg_real *u);
+void rg_constraints_drift(rg_constraints *k, size_t tile, rg_real *u);
 
 /* Adds the work done up to the last present time at which velocities were asked for (J) to `work`. */
 void rg_constraints_work(const rg_constraints *k, rg_exact_sum *work);

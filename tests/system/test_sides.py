@@ -111,3 +111,25 @@ def test_a_side_without_faces_is_refused(tmp_path):
                     "interface: {law: none}\ntime: {end: 1}\nloads: [{where: z > 2, pressure: 1}]\n")
     told = launch("check", case)
     assert told.returncode == 2 and told.stderr.endswith("loads[0]: no face of the surface is in it, where: z > 2\n")
+
+
+@pytest.mark.parametrize("kind, begin", [("velocity", 4e-7), ("displacement", 0)])
+def test_a_side_is_caught_and_released(run, figure, kind, begin):
+    """Free before and after, moved in between; beside it another side that only ends, at nodes that both have."""
+    end, other = 1.2e-6, 1.5e-6
+    value = {"velocity": 3, "displacement": "3*t"}[kind]
+    sets = {"boundary": [{"name": "hold", "set": "z-", "component": "x", kind: value, "from": begin, "until": end},
+                         {"name": "other", "set": "y+", "component": "x", "velocity": 0, "until": other}],
+            "material.model": "linear-elastic", "time.steps": 800, "output.interval": 10, "time.safety": 0.5,
+            "initial.velocity": {"x": 2}, "loads": [{"name": "push", "set": "x-", "force": {"x": 5}}]}
+    history, energy = (done := run(LOADS, sets=sets)).history, done.energy
+    time = history["time"]
+    for name, acts in (("hold", (time >= begin) & (time < end)), ("other", time < other)):
+        force = history[f"{name}_force_x"]
+        assert (force[~acts] == 0).all() and (force[acts] != 0).all() and acts.any() and not acts.all()
+    kinetic = energy["kinetic"][-1]
+    work = sum(history[f"{name}_work"][-1] for name in ("hold", "other", "push"))
+    figure(f"side with a prescribed {kind}, caught and released: energy error over the work",
+           abs(energy["total"][-1] - energy["total"][1]) / np.abs(history["hold_work"]).max(), bound=rounding(2e-13, 1e-3),
+           why=ROUNDING)
+    assert energy["external_work"][-1] == pytest.approx(work, rel=1e-6) and kinetic > 0

@@ -53,7 +53,7 @@ static const mistake mistakes[] = {
     {"mesh:\n", "cells: [1, 1, 1]\nmesh:\n", ":1:1: cells: unknown key; did you mean 'mesh.cells'?\n"},
     {"mesh:\n", "fracture: true\nmesh:\n", ":1:1: fracture: unknown key; " BLOCKS "\n"},
     {"velocity: 6.086", "velocity: 6.086, unit: 1",
-     ":14:46: boundary[0].unit: unknown key; allowed: name, set, component, " MOTIONS(", ") ", absorbing\n"},
+     ":14:46: boundary[0].unit: unknown key; did you mean 'until'?\n"},
     {"mesh:\n", "mesh.jitter: 0.1\nmesh:\n",
      ":1:1: mesh.jitter: unknown key: the parts of a dotted key stand on lines of their own\n"},
     {"  density: 3690\n", "  density: 3690\n  density: 3691\n",

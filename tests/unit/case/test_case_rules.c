@@ -406,7 +406,9 @@ static const mistake boundary[] = {
      "  - {set: x+, absorbing: true, name: a}\n"
      "  - {set: x+, absorbing: true, component: x, velocity: 1}\n"
      "  - {set: x+, velocity: 1}\n"
-     "  - {set: x+, component: y, velocity: 1, name: p}\n",
+     "  - {set: x+, component: y, velocity: 1, name: p}\n"
+     "  - {set: y+, absorbing: true, from: 1}\n"
+     "  - {set: y+, component: y, velocity: 1, from: 2, until: 1}\n",
      ":17:5: boundary[3]: set z- component z is prescribed twice, first at line 16 column 5\n"
      ":18:5: boundary[4]: set z+ component y is prescribed twice, first at line 15 column 5\n"
      ":19:26: boundary[5].component: q: not one of the allowed words; allowed: x, y, z\n"
@@ -423,7 +425,9 @@ static const mistake boundary[] = {
      ":28:32: boundary[14].name: not used: what leaves is `radiated` in energy.csv\n"
      ":29:15: boundary[15]: velocity and absorbing both given; " ONE_MOTION
      ":30:5: boundary[16].component: missing; allowed: x, y, z\n"
-     ":36:14: output.probes[0].name: p: the name of an earlier one in history.csv; allowed: letters, digits, "
+     ":32:32: boundary[18].from: not used: a side absorbs all the time\n"
+     ":33:58: boundary[19].until: not after `from`\n"
+     ":38:14: output.probes[0].name: p: the name of an earlier one in history.csv; allowed: letters, digits, "
      "_ "
      "and -; unique in history.csv\n"},
 };
