@@ -22,7 +22,9 @@
 #include "base/files.h"
 #include "base/interrupt.h"
 #include "case/read.h"
+#include "diagnostics/ledger.h"
 #include "output/fragment_table.h"
+#include "output/progress.h"
 #include "run.h"
 #include "support/child.h"
 
@@ -43,7 +45,7 @@ static int set_up(void **state) {
 
 static int clear(void **state) {
     (void)state;
-    return system("rm -rf out held looks") != 0;
+    return system("rm -rf out held looks taken shown") != 0;
 }
 
 static int tear_down(void **state) {
@@ -79,6 +81,27 @@ void __wrap_rg_fragment_table_look(rg_fragment_table *t, const rg_solver *s, con
     (void)t;
     (void)s;
     mark("looks", p != NULL ? '+' : '-');
+}
+
+static bool followed; /* the looks at the energy are noted, and the lines of progress */
+const rg_energy *__real_rg_ledger_take(rg_ledger *l, rg_solver *s);
+const rg_energy *__wrap_rg_ledger_take(rg_ledger *l, rg_solver *s);
+const rg_energy *__wrap_rg_ledger_take(rg_ledger *l, rg_solver *s) {
+    if (followed) {
+        FILE *f = fopen("taken", "a");
+        fprintf(f, "%d ", (int)s->step);
+        fclose(f);
+    }
+    return __real_rg_ledger_take(l, s);
+}
+
+void __real_rg_progress_show(rg_progress *p, const rg_solver *s, const rg_energy *e);
+void __wrap_rg_progress_show(rg_progress *p, const rg_solver *s, const rg_energy *e);
+void __wrap_rg_progress_show(rg_progress *p, const rg_solver *s, const rg_energy *e) {
+    if (followed) {
+        mark("shown", e->step == s->step ? '+' : '-');
+    }
+    __real_rg_progress_show(p, s, e);
 }
 
 /* ---- a run ---- */
@@ -351,6 +374,21 @@ static void test_step_follows_stiffness(void **state) {
 
 /* ---- ends before the end ---- */
 
+/* Four times as late as the last time, but after 16 steps at the earliest and 2048 at the latest; an output
+ * looks, too. */
+static void test_looks_at_the_energy(void **state) {
+    (void)state;
+    followed = true;
+    RUN(RG_OK, "interface={law: none}", "output.interval=100000", "time.steps=5200");
+    assert_string_equal(read_all("taken"), "0 16 64 256 1024 3072 5120 5200 ");
+    assert_string_equal(read_all("shown"), "++");
+    clear(NULL);
+    RUN(RG_OK, "interface={law: none}", "output.interval=50", "time.steps=230");
+    assert_string_equal(read_all("taken"), "0 16 50 100 150 200 230 ");
+    assert_string_equal(read_all("shown"), "++++++");
+    followed = false;
+}
+
 static void test_energy_limit(void **state) {
     (void)state;
     RUN(RG_FAILURE, "output.energy_limit=1e-9", "output.interval=3", "time.steps=30", "time.safety=0.9");
@@ -618,6 +656,7 @@ int main(int argc, char **argv) {
         cmocka_unit_test_teardown(test_step_follows_stiffness, clear),
         cmocka_unit_test_teardown(test_energy_limit, clear),
         cmocka_unit_test_teardown(test_energy_limit_between_outputs, clear),
+        cmocka_unit_test_teardown(test_looks_at_the_energy, clear),
         cmocka_unit_test_teardown(test_collapse, clear),
         cmocka_unit_test_teardown(test_not_finite, clear),
         cmocka_unit_test_teardown(test_restart, clear),
