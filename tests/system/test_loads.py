@@ -3,6 +3,7 @@ integrals: tests/unit/solver/test_load.c; bits on any layout and restarts: test_
 
 import numpy as np
 import pytest
+import rhegma
 from conftest import CASES, example, launch, rounding
 from figures import ROUNDING
 
@@ -39,10 +40,20 @@ def test_step_of_traction(run, figure, load):
     arrival = crossing(time, stress, TRACTION / 2) - RISE / 2
     figure(f"step of {load} on a bar: speed of its wave", 0.8e-3 / arrival, theory=SPEED, bound=2e-4, unit="m/s", relative=True)
     plateau = (time > 0.8e-3 / SPEED + 1.5 * RISE) & (time < 5e-7)
-    figure(f"step of {load} on a bar: stress behind it", stress[plateau].mean(), theory=TRACTION, bound=rounding(2.5e-6, 2e-4), unit="Pa", relative=True)
+    figure(f"step of {load} on a bar: stress behind it", stress[plateau].mean(), theory=TRACTION, bound=rounding(2.5e-6, 6e-6), unit="Pa", relative=True)
     figure(f"step of {load} on a bar: velocity behind it", history["p_vz"][plateau].mean(), theory=TRACTION / (DENSITY * SPEED),
-           bound=rounding(2.5e-6, 2e-4), unit="m/s", relative=True)
+           bound=rounding(2.5e-6, 6e-6), unit="m/s", relative=True)
     assert history["end_force_z"][-1] == pytest.approx(TRACTION * 25e-10, rel=2e-3)
+
+
+def test_impulse_of_a_blast(run, figure):
+    """On the example's slab, coarse and unbroken, once the pulse is over."""
+    history = run(example("blast.yaml"), sets={"mesh.cells": [4, 4, 1], "interface": {"law": "none", "beta_s": 2}, "time.end": 2.5e-3,
+                                               "output.fields": []}).history
+    points = np.array(rhegma.read_case(example("blast.yaml"))["tables"]["friedlander"]["points"])
+    impulse, force = np.trapz(points[:, 1], points[:, 0]) * 0.5e6 * 2e-3, history["blast_force_z"]
+    figure("impulse of a blast on a slab", -np.trapz(force, history["time"]), theory=impulse, bound=5e-4, unit="N s", relative=True)
+    assert force[0] == force[-1] == 0 and history["weight_force_z"] == pytest.approx(-9.81 * 2400 * 0.06, rel=1e-6)
 
 
 # ---- Work ----
@@ -57,7 +68,7 @@ def test_work_is_what_the_body_gains(run, figure):
     scale = sum(np.abs(work).max() for work in works)
     assert min(np.abs(work).max() for work in works) > 0.005 * scale
     figure("loads of every kind, 10,000 steps: energy error over the work", np.abs(energy["total"] - energy["total"][0]).max() / scale,
-           bound=rounding(1.5e-5, 1e-4))
+           bound=rounding(1.5e-5, 5e-5))
     total = np.interp(energy["time"], history["time"], sum(works))
     supports = energy["external_work"] - total  # of the prescribed motion, which does little
     assert 0 < np.abs(supports).max() < 0.3 * scale
@@ -82,7 +93,7 @@ def test_free_fall(run, figure, form, mass):
             "time.steps": 200}
     fall = run(LOADS, sets=sets)
     time, velocity, way = (fall.history[name][-1] for name in ("time", "p_vz", "p_uz"))
-    bound = rounding(2e-14, 1e-5)
+    bound = rounding(2e-14, 3e-5)
     figure(f"free fall, form {form}, mass {mass}: velocity", velocity, theory=-9.81e6 * time, bound=bound, unit="m/s", relative=True,
            why=ROUNDING)
     figure(f"free fall, form {form}, mass {mass}: way", way, theory=-9.81e6 * time**2 / 2, bound=bound, unit="m", relative=True,
