@@ -94,13 +94,15 @@ static void kinetic_energies(const rg_solver *s, const rg_tile *t, const rg_real
     }
 }
 
-/* The kinetic energy of what the velocity changes by from the time of the state to the middle of the step to
- * come, dt a/2. */
+/* The kinetic energy of what the velocity changes by in half a step, dt a/2. Of the steps behind and ahead it
+ * is the longer one: one that is cut short to end at a certain time is no other measure of the same energy.
+ */
 static void add_half_kick(rg_exact_sum *sum, const rg_solver *s, const rg_tile *t, rg_real *change,
                           double *energy) {
     size_t first = t->begin * RG_NODE_BLOCK, count = rg_tile_eblocks(t) * RG_NODE_BLOCK;
+    rg_real longer = (rg_real)(s->dt > s->dt_next && s->dt_next > 0 ? s->dt / s->dt_next : 1);
     for (size_t i = 0; i < count; i++) {
-        change[i] = s->velocity[first + i] - s->step_velocity[first + i];
+        change[i] = longer * (s->velocity[first + i] - s->step_velocity[first + i]);
     }
     kinetic_energies(s, t, change, energy);
     add_all(&sum[HALF_KICK], energy, rg_tile_eblocks(t) * RG_LANES);

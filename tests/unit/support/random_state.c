@@ -198,6 +198,7 @@ static void draw_registered(rg_solver *s, uint64_t seed) {
     }
     s->time = 1e-7 * (2 + drawn(seed, DRAW_RUN, 0, 0));
     s->dt = 1e-9 * (2 + drawn(seed, DRAW_RUN, 0, 1));
+    s->dt_next = 0.8 * s->dt;
     s->step = 123 + (int64_t)(50 * drawn(seed, DRAW_RUN, 0, 2));
     s->stiffening_anywhere = 1.5 + drawn(seed, DRAW_RUN, 0, 3);
     s->opening_rate = 1.5 + drawn(seed, DRAW_RUN, 0, 4);

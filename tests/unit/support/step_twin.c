@@ -341,7 +341,7 @@ static void add_elements(const twin *w, rg_energy *sum) {
     rg_kinetic_args args = {1, w->input->mass, w->geom, w->step_velocity, kinetic};
     rg_reference_kinetic(&args, 0, w->blocks);
     for (size_t i = 0; i < w->blocks * RG_NODE_BLOCK; i++)
-        change[i] = w->velocity[i] - w->step_velocity[i];
+        change[i] = (rg_real)(fmax(w->dt, w->dt_next) / w->dt_next) * (w->velocity[i] - w->step_velocity[i]);
     args.velocity = change;
     args.energy = kick;
     rg_reference_kinetic(&args, 0, w->blocks);
