@@ -33,7 +33,8 @@ typedef enum { RG_CONTACT_PENALTY, RG_CONTACT_FLUX, RG_CONTACT_POTENTIAL, RG_CON
 typedef enum { RG_SLIDING_FREE, RG_SLIDING_COULOMB, RG_SLIDING_STUCK } rg_sliding;
 
 /* Mass matrix (3). */
-typedef enum { RG_MASS_CONSISTENT, RG_MASS_LUMPED } rg_mass;
+typedef enum { RG_MASS_CONSISTENT, RG_MASS_LUMPED, RG_MASS_SCALED } rg_mass;
+enum { RG_MASSES = 3, RG_MASS_SCALE = 2 /* s of the scaled one (kernels/README.md, section 4) */ };
 
 /* The two sweeps of a step (src/README.md): elements with the interfaces inside a tile, then the
  * tile-boundary faces. */

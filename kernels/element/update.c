@@ -1,7 +1,8 @@
 /* Central difference, element by element: the elements own their nodes, so the mass matrix is one constant 10
- * x 10 matrix times rho V. Consistent mass: its inverse has the entries 100, 10 (corner-corner), 2.5, 10
+ * x 10 matrix times rho V. Consistent mass M: its inverse has the entries 100, 10 (corner-corner), 2.5, 10
  * (corner-edge), 28.75, -6.875, 10 (edge-edge), applied here through sums. Lumped: HRZ, corners 1/36,
- * mid-edges 4/27. */
+ * mid-edges 4/27. Scaled: M_s^-1 = M^-1/s + (1 - 1/s) Q, where Q = I (I' M I)^-1 I' of the linear motions I
+ * has the entries 16, -4, 6, -4, 6, 1, -4. */
 #include "isa.h"
 #include "tet10.h"
 
@@ -70,10 +71,13 @@ RG_INLINE void sum_force(const rg_kick_args *args, size_t block, int lane, rg_sw
     }
 }
 
-/* f <- (M / (rho V))^-1 f, consistent. */
-RG_INLINE void solve_consistent(rg_vec f[RG_NODES]) {
+/* f <- (M_s / (rho V))^-1 f; s = 1: consistent. */
+RG_INLINE void solve_scaled(rg_vec f[RG_NODES], double s) {
+    double r = 1 / s, q = 1 - r; /* of M^-1, of Q */
     rg_vec corners = f[0] + f[1] + f[2] + f[3], edges = f[4] + f[5] + f[6] + f[7] + f[8] + f[9];
-    rg_vec at_corner = 10.0 * (corners + edges), at_edge = at_corner - 16.875 * edges;
+    rg_vec at_corner = rg_splat(10 * r - 4 * q) * (corners + edges);
+    rg_vec at_edge = at_corner + rg_splat(-16.875 * r + 5 * q) * edges;
+    rg_vec adjoining = rg_splat(-7.5 * r + 10 * q);
     rg_vec out[RG_NODES];
     for (int i = 0; i < 4; i++) {
         rg_vec adjacent = {0};
@@ -82,11 +86,12 @@ RG_INLINE void solve_consistent(rg_vec f[RG_NODES]) {
                 adjacent += f[rg_edge_node[i][j]];
             }
         }
-        out[i] = at_corner + 90.0 * f[i] - 7.5 * adjacent;
+        out[i] = at_corner + rg_splat(90 * r + 20 * q) * f[i] + adjoining * adjacent;
     }
     for (int e = 0; e < 6; e++) {
-        out[4 + e] = at_edge + 35.625 * f[4 + e] + 16.875 * f[4 + edge_opposite[e]] -
-                     7.5 * (f[edge_corner[e][0]] + f[edge_corner[e][1]]);
+        out[4 + e] = at_edge + rg_splat(35.625 * r + 5 * q) * f[4 + e] +
+                     rg_splat(16.875 * r - 5 * q) * f[4 + edge_opposite[e]] +
+                     adjoining * (f[edge_corner[e][0]] + f[edge_corner[e][1]]);
     }
     for (int n = 0; n < RG_NODES; n++) {
         f[n] = out[n];
@@ -111,7 +116,7 @@ RG_INLINE void kick_vector(const rg_kick_args *args, size_t block, int lane, rg_
         if (mass_matrix == RG_MASS_LUMPED) {
             solve_lumped(f[c]);
         } else {
-            solve_consistent(f[c]);
+            solve_scaled(f[c], mass_matrix == RG_MASS_SCALED ? RG_MASS_SCALE : 1);
         }
         for (int n = 0; n < RG_NODES; n++) {
             size_t at = block * RG_NODE_BLOCK + (size_t)((n * 3 + c) * RG_LANES + lane);
@@ -144,6 +149,8 @@ void RG_ISA_NAME(rg_kick)(const rg_kick_args *args, size_t begin, size_t end) {
                 kick_vector(args, b, lane, args->mass, RG_SWEEP_BOUNDARY);
             } else if (args->mass == RG_MASS_LUMPED) {
                 kick_vector(args, b, lane, RG_MASS_LUMPED, RG_SWEEP_ELEMENT);
+            } else if (args->mass == RG_MASS_SCALED) {
+                kick_vector(args, b, lane, RG_MASS_SCALED, RG_SWEEP_ELEMENT);
             } else {
                 kick_vector(args, b, lane, RG_MASS_CONSISTENT, RG_SWEEP_ELEMENT);
             }
@@ -157,9 +164,10 @@ void RG_ISA_NAME(rg_drift)(const rg_drift_args *args, size_t begin, size_t end) 
     }
 }
 
-/* v M v / (rho V) for one component, consistent: entries of 420 M are 6, 1 (corner-corner), -4, -6
- * (corner-edge), 32, 16, 8 (edge-edge). */
-RG_INLINE rg_vec consistent_square(const rg_vec v[RG_NODES]) {
+/* v M_s v / (rho V) for one component, M_s = s M + (1 - s) M Q M: entries of 420 M are 6, 1 (corner-corner),
+ * -4, -6 (corner-edge), 32, 16, 8 (edge-edge), those of 420 M Q M 7/15 of 6, 1, -4, -14, 56, 36, 16. */
+RG_INLINE rg_vec scaled_square(const rg_vec v[RG_NODES], double s) {
+    double q = (1 - s) * 7 / 15;
     rg_vec corners = v[0] + v[1] + v[2] + v[3], edges = {0}, corner_squares = {0}, edge_terms = {0};
     for (int i = 0; i < 4; i++) {
         corner_squares += v[i] * v[i];
@@ -167,11 +175,13 @@ RG_INLINE rg_vec consistent_square(const rg_vec v[RG_NODES]) {
     for (int e = 0; e < 6; e++) {
         rg_vec own = v[4 + e];
         edges += own;
-        edge_terms += own * (16.0 * own - 8.0 * v[4 + edge_opposite[e]] +
-                             4.0 * (v[edge_corner[e][0]] + v[edge_corner[e][1]]));
+        edge_terms +=
+            own * (rg_splat(16 * s + 20 * q) * own - rg_splat(8 * s + 20 * q) * v[4 + edge_opposite[e]] +
+                   rg_splat(4 * s + 20 * q) * (v[edge_corner[e][0]] + v[edge_corner[e][1]]));
     }
-    rg_vec sum =
-        5.0 * corner_squares + corners * corners - 12.0 * corners * edges + 16.0 * edges * edges + edge_terms;
+    rg_vec sum = rg_splat(5 * s + 5 * q) * corner_squares + rg_splat(s + q) * corners * corners -
+                 rg_splat(12 * s + 28 * q) * corners * edges + rg_splat(16 * s + 36 * q) * edges * edges +
+                 edge_terms;
     return sum / 420.0;
 }
 
@@ -193,7 +203,17 @@ void RG_ISA_NAME(rg_kinetic)(const rg_kinetic_args *args, size_t begin, size_t e
                 for (int n = 0; n < RG_NODES; n++) {
                     v[n] = rg_load(args->velocity + b * RG_NODE_BLOCK + (n * 3 + c) * RG_LANES + lane);
                 }
-                sum += args->mass == RG_MASS_LUMPED ? lumped_square(v) : consistent_square(v);
+                switch (args->mass) {
+                case RG_MASS_LUMPED:
+                    sum += lumped_square(v);
+                    break;
+                case RG_MASS_CONSISTENT:
+                    sum += scaled_square(v, 1);
+                    break;
+                case RG_MASS_SCALED:
+                    sum += scaled_square(v, RG_MASS_SCALE);
+                    break;
+                }
             }
             rg_store_wide(args->energy + (b - begin) * RG_LANES + lane,
                           rg_splat(0.5 * args->density) * volume * sum);

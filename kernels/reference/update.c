@@ -45,14 +45,37 @@ static double mean_product(polynomial p, polynomial r) {
     return sum;
 }
 
+/* Value of barycentric coordinate l_k at a node. */
+static double linear_value(int node, int k) {
+    static const int first[6] = {0, 1, 0, 0, 1, 2}, second[6] = {1, 2, 2, 3, 3, 3};
+    return node < 4 ? node == k : 0.5 * ((first[node - 4] == k) + (second[node - 4] == k));
+}
+
+/* Q = I (I' M I)^-1 I' over density and volume, I the linear motions: I' M I is the linear element's mass,
+ * (1 + delta)/20, its inverse 20 delta - 4. */
+static double affine_part(int a, int b) {
+    double sum = -4;
+    for (int k = 0; k < 4; k++)
+        sum += 20 * linear_value(a, k) * linear_value(b, k);
+    return sum;
+}
+
 /* Mass matrix divided by density and volume. */
 static void mass_matrix(rg_mass mass, double m[RG_NODES][RG_NODES]) {
+    double full[RG_NODES][RG_NODES];
     for (int a = 0; a < RG_NODES; a++)
-        for (int b = 0; b < RG_NODES; b++)
-            if (mass == RG_MASS_LUMPED)
-                m[a][b] = a != b ? 0 : a < 4 ? 1.0 / 36 : 4.0 / 27;
-            else
-                m[a][b] = mean_product(shape(a), shape(b));
+        for (int b = 0; b < RG_NODES; b++) {
+            full[a][b] = mean_product(shape(a), shape(b));
+            m[a][b] = mass == RG_MASS_LUMPED ? (a != b ? 0 : a < 4 ? 1.0 / 36 : 4.0 / 27) : full[a][b];
+        }
+    for (int a = 0; a < RG_NODES && mass == RG_MASS_SCALED; a++)
+        for (int b = 0; b < RG_NODES; b++) {
+            double affine = 0;
+            for (int i = 0; i < RG_NODES; i++)
+                for (int j = 0; j < RG_NODES; j++)
+                    affine += full[a][i] * affine_part(i, j) * full[j][b];
+            m[a][b] = RG_MASS_SCALE * full[a][b] + (1 - RG_MASS_SCALE) * affine;
+        }
 }
 
 /* Inverse by Gauss-Jordan elimination; positive definite, so no pivoting. Destroys m. */

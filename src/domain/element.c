@@ -59,16 +59,25 @@ static double by_kind(const double kind[7], int a, int b) {
 
 double rg_mass_entry(rg_mass kind, int a, int b) {
     static const double entry[7] = {6. / 420, 1. / 420, -4. / 420, -6. / 420, 32. / 420, 16. / 420, 8. / 420};
+    static const double affine[7] = {6. / 900,  1. / 900,  -4. / 900, -14. / 900,
+                                     56. / 900, 36. / 900, 16. / 900};
     if (kind == RG_MASS_LUMPED) {
         return a != b ? 0 : a < 4 ? 1. / 36 : 4. / 27;
+    }
+    if (kind == RG_MASS_SCALED) {
+        return RG_MASS_SCALE * by_kind(entry, a, b) + (1 - RG_MASS_SCALE) * by_kind(affine, a, b);
     }
     return by_kind(entry, a, b);
 }
 
 double rg_inverse_mass_entry(rg_mass kind, int a, int b) {
     static const double entry[7] = {100, 10, 2.5, 10, 28.75, -6.875, 10};
+    static const double affine[7] = {16, -4, 6, -4, 6, 1, -4};
     if (kind == RG_MASS_LUMPED) {
         return a != b ? 0 : a < 4 ? 36 : 27. / 4;
+    }
+    if (kind == RG_MASS_SCALED) {
+        return by_kind(entry, a, b) / RG_MASS_SCALE + (1 - 1. / RG_MASS_SCALE) * by_kind(affine, a, b);
     }
     return by_kind(entry, a, b);
 }

@@ -16,8 +16,9 @@
 /* All that the kernels write. */
 typedef struct {
     rg_real *force, *traction, *stiffening;
-    double *energy, *cauchy, *kinetic, *lumped_kinetic, *ienergy;
-    rg_real *velocity, *u, *now, *lumped_velocity, *lumped_u, *lumped_now;
+    double *energy, *cauchy, *kinetic, *lumped_kinetic, *scaled_kinetic, *ienergy;
+    rg_real *velocity, *u, *now, *lumped_velocity, *lumped_u, *lumped_now, *scaled_velocity, *scaled_u,
+        *scaled_now;
     rg_real *iforce, *turn, *crack;
     uint8_t *broken, *unlinked, *active;
 } output;
@@ -34,7 +35,7 @@ typedef struct {
 #define FIELD(name, rows, kinds, element)                                                                    \
     { #name, offsetof(output, name), sizeof *((output *)0)->name, rows, kinds, element }
 
-enum { FIELDS = 17, TRACTION_FIELD = 1, TURN_FIELD = 8, CRACK_FIELD = 15 };
+enum { FIELDS = 21, TRACTION_FIELD = 1, TURN_FIELD = 8, CRACK_FIELD = 15 };
 
 static const field fields[FIELDS] = {
     FIELD(force, 30, 1, true),
@@ -54,6 +55,10 @@ static const field fields[FIELDS] = {
     FIELD(lumped_now, 30, 1, true),
     FIELD(crack, RG_POINTS *RG_CRACK, RG_CRACK, false),
     FIELD(ienergy, RG_E_INTERFACE, RG_E_INTERFACE, false),
+    FIELD(scaled_kinetic, 1, 1, true),
+    FIELD(scaled_velocity, 30, 1, true),
+    FIELD(scaled_u, 30, 1, true),
+    FIELD(scaled_now, 30, 1, true),
 };
 
 static void *values(const output *out, int f) {
@@ -95,6 +100,8 @@ static output output_make(const input *in) {
     memcpy(out.u, in->u, node_bytes);
     memcpy(out.lumped_velocity, in->velocity, node_bytes);
     memcpy(out.lumped_u, in->u, node_bytes);
+    memcpy(out.scaled_velocity, in->velocity, node_bytes);
+    memcpy(out.scaled_u, in->u, node_bytes);
     memcpy(out.crack, in->crack, INPUT_IBLOCKS * RG_CRACK_BLOCK * sizeof(rg_real));
     out.broken = copy(in->broken, INPUT_ISLOTS);
     out.unlinked = copy(in->unlinked, INPUT_ISLOTS);
@@ -144,14 +151,16 @@ static void run_elements(const rg_kernels *set, const input *in, range r, output
     set->kinetic(&kinetic, r.begin, r.end);
     set->kick(&kick, r.begin, r.end);
     set->drift(&drift, r.begin, r.end);
-    kinetic.mass = kick.mass = RG_MASS_LUMPED;
-    kinetic.energy = out->lumped_kinetic + r.begin * RG_LANES;
-    kick.velocity = out->lumped_velocity;
-    kick.step_velocity = out->lumped_now;
-    drift = (rg_drift_args){2e-10, out->lumped_velocity, out->lumped_u};
-    set->kinetic(&kinetic, r.begin, r.end);
-    set->kick(&kick, r.begin, r.end);
-    set->drift(&drift, r.begin, r.end);
+    for (int k = 0; k < 2; k++) {
+        kinetic.mass = kick.mass = k == 0 ? RG_MASS_LUMPED : RG_MASS_SCALED;
+        kinetic.energy = (k == 0 ? out->lumped_kinetic : out->scaled_kinetic) + r.begin * RG_LANES;
+        kick.velocity = k == 0 ? out->lumped_velocity : out->scaled_velocity;
+        kick.step_velocity = k == 0 ? out->lumped_now : out->scaled_now;
+        drift = (rg_drift_args){2e-10, kick.velocity, k == 0 ? out->lumped_u : out->scaled_u};
+        set->kinetic(&kinetic, r.begin, r.end);
+        set->kick(&kick, r.begin, r.end);
+        set->drift(&drift, r.begin, r.end);
+    }
 }
 
 /* Interface energies are those of the input's state. */
