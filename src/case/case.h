@@ -132,8 +132,9 @@ typedef struct {
 } rg_body_input;
 
 typedef struct {
-    char *path; /* as given on the command line */
-    char *name; /* its file name without directory and extension */
+    char *path;       /* as given on the command line */
+    char *name;       /* its file name without directory and extension */
+    int64_t defaults; /* which set of them (default.h) */
     rg_curves tables;
     struct {
         int64_t cells[3];

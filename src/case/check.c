@@ -115,15 +115,19 @@ static bool missing(const scan *s, const rg_key *key, const char *path) {
     return false;
 }
 
-/* Of a choice it is the first word, which 0 stands for; of the fields see rg_fields_rule. */
+/* Of the fields see rg_fields_rule. */
 static void set_default(const rg_key *key, void *base) {
     char *value = (char *)base + key->offset;
-    int64_t integer = (int64_t)key->fallback;
+    double fallback = key->fallback_of != NULL ? key->fallback_of(base) : key->fallback;
+    int64_t integer = (int64_t)fallback;
+    int choice = (int)fallback;
     for (int i = 0; i < key->count && key->type == RG_KEY_REAL; i++) {
-        memcpy(value + (size_t)i * sizeof(double), &key->fallback, sizeof(double));
+        memcpy(value + (size_t)i * sizeof(double), &fallback, sizeof(double));
     }
     if (key->type == RG_KEY_INTEGER) {
         memcpy(value, &integer, sizeof integer);
+    } else if (key->type == RG_KEY_CHOICE) {
+        memcpy(value, &choice, sizeof choice);
     }
 }
 
@@ -275,7 +279,10 @@ static void learn(rg_check *ck, const rg_key *key, const rg_node *node, bool goo
     } else if (key->offset == offsetof(rg_case, interface.law)) {
         rg_law_rule(ck, node, good);
     } else if (key->offset == offsetof(rg_case, interface.activation)) {
+        ck->switch_given = node != NULL;
         rg_activation_rule(ck, node, good);
+    } else if (key->offset == offsetof(rg_case, interface.onset)) {
+        ck->switch_given |= node != NULL;
     } else if (key->offset == offsetof(rg_case, interface.contact) && good) {
         rg_contact_rule(ck, node);
     } else if (key->offset == offsetof(rg_case, interface.friction) && good) {

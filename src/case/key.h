@@ -11,10 +11,6 @@
 #include "case/case.h"
 #include "case/problem.h"
 
-/* Defaults that rest on measurements. */
-#define RG_DEFAULT_MASS   RG_MASS_CONSISTENT
-#define RG_DEFAULT_SAFETY 0.5
-
 typedef enum {
     RG_KEY_REAL,    /* double [count] */
     RG_KEY_INTEGER, /* int64_t [count] */
@@ -84,11 +80,12 @@ typedef struct {
     const char *const *choice;         /* NULL-terminated; of a text: with the built-in mesh only */
     const char *const *choice_meaning; /* what each means; NULL: the words say it */
     double fallback;
-    rg_law law;                       /* of a parameter of one law (RG_GROUP_LAW) */
-    size_t offset;                    /* of the value in the structure */
-    const struct rg_key_table *entry; /* of a list */
-    size_t offset_count;              /* of lists: where their length (int) is kept */
-    size_t offset_expr;               /* of RG_KEY_FACE: its rg_expr * */
+    double (*fallback_of)(const rg_case *); /* default.h: where keys before it decide; `absent` says how */
+    rg_law law;                             /* of a parameter of one law (RG_GROUP_LAW) */
+    size_t offset;                          /* of the value in the structure */
+    const struct rg_key_table *entry;       /* of a list */
+    size_t offset_count;                    /* of lists: where their length (int) is kept */
+    size_t offset_expr;                     /* of RG_KEY_FACE: its rg_expr * */
 } rg_key;
 
 typedef struct rg_key_table {

@@ -3,6 +3,8 @@
 
 #include <math.h>
 
+#include "case/default.h"
+
 #define CASE(member)    .offset = offsetof(rg_case, member)
 #define CHOICE(list)    .type = RG_KEY_CHOICE, .choice = (list)
 #define EXPLAINED(list) .type = RG_KEY_CHOICE, .choice = (list), .choice_meaning = list##_meaning
@@ -18,14 +20,16 @@
 #define OPTIONAL        .need = RG_NEED_OPTIONAL
 #define ELSE(words)     OPTIONAL, .absent = (words)
 #define DEFAULT(value)  .need = RG_NEED_DEFAULT, .fallback = (value)
-#define BOX             .group = RG_GROUP_BOX
-#define GROUP(name)     .group = RG_GROUP_##name
-#define ELASTIC         .models = 0 RG_MATERIALS(TAKES_YOUNG)
-#define CERAMIC         .models = RG_MATERIAL_BIT_DESHPANDE_EVANS
-#define MAY_CHANGE      .may_change = true /* on a restart */
-#define ONE_OF          .alternative = RG_EXACTLY_ONE
-#define SOME_OF         .alternative = RG_AT_LEAST_ONE
-#define MEANS(words)    .meaning = (words)
+#define DEFAULT_OF(key)                                                                                      \
+    .need = RG_NEED_DEFAULT, .fallback_of = rg_default_##key, .absent = RG_DEFAULT_WORDS_##key
+#define BOX          .group = RG_GROUP_BOX
+#define GROUP(name)  .group = RG_GROUP_##name
+#define ELASTIC      .models = 0 RG_MATERIALS(TAKES_YOUNG)
+#define CERAMIC      .models = RG_MATERIAL_BIT_DESHPANDE_EVANS
+#define MAY_CHANGE   .may_change = true /* on a restart */
+#define ONE_OF       .alternative = RG_EXACTLY_ONE
+#define SOME_OF      .alternative = RG_AT_LEAST_ONE
+#define MEANS(words) .meaning = (words)
 /* Number or expression of a face; the member beside, with _at behind its name, holds the latter. */
 #define FACE            .type = RG_KEY_FACE, .count = 1, .no_time = true, .normal = true
 #define OF_CASE(member) CASE(member), .offset_expr = offsetof(rg_case, member##_at)
@@ -92,10 +96,11 @@ static const char *const breakings[] = {"interface", "none", NULL};
 static const char *const breakings_meaning[] = {
     "by interface.law",
     "they never do"};
-static const char *const masses[] = {"consistent", "lumped", NULL};
+static const char *const masses[] = {"consistent", "lumped", "scaled", NULL};
 static const char *const masses_meaning[] = {
     "exact for the shape functions; its inverse is one constant matrix",
-    "HRZ, on the diagonal: the only one of form continuous and its default"};
+    "HRZ, on the diagonal: the only one of form continuous and its default",
+    "consistent on all that is linear in an element, its quadratic modes twice as heavy: a longer step, and fronts that come late by a fraction of an element"};
 static const char *const shapes[] = {"sphere", "plane", "cylinder", NULL};
 static const char *const shapes_meaning[] = {
     "of a radius", "all behind it is rigid", "of a radius, without ends"};
@@ -129,6 +134,11 @@ static const char *const fragments_meaning[] = {
     { .name = (name_), .unit = (unit_), .type = RG_KEY_EXPR, ELSE("0"), .no_time = true, CASE(initial.member), MEANS(words) }
 
 static const rg_key case_keys[] = {
+    {.name = "defaults", INTEGER, FROM_TO(0, RG_DEFAULTS), DEFAULT(0), MAY_CHANGE, CASE(defaults),
+     MEANS("which defaults the case means: 0, those that stand first here; 1, those that conserve energy at nearly the "
+           "critical step, of form variational: interface.beta_s 2, activation conserving, onset 1, contact potential, "
+           "time.safety 0.9")},
+
     {.name = "tables", .type = RG_KEY_TABLES, ELSE("none"), CASE(tables),
      MEANS("functions of one variable that expressions may call: straight lines between the points, or smooth, a monotone cubic; constant beyond the ends")},
 
@@ -163,7 +173,7 @@ static const rg_key case_keys[] = {
     {.name = "interface.faces", .type = RG_KEY_EXPR, ELSE("none"), .no_time = true, .normal = true, GROUP(FACES),
      CASE(interface.faces),
      MEANS("faces that carry an interface: those where it is not 0, by their middle and unit normal; without any the law must be none")},
-    {.name = "interface.beta_s", REAL, ABOVE(0), DEFAULT(4), GROUP(INTERFACE), CASE(interface.beta_s),
+    {.name = "interface.beta_s", REAL, ABOVE(0), DEFAULT_OF(beta_s), GROUP(INTERFACE), CASE(interface.beta_s),
      MEANS("interior penalty, in moduli over the height of an element")},
     {.name = "interface.penalty", EXPLAINED(penalties), DEFAULT(RG_PENALTY_ELASTIC), GROUP(DG),
      CASE(interface.penalty), MEANS("what beta_s multiplies")},
@@ -174,13 +184,13 @@ static const rg_key case_keys[] = {
      OF_CASE(interface.energy), MEANS("fracture energy G_c, per area of new crack; of a toughness: K_Ic^2 (1 - nu^2)/E")},
     {.name = "interface.beta", REAL, FROM(0), DEFAULT(1), GROUP(SHEAR), CASE(interface.beta),
      MEANS("weight of shear against opening; 0: opening alone breaks")},
-    {.name = "interface.activation", EXPLAINED(activations), DEFAULT(RG_ACTIVATION_CONTINUOUS), GROUP(SWITCH),
+    {.name = "interface.activation", EXPLAINED(activations), DEFAULT_OF(activation), GROUP(SWITCH),
      CASE(interface.activation), MEANS("how the law takes over where the strength is reached")},
-    {.name = "interface.onset", REAL, FROM_TO(0, 1), .low_open = true, DEFAULT(0.3), GROUP(ONSET),
+    {.name = "interface.onset", REAL, FROM_TO(0, 1), .low_open = true, DEFAULT_OF(onset), GROUP(ONSET),
      CASE(interface.onset),
      MEANS("opening from which the law starts, in jumps at which the penalty alone would carry the strength; "
            "a smaller one is stiffer")},
-    {.name = "interface.contact", EXPLAINED(contacts), DEFAULT(RG_CONTACT_PENALTY), GROUP(COHESIVE),
+    {.name = "interface.contact", EXPLAINED(contacts), DEFAULT_OF(contact), GROUP(COHESIVE),
      CASE(interface.contact), MEANS("how closed cracks push")},
     {.name = "interface.friction", REAL, FROM(0), DEFAULT(0), GROUP(COHESIVE), CASE(interface.friction),
      MEANS("Coulomb's coefficient of closed cracks, with contact penalty or potential")},
@@ -210,7 +220,7 @@ static const rg_key case_keys[] = {
     {.name = "viscosity.quadratic", REAL, FROM(0), DEFAULT(0), CASE(viscosity.quadratic),
      MEANS("b2, in compression alone, as 1.2")},
 
-    {.name = "mass", EXPLAINED(masses), DEFAULT(RG_DEFAULT_MASS), CASE(mass), MEANS("mass matrix")},
+    {.name = "mass", EXPLAINED(masses), DEFAULT(RG_MASS_CONSISTENT), CASE(mass), MEANS("mass matrix")},
 
     INITIAL("initial.displacement.x", "m", displacement[0], "displacement along x at the start"),
     INITIAL("initial.displacement.y", "m", displacement[1], "along y"),
@@ -229,7 +239,7 @@ static const rg_key case_keys[] = {
      .offset_count = offsetof(rg_case, bodies), MEANS("rigid bodies that the solid's surface touches; they move without turning")},
 
     {.name = "time.end", .unit = "s", REAL, ABOVE(0), REQUIRED, MAY_CHANGE, CASE(time.end), MEANS("end of the run")},
-    {.name = "time.safety", REAL, FROM_TO(0, 1), .low_open = true, DEFAULT(RG_DEFAULT_SAFETY), MAY_CHANGE,
+    {.name = "time.safety", REAL, FROM_TO(0, 1), .low_open = true, DEFAULT_OF(safety), MAY_CHANGE,
      CASE(time.safety), MEANS("time step as a fraction of the critical one")},
     {.name = "time.steps", INTEGER, FROM(1), ELSE("no limit"), MAY_CHANGE, CASE(time.steps),
      MEANS("the run ends after so many steps even before its end")},

@@ -176,7 +176,10 @@ void rg_activation_rule(rg_check *ck, const rg_node *node, bool good) {
 
 void rg_contact_rule(rg_check *ck, const rg_node *node) {
     bool conserving = ck->usage[RG_GROUP_ONSET] == RG_USED;
-    if (conserving && ck->c->interface.contact == RG_CONTACT_FLUX) {
+    bool flux = ck->c->interface.contact == RG_CONTACT_FLUX;
+    if (conserving && flux && !ck->switch_given) { /* a default that does not go with it */
+        ck->c->interface.activation = RG_ACTIVATION_CONTINUOUS;
+    } else if (conserving && flux) {
         rg_subject subject = {.key = "interface.contact",
                               .value = "flux",
                               .allowed = "with activation conserving: penalty, potential"};

@@ -337,7 +337,7 @@ static void put_choices(writer *w, const char *name, unsigned groups) {
         memcpy((char *)&made.c + key->offset, &i, sizeof i);
         open_group(w, NULL, '{');
         put_if(w, strchr(name, '.') + 1, key->choice[i],
-               key->need == RG_NEED_DEFAULT && i == (int)key->fallback);
+               key->need == RG_NEED_DEFAULT && key->fallback_of == NULL && i == (int)key->fallback);
         put_consequence(w, "then", &rg_case_table, "interface.", of_choice, &made);
         close_group(w, '}');
     }

@@ -75,7 +75,7 @@ def test_programs_in_c_write_the_same(tmp_path):
     said = subprocess.run([program], env=environment, capture_output=True, text=True, timeout=300)
     assert said.returncode == 0
     written = [json.loads(text) for text in path.read_text().splitlines()]
-    assert len(written) == 3 and all(f"# {line['quantity']}: found" in said.stderr for line in written)
+    assert len(written) == 5 and all(f"# {line['quantity']}: found" in said.stderr for line in written)
     for line in written:
         assert line["test"] == "test_friction" and line["ranks"] == 1 and 0 < line["found"] <= line["bound"]
         assert set(line) == {"quantity", "theory", "found", "bound", "relative", "unit", "why", "test", "ranks", "single"}

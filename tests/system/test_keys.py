@@ -44,7 +44,7 @@ def wrong(case):
 
 def test_the_document_is_what_the_program_prints():
     """Else renew it as it says itself."""
-    preface, *printed = (ROOT / "src/case/README.md").read_text().partition("\n## `tables`\n")
+    preface, *printed = (ROOT / "src/case/README.md").read_text().partition("\n## `defaults`\n")
     assert preface.startswith("# Case files\n")
     assert "".join(printed)[1:].splitlines() == said("--markdown").splitlines()
 
@@ -85,7 +85,7 @@ def test_values_as_an_editor_sees_them():
     assert values("material", "poisson") == {
         "description": "Poisson's ratio; required", "type": "number", "minimum": 0, "exclusiveMaximum": 0.5}
     assert values("time", "safety") == {
-        "description": "time step as a fraction of the critical one; default: 0.5", "type": "number", "exclusiveMinimum": 0,
+        "description": "time step as a fraction of the critical one; default: 0.5 (defaults 1: 0.9)", "type": "number", "exclusiveMinimum": 0,
         "maximum": 1}
     assert values("material", "density")["description"] == "reference density (kg/m3); required"
     assert values("initial", "velocity", "z") == {"description": "along z (m/s); default: 0", "type": ["number", "string"]}
@@ -177,7 +177,7 @@ def changed(path, changes):
     (SPALL, {"interface.law": "free"}, {"interface.energy"}),
     (SPALL, {"interface.bilinear.ascent": 0.1}, {"interface.bilinear"}),
     (INTRINSIC, {"interface.penalty": "elastic"}, {"interface.penalty"}),
-    (SPALL, {"interface.onset": 0.2}, {"interface.onset"}),
+    (SPALL, {"interface.activation": "continuous", "interface.onset": 0.2}, {"interface.onset"}),
     (INTRINSIC, {"interface.activation": "conserving", "interface.onset": 0.2}, {"interface.activation", "interface.onset"}),
     (SPALL, {"interface.faces": 1}, {"interface.faces"}),
     (SPALL, {"interface.weibull.seed": 1}, {"interface.weibull.seed"}),

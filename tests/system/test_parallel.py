@@ -13,6 +13,7 @@ VARIANTS = {
     "default": {},
     "incomplete": {"interface.form": "incomplete"},
     "lumped": {"mass": "lumped"},
+    "defaults 1, scaled": {"defaults": 1, "mass": "scaled"},
     "thesis": {"interface.activation": "total", "interface.contact": "flux"},
     "conserving": {"interface.activation": "conserving", "interface.criterion": "mohr-coulomb", "interface.friction": 0.4},
     "isotropic": {"interface.penalty": "isotropic"},

@@ -88,3 +88,17 @@ def test_a_longer_step_costs_energy(run, spall, figure):
     figure("spall, regular, time.safety 0.9: energy error", long.summary["energy_error_rel"], bound=0.007)
     figure("spall, regular, time.safety 0.9 against 0.5: first fracture", 1e6 * long.summary["first_fracture_time_s"],
            theory=1e6 * spall.summary["first_fracture_time_s"], bound=0.003, unit="us", relative=True)
+
+
+@pytest.mark.parametrize("mass, steps, energy, dissipated, first", [("consistent", 616, 3.9e-5, 5.616, 0.22886), ("scaled", 480, 4.8e-5, 5.508, 0.23103)])
+def test_defaults_that_conserve_halve_the_steps(run, figure, mass, steps, energy, dissipated, first):
+    """`defaults: 1`, with either mass; the numbers are what is found, held as closely as rounding lets them be told."""
+    spall = run(example("spall.yaml"), threads=2, sets={"defaults": 1, "mass": mass, "output.fields": []})
+    name = f"spall, defaults 1, {mass} mass"
+    figure(f"{name}: steps", spall.summary["steps"], theory=steps, unit="steps", bound=2)
+    figure(f"{name}: energy error", spall.summary["energy_error_rel"], bound=2 * energy)
+    figure(f"{name}: dissipated", 1e6 * spall.summary["dissipated_J"], theory=5.44, unit="uJ", bound=3 * (dissipated - 5.44))
+    figure(f"{name}: first fracture", 1e6 * spall.summary["first_fracture_time_s"], theory=1e6 * MEETING, unit="us",
+           bound=2 * (first - 1e6 * MEETING))
+    figure(f"{name}: stress at the probe, first plateau", 1e-6 * plateau(spall.history), theory=1e-6 * STRESS, unit="MPa",
+           bound=3e-3, relative=True)

@@ -46,10 +46,10 @@ static void test_defaults(void **state) {
     rg_case *c = read_good(path, 0, NULL);
     assert_true(c->mesh.jitter == 0 && c->mesh.seed == 1 && c->mesh.file == NULL);
     assert_true(c->interface.form == RG_FORM_VARIATIONAL && c->interface.penalty == RG_PENALTY_ELASTIC);
-    assert_true(c->interface.beta_s == 4 && c->interface.beta == 1);
+    assert_true(c->defaults == 0 && c->interface.beta_s == 4 && c->interface.beta == 1);
     assert_true(c->interface.activation == RG_ACTIVATION_CONTINUOUS);
-    assert_true(c->interface.contact == RG_CONTACT_PENALTY && c->mass == RG_DEFAULT_MASS);
-    assert_true(c->time.safety == RG_DEFAULT_SAFETY && c->time.steps == 0);
+    assert_true(c->interface.contact == RG_CONTACT_PENALTY && c->mass == RG_MASS_CONSISTENT);
+    assert_true(c->time.safety == 0.5 && c->time.steps == 0);
     assert_string_equal(c->output.dir, "results/bar");
     assert_true(c->output.interval_steps == 0 && c->output.interval_time == 1e-6 / 50);
     assert_true(c->output.fields == RG_FIELDS_COMMON && c->output.energy_limit == 0.05);
@@ -58,6 +58,76 @@ static void test_defaults(void **state) {
         assert_null(c->initial.velocity[k]);
     }
     rg_case_free(c);
+}
+
+/* What goes with the form, the law and the set of defaults that a case means; what is given stays. */
+static void test_defaults_that_follow(void **state) {
+    (void)state;
+    static const struct {
+        const char *change[4];
+        double beta_s, onset, safety;
+        rg_activation activation;
+        rg_contact contact;
+    } known[] = {
+        {{"defaults=1"}, 2, 1, 0.9, RG_ACTIVATION_CONSERVING, RG_CONTACT_POTENTIAL},
+        {{"defaults=0"}, 4, 0.3, 0.5, RG_ACTIVATION_CONTINUOUS, RG_CONTACT_PENALTY},
+        {{"defaults=1", "interface.law=rate"}, 2, 1, 0.9, RG_ACTIVATION_CONSERVING, RG_CONTACT_POTENTIAL},
+        {{"defaults=1", "interface={law: free, strength: 1}"},
+         2,
+         1,
+         0.9,
+         RG_ACTIVATION_CONTINUOUS,
+         RG_CONTACT_POTENTIAL},
+        {{"defaults=1", "interface.form=incomplete"},
+         4,
+         1,
+         0.5,
+         RG_ACTIVATION_CONTINUOUS,
+         RG_CONTACT_PENALTY},
+        {{"defaults=1", "interface.form=continuous", "interface.faces=1"},
+         4,
+         1,
+         0.5,
+         RG_ACTIVATION_CONTINUOUS,
+         RG_CONTACT_PENALTY},
+        {{"defaults=1", "interface.form=intrinsic", "interface.law=exponential"},
+         4,
+         1,
+         0.5,
+         RG_ACTIVATION_CONTINUOUS,
+         RG_CONTACT_PENALTY},
+        {{"defaults=1", "interface.contact=flux"}, 2, 1, 0.9, RG_ACTIVATION_CONTINUOUS, RG_CONTACT_FLUX},
+        {{"defaults=1", "interface.contact=penalty", "interface.friction=0.5"},
+         2,
+         1,
+         0.9,
+         RG_ACTIVATION_CONSERVING,
+         RG_CONTACT_PENALTY},
+        {{"defaults=1", "interface.beta_s=3", "interface.activation=total", "time.safety=0.25"},
+         3,
+         1,
+         0.25,
+         RG_ACTIVATION_TOTAL,
+         RG_CONTACT_POTENTIAL},
+        {{"defaults=0", "interface.activation=conserving", "interface.contact=potential"},
+         4,
+         0.3,
+         0.5,
+         RG_ACTIVATION_CONSERVING,
+         RG_CONTACT_POTENTIAL},
+    };
+    write_bytes(base, strlen(base));
+    for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
+        int changes = 0;
+        while (changes < 4 && known[i].change[changes] != NULL) {
+            changes++;
+        }
+        rg_case *c = read_good(path, changes, known[i].change);
+        assert_true(c->interface.beta_s == known[i].beta_s && c->interface.onset == known[i].onset);
+        assert_true(c->interface.activation == known[i].activation && c->time.safety == known[i].safety);
+        assert_true(c->interface.contact == known[i].contact);
+        rg_case_free(c);
+    }
 }
 
 static void test_overrides(void **state) {
@@ -355,6 +425,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_values),
         cmocka_unit_test(test_defaults),
+        cmocka_unit_test(test_defaults_that_follow),
         cmocka_unit_test(test_overrides),
         cmocka_unit_test(test_interval_kinds),
         cmocka_unit_test(test_expressions),

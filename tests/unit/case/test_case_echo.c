@@ -14,6 +14,7 @@ static const char small[] = "mesh: {cells: [2, 3, 4], size: [0.25, 2, 0.5]}\n"
 
 /* All that is not given. */
 static const char defaults[] =
+    "defaults: 0\n"
     "mesh:\n"
     "  cells: [2, 3, 4]\n"
     "  size: [0.25, 2, 0.5] # m\n"
@@ -180,6 +181,7 @@ static void test_defaults(void **state) {
 static void test_everything(void **state) {
     (void)state;
     expect_echo(small, sizeof all / sizeof *all - 1, all,
+                "defaults: 0\n"
                 "mesh:\n"
                 "  cells: [2, 3, 4]\n"
                 "  size: [0.25, 2, 0.5] # m\n"

@@ -15,7 +15,8 @@
     "allowed: list from displacement, velocity, stress, mean_stress, principal_stress, crack, "              \
     "damage, regime, plastic_strain, triaxiality, rank, fragment, material"
 #define BLOCKS                                                                                               \
-    "allowed: tables, mesh, material, materials, interface, viscosity, mass, initial, boundary, loads, "     \
+    "allowed: defaults, tables, mesh, material, materials, interface, viscosity, mass, initial, boundary, "  \
+    "loads, "                                                                                                \
     "bodies, time, output, checkpoint"
 #define CERAMIC        ": not used, because material.model is neo-hookean; it belongs to deshpande-evans\n"
 #define NAMES          "allowed: letters, digits, _ and -; unique in history.csv\n"
@@ -141,8 +142,8 @@ static const mistake mistakes[] = {
     {"  energy: 34\n", "  energy: 34\n  form: continuous\n  faces: 1\nmass: consistent\n",
      ":15:7: mass: consistent: couples all nodes that elements share, so that each step would have to solve "
      "with it; allowed: with form continuous: lumped\n"},
-    {"  law: linear\n", "  law: linear\n  onset: 0.2\n",
-     ":11:3: interface.onset: 0.2: not used, because interface.activation is not conserving\n"},
+    {"  law: linear\n", "  law: linear\n  activation: continuous\n  onset: 0.2\n",
+     ":12:3: interface.onset: 0.2: not used, because interface.activation is not conserving\n"},
     {"  law: linear\n", "  law: linear\n  activation: conserving\n  onset: 0\n  contact: flux\n",
      ":12:10: interface.onset: 0: out of range; allowed: number > 0 and <= 1\n"
      ":13:12: interface.contact: flux: brings DG terms back, whose energy activation conserving does not "
@@ -483,7 +484,7 @@ static void test_all_at_once(void **state) {
         ":7:3: interface.strength: missing; " STRENGTH
         ":8:11: interface.energy: 0: out of range; allowed: number > 0, or expression in x, y, z, nx, ny, nz "
         "(J/m2)\n"
-        "--set mass=heavy: mass: heavy: not one of the allowed words; allowed: consistent, lumped\n"
+        "--set mass=heavy: mass: heavy: not one of the allowed words; allowed: consistent, lumped, scaled\n"
         "--set time.end=-1: time.end: -1: out of range; allowed: number > 0 (s)\n");
 }
 

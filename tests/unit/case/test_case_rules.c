@@ -384,7 +384,7 @@ static const mistake law_and_form[] = {
     {"time:\n",
      "mass: [lumped]\n"
      "time:\n",
-     ":15:7: mass: [lumped]: not one of the allowed words; allowed: consistent, lumped\n"},
+     ":15:7: mass: [lumped]: not one of the allowed words; allowed: consistent, lumped, scaled\n"},
 };
 
 static const mistake boundary[] = {
@@ -495,7 +495,8 @@ static const mistake materials[] = {
      ":18:11: output.fields: damage: no material has such a field\n"
      ":18:11: output.fields: regime: no material has such a field\n"
      ":18:11: output.fields: plastic_strain: no material has such a field\n"
-     ":20:1: x: unknown key; allowed: tables, mesh, material, materials, interface, viscosity, mass, "
+     ":20:1: x: unknown key; allowed: defaults, tables, mesh, material, materials, interface, viscosity, "
+     "mass, "
      "initial, "
      "boundary, loads, bodies, time, output, checkpoint\n"},
     {"  model: neo-hookean\n",

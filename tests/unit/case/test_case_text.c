@@ -198,7 +198,7 @@ static void test_sections(void **state) {
     static const rg_key_table table = {alone, 3, 0};
     assert_true(rg_key_is_section(&table, "a") && rg_key_is_section(&table, "d"));
     assert_false(rg_key_is_section(&table, "c"));
-    assert_true(rg_key_find(&rg_case_table, "tables") == &rg_case_table.key[0]);
+    assert_true(rg_key_find(&rg_case_table, "defaults") == &rg_case_table.key[0]);
     assert_string_equal(rg_key_find(&rg_case_table, "checkpoint.keep")->name, "checkpoint.keep");
     assert_null(rg_key_find(&rg_case_table, "checkpoint"));
 }

@@ -1,0 +1,31 @@
+#include "case/default.h"
+
+#include "cohesive/facts.h"
+
+/* Whether the newer set holds for the case. */
+static bool conserves(const rg_case *c) {
+    return c->defaults >= 1 && c->interface.form == RG_FORM_VARIATIONAL;
+}
+
+double rg_default_beta_s(const rg_case *c) {
+    return conserves(c) ? 2 : 4;
+}
+
+double rg_default_activation(const rg_case *c) {
+    rg_law law = c->interface.law;
+    bool falls =
+        law != RG_LAW_NONE && (rg_law_facts_of(law, c->interface.shape[law], 1).forms & RG_ENVELOPE) != 0;
+    return conserves(c) && falls ? RG_ACTIVATION_CONSERVING : RG_ACTIVATION_CONTINUOUS;
+}
+
+double rg_default_onset(const rg_case *c) {
+    return c->defaults >= 1 ? 1 : 0.3;
+}
+
+double rg_default_contact(const rg_case *c) {
+    return conserves(c) ? RG_CONTACT_POTENTIAL : RG_CONTACT_PENALTY;
+}
+
+double rg_default_safety(const rg_case *c) {
+    return conserves(c) ? 0.9 : 0.5;
+}
