@@ -137,7 +137,7 @@ static const mistake mistakes[] = {
      "x, y, z, nx, ny, nz\n"},
     /* of a wrong value nothing more is told than that it is wrong */
     {"  energy: 34\n", "  energy: 34\n  form: continuous\n  faces: 1\nmass: lumpy\n",
-     ":15:7: mass: lumpy: not one of the allowed words; allowed: consistent, lumped; did you mean "
+     ":15:7: mass: lumpy: not one of the allowed words; allowed: consistent, lumped, scaled; did you mean "
      "'lumped'?\n"},
     {"  energy: 34\n", "  energy: 34\n  form: continuous\n  faces: 1\nmass: consistent\n",
      ":15:7: mass: consistent: couples all nodes that elements share, so that each step would have to solve "

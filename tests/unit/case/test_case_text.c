@@ -152,7 +152,7 @@ static void test_nearest_key(void **state) {
         {&rg_case_table, "fracture", NULL},
         {&rg_case_table, "qqqqqqqqqqqqqq", NULL},
         {&rg_case_table, "", NULL},
-        {&rg_boundary_table, "unit", NULL},
+        {&rg_boundary_table, "units", NULL},
         {&rg_boundary_table, "velocty", "velocity"},
         {&rg_material_table, "densty", "density"},
         {&rg_body_table, "velocity", "velocity"},
