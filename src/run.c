@@ -524,6 +524,7 @@ int rg_run_check(const rg_case *c, MPI_Comm comm) {
     rg_probes_close(rg_probes_find(s));
     rg_spectrum(s);
     rg_solver_start(s);
+    rg_solver_measure(s);
     rg_estimate estimate = rg_estimate_run(s);
     if (s->rank == 0) {
         rg_estimate_warn(c, &estimate);

@@ -7,6 +7,10 @@
 /* Initial displacement and velocity, constraints, stiffening at t = 0. Collective. */
 void rg_solver_start(rg_solver *s);
 
+/* Measures a pass anew, the best of a few: the first one waits for memory that nobody has read yet. The state
+ * at the start stays. Collective. */
+void rg_solver_measure(rg_solver *s);
+
 /* In its place where the state comes from a checkpoint (solver/state.h): makes what follows from that.
  * Collective.
  */
