@@ -28,7 +28,7 @@ typedef struct {
  * than he asked for is found out when the block is given back. */
 static const uint64_t guard = 0x9e3779b97f4a7c15;
 
-static size_t total;
+static size_t total, blocks;
 
 static header *head(void *block) {
     return (header *)block - 1;
@@ -58,12 +58,19 @@ static void check_guard(const header *h) {
     }
 }
 
+/* One block more or less, and its bytes; both may be negative. */
+static void count_blocks(size_t more, size_t bytes) {
+#pragma omp atomic
+    blocks += more;
+#pragma omp atomic
+    total += bytes;
+}
+
 static void *place(char *raw, header h) {
     char *block = raw + ALIGN + (ALIGN - ((uintptr_t)raw & (ALIGN - 1))) % ALIGN;
     *head(block) = h;
     put_guard(head(block));
-#pragma omp atomic
-    total += h.bytes;
+    count_blocks(1, h.bytes);
     return block;
 }
 
@@ -99,7 +106,8 @@ void *rg_realloc(void *block, size_t count, size_t size) {
     if (raw == NULL) {
         exhausted(count, size);
     }
-    *raw = (header){.raw = raw, .guarded = bytes}; /* not counted: set-up only */
+    count_blocks(old == NULL, 0);
+    *raw = (header){.raw = raw, .guarded = bytes}; /* its bytes are not counted: set-up only */
     put_guard(raw);
     return raw + 1;
 }
@@ -108,8 +116,7 @@ void rg_free(void *block) {
     if (block != NULL) {
         header *h = head(block);
         check_guard(h);
-#pragma omp atomic
-        total -= h->bytes;
+        count_blocks((size_t)-1, -h->bytes);
         if (h->mapped > 0) {
             munmap(h->raw, h->mapped);
         } else {
@@ -120,4 +127,8 @@ void rg_free(void *block) {
 
 size_t rg_alloc_total(void) {
     return total;
+}
+
+size_t rg_alloc_blocks(void) {
+    return blocks;
 }

@@ -1,4 +1,5 @@
-/* Memory: 64-byte aligned, zero where it says so, never NULL (out of memory ends the run with a message). */
+/* Memory: 64-byte aligned, zero where it says so, never NULL (out of memory ends the run with a message). Who
+ * writes behind a block, unless it is a large one, ends the run when it is given back. */
 #ifndef RG_MEM_H
 #define RG_MEM_H
 
@@ -29,6 +30,9 @@ void rg_free(void *block);
 /* Bytes that rg_alloc has given and rg_free has not taken back (address space; untouched pages cost nothing).
  */
 size_t rg_alloc_total(void);
+
+/* Blocks of any of these functions that rg_free has not taken back: for tests, which shall leave none. */
+size_t rg_alloc_blocks(void);
 
 #define RG_NEW(type, count) ((type *)rg_alloc((count), sizeof(type)))
 

@@ -8,7 +8,7 @@
 #include "mesh/improve/move.h"
 #include "mesh/improve/tets.h"
 
-enum { PASSES = 60, IDLE = 2 };
+enum { IDLE = 2 }; /* passes in a row that gain little, after which there is no other */
 
 static const double reach = 1.3, /* tetrahedra up to so many times the smallest height are worked on */
     progress = 1e-2;             /* relative growth of the smallest height in a pass that is not idle */
@@ -94,7 +94,7 @@ rg_improvement rg_mesh_improve(rg_mesh *mesh) {
     rg_tets t = rg_tets_make(mesh);
     rg_improvement done = {.before = smallest(&t)};
     double best = done.before;
-    for (int n = 0, idle = 0; n < PASSES && idle < IDLE; n++) {
+    for (int idle = 0; idle < IDLE;) {
         pass(&t, reach * best, &done);
         double now = smallest(&t);
         idle = now > best * (1 + progress) ? 0 : idle + 1;

@@ -28,6 +28,12 @@ static void project(const freedom *f, const double a[3], double out[3]) {
     memcpy(out, result, sizeof result);
 }
 
+static void add(double a[3], double factor, const double b[3]) {
+    for (int i = 0; i < 3; i++) {
+        a[i] += factor * b[i];
+    }
+}
+
 /* Takes the direction n (of length 1) away. */
 static void forbid(freedom *f, const double n[3]) {
     double m[3];
@@ -37,9 +43,7 @@ static void forbid(freedom *f, const double n[3]) {
         return;
     }
     for (int i = 0; i < 3; i++) {
-        for (int j = 0; j < 3; j++) {
-            f->p[i][j] -= m[i] * m[j] / square;
-        }
+        add(f->p[i], -m[i] / square, m);
     }
     /* what is left of nothing is rounding */
     if (f->p[0][0] + f->p[1][1] + f->p[2][2] < 0.5) {
@@ -54,9 +58,7 @@ static void confine(freedom *f, const double e[3]) {
     memset(f, 0, sizeof *f);
     if (rg_vector_dot(m, m) > 1 - in_plane * in_plane) {
         for (int i = 0; i < 3; i++) {
-            for (int j = 0; j < 3; j++) {
-                f->p[i][j] = e[i] * e[j];
-            }
+            add(f->p[i], e[i], e);
         }
     }
 }

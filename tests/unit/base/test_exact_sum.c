@@ -72,5 +72,5 @@ int main(int argc, char **argv) {
     check(false);
     check(true);
     check_lost_value();
-    return finish();
+    return finish_with_nothing_left();
 }

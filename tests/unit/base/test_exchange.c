@@ -299,5 +299,5 @@ int main(int argc, char **argv) {
     test_faults_of_all(29, RG_INPUT_ERRORS_TOLD);
     test_no_faults();
     test_words_of_one_fault();
-    return finish();
+    return finish_with_nothing_left();
 }

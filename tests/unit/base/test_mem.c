@@ -19,7 +19,7 @@ static void test_blocks(void **state) {
     (void)state;
     void *(*const alloc[])(size_t, size_t) = {rg_alloc, rg_alloc_sparse};
     static const size_t sizes[] = {0, 1, 7, 63, 64, 65, 1000, LARGE - 1, LARGE, LARGE + 1};
-    size_t before = rg_alloc_total();
+    size_t before = rg_alloc_total(), others = rg_alloc_blocks();
     for (size_t i = 0; i < 2 * sizeof sizes / sizeof *sizes; i++) {
         size_t size = sizes[i / 2];
         unsigned char *block[3];
@@ -32,11 +32,14 @@ static void test_blocks(void **state) {
             memset(block[k], 0xab, size);
         }
         assert_int_equal(rg_alloc_total() - before, 3 * size);
+        assert_int_equal(rg_alloc_blocks() - others, 3);
         rg_free(block[1]);
         assert_int_equal(rg_alloc_total() - before, 2 * size);
+        assert_int_equal(rg_alloc_blocks() - others, 2);
         rg_free(block[0]);
         rg_free(block[2]);
         assert_int_equal(rg_alloc_total(), before);
+        assert_int_equal(rg_alloc_blocks(), others);
     }
     rg_free(NULL);
     double *items = RG_NEW(double, 5);
@@ -47,7 +50,7 @@ static void test_blocks(void **state) {
 /* What is grown keeps what it held, is not counted, and has room for half as much again and 64 more. */
 static void test_growth(void **state) {
     (void)state;
-    size_t before = rg_alloc_total(), room = 0, growths = 0;
+    size_t before = rg_alloc_total(), others = rg_alloc_blocks(), room = 0, growths = 0;
     int *list = NULL;
     for (size_t n = 0; n < 1000; n++) {
         size_t had = room;
@@ -64,7 +67,9 @@ static void test_growth(void **state) {
         assert_int_equal(list[n], n);
     }
     assert_int_equal(rg_alloc_total(), before);
+    assert_int_equal(rg_alloc_blocks(), others + 1);
     rg_free(list);
+    assert_int_equal(rg_alloc_blocks(), others);
     assert_int_equal(rg_alloc_total(), before);
 }
 

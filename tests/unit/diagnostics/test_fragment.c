@@ -225,5 +225,5 @@ int main(int argc, char **argv) {
     check_overlap("sunk by a third of an element", 0.15, 1, true);
     check_overlap("sunk by elements", 1.3, 1, true);
     check_overlap("none of one that is torn", 0, 1e6, false);
-    return finish();
+    return finish_with_nothing_left();
 }

@@ -462,5 +462,5 @@ int main(int argc, char **argv) {
     check_fragments("shared nodes", 4, shared, 20);
     check_large();
     check_overlaps();
-    return finish();
+    return finish_with_nothing_left();
 }

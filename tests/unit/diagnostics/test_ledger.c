@@ -737,5 +737,5 @@ int main(int argc, char **argv) {
     check_plain();
     check_lumped();
     check_known_hash();
-    return finish();
+    return finish_with_nothing_left();
 }

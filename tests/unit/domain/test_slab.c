@@ -116,5 +116,5 @@ int main(int argc, char **argv) {
         rg_slab_free(s);
         rg_free(d.id);
     }
-    return finish();
+    return finish_with_nothing_left();
 }

@@ -12,6 +12,8 @@
 
 #include <cmocka.h>
 
+#include "base/mem.h"
+
 #include "base/error.h"
 #include "mesh/import/vtk_read.h"
 #include "support/mesh_text.h"
@@ -573,5 +575,6 @@ int main(void) {
         cmocka_unit_test(test_legacy_mistakes), cmocka_unit_test(test_binary),  cmocka_unit_test(test_xml),
         cmocka_unit_test(test_stored),
     };
-    return cmocka_run_group_tests_name("vtk", tests, set_up, tear_down);
+    int failed = cmocka_run_group_tests_name("vtk", tests, set_up, tear_down);
+    return failed + (rg_alloc_blocks() > 0); /* all is given back */
 }

@@ -308,5 +308,5 @@ int main(int argc, char **argv) {
     if (rank == 0) {
         failures += rmdir(place) != 0;
     }
-    return finish();
+    return finish_with_nothing_left();
 }

@@ -162,5 +162,5 @@ int main(int argc, char **argv) {
     check_level();
     check_costs(1);
     check_costs(5);
-    return finish();
+    return finish_with_nothing_left();
 }
