@@ -88,6 +88,20 @@ static double value_at(rg_loads *all, int i, const rg_expr *e, const double x[3]
     return value;
 }
 
+/* M a of an element whose acceleration depends on place. */
+static void body_forces(const rg_loads *all, entry *e) {
+    double mass = mass_of(all, e);
+    for (int a = 0; a < RG_NODES; a++) {
+        for (int c = 0; c < 3; c++) {
+            double sum = 0;
+            for (int b = 0; b < RG_NODES; b++) {
+                sum += all->mass[a][b] * e->value[b][c];
+            }
+            e->force[a][c] = mass * sum;
+        }
+    }
+}
+
 /* The values of an entry that depend on place, by expressions of this thread. */
 static void evaluate(rg_loads *all, entry *e, rg_expr *const expr[3], double time) {
     const rg_surface *s = &all->surface;
@@ -105,6 +119,9 @@ static void evaluate(rg_loads *all, entry *e, rg_expr *const expr[3], double tim
         for (int c = 0; c < components(l); c++) {
             e->value[q][c] = value_at(all, e->load, expr[c], at, time);
         }
+    }
+    if (e->face < 0) {
+        body_forces(all, e);
     }
 }
 
@@ -172,19 +189,6 @@ static void face_forces(const rg_loads *all, entry *e, const rg_real *u) {
     }
 }
 
-static void body_forces(const rg_loads *all, entry *e) {
-    double mass = mass_of(all, e);
-    for (int a = 0; a < RG_NODES; a++) {
-        for (int c = 0; c < 3; c++) {
-            double sum = 0;
-            for (int b = 0; b < RG_NODES; b++) {
-                sum += all->mass[a][b] * e->value[b][c];
-            }
-            e->force[a][c] = mass * sum;
-        }
-    }
-}
-
 /* Power of an entry's forces at a velocity (a whole field). */
 static double power(const rg_loads *all, const entry *e, const rg_real *velocity) {
     const double *value = all->load[e->load].value;
@@ -210,8 +214,6 @@ void rg_loads_find(rg_loads *all, size_t tile, const rg_real *u, const rg_real *
         }
         if (e->face >= 0) {
             face_forces(all, e, u);
-        } else if (e->force != NULL) {
-            body_forces(all, e);
         }
         e->before = 0.5 * all->dt_last * power(all, e, velocity);
     }
