@@ -84,8 +84,8 @@ def test_loads_begin_and_end(run):
         assert np.ptp(history[f"{name}_work"][time >= end]) <= 0 if (time >= end).any() else True
 
 
-@pytest.mark.parametrize("form, mass", [("variational", "consistent"), ("variational", "lumped"), ("intrinsic", "consistent"),
-                                        ("continuous", "lumped")])
+@pytest.mark.parametrize("form, mass", [("variational", "consistent"), ("variational", "lumped"), ("variational", "scaled"),
+                                        ("intrinsic", "consistent"), ("continuous", "lumped")])
 def test_free_fall(run, figure, form, mass):
     """Every point falls by just g t^2/2 with the speed g t, whatever holds the elements together."""
     law = {"law": "xu-needleman", "strength": 1e9, "energy": 100} if form == "intrinsic" else {"law": "none"}
