@@ -166,6 +166,7 @@ int main(int argc, char **argv) {
     check_claims(m, 4);
     check_claims(m, 25);
     rg_mesh_free(m);
+    report(rg_alloc_blocks() == 0, "memory", "all blocks are given back");
     check_refusals();
     return finish();
 }
