@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "base/mem.h"
 #include "base/first_bad.h"
+#include "cohesive/facts.h"
 #include "mesh/info.h"
 #include "output/snapshot.h"
 #include "partition/material.h"
@@ -16,20 +17,6 @@
 #define SLOWEST_WAVE 10
 #define FASTEST_WAVE 30e3
 
-/* Length of the cohesive zone of mode I, plane strain, where it is shortest: (9 pi/32) E/(1 - nu^2)
- * G_c/sigma_c^2 (thesis 2; Rice 1968). */
-static double cohesive_zone(const rg_case *c, const rg_solver *s) {
-    if (c->interface.law == RG_LAW_NONE) {
-        return INFINITY;
-    }
-    double modulus = INFINITY; /* E/(1 - nu^2) of the softest material, in which it is shortest */
-    for (int i = 0; i < s->model->materials; i++) {
-        const rg_material *m = &s->model->material[i];
-        modulus = fmin(modulus, 4 * m->mu * (m->lambda + m->mu) / (m->lambda + 2 * m->mu));
-    }
-    return 9 * 3.14159265358979324 / 32 * modulus * s->model->toughness;
-}
-
 /* A point that has just switched by the conserving activation unloads 1/interface.onset times as stiffly as a
  * closed one bears contact, in the stiffer of opening and sliding. In all directions alike, at all faces at
  * once, that stiffness is taken to add up to 1.2 times what the normal one does, so that up to this safety no
@@ -38,22 +25,67 @@ static double steady_safety(const rg_case *c) {
     return (1 + 1e-9) * sqrt(c->interface.onset / 1.2);
 }
 
-static double largest_edge(const rg_solver *s) {
+/* Longest edge of interface i (m). */
+static double longest_edge(const rg_solver *s, size_t i) {
     double square = 0;
-    for (size_t i = 0; i < s->domain->iblocks * RG_LANES; i++) {
-        for (int e = 0; e < 3; e++) { /* edges 01, 02 and their difference 12 */
-            double sum = 0;
-            for (int c = 0; c < 3; c++) {
-                double a = s->domain->igeom[rg_igeom_index(i, RG_IGEOM_EDGE + c)];
-                double b = s->domain->igeom[rg_igeom_index(i, RG_IGEOM_EDGE + 3 + c)];
-                double x = e == 0 ? a : e == 1 ? b : b - a;
-                sum += x * x;
-            }
-            square = fmax(square, sum);
+    for (int e = 0; e < 3; e++) { /* edges 01, 02 and their difference 12 */
+        double sum = 0;
+        for (int c = 0; c < 3; c++) {
+            double a = s->domain->igeom[rg_igeom_index(i, RG_IGEOM_EDGE + c)];
+            double b = s->domain->igeom[rg_igeom_index(i, RG_IGEOM_EDGE + 3 + c)];
+            double x = e == 0 ? a : e == 1 ? b : b - a;
+            sum += x * x;
+        }
+        square = fmax(square, sum);
+    }
+    return sqrt(square);
+}
+
+/* E/(1 - nu^2) of the softer element beside interface i (Pa). */
+static double plane_strain_modulus(const rg_solver *s, size_t i) {
+    double least = INFINITY;
+    for (int k = 0; k < 2; k++) {
+        const rg_material *m = &s->model->material[s->domain->beside != NULL ? s->domain->beside[i][k] : 0];
+        least = fmin(least, 4 * m->mu * (m->lambda + m->mu) / (m->lambda + 2 * m->mu));
+    }
+    return least;
+}
+
+/* Length of the cohesive zone of mode I, plane strain: (9 pi/32) E/(1 - nu^2) G_c/sigma_c^2 (thesis 2; Rice
+ * 1968), with the strength and energy of the face; infinite where it cannot break. */
+static double zone_of(const rg_solver *s, size_t i, double work) {
+    const rg_cohesive *law = &s->model->law;
+    double strength = law->strength, opening = law->opening;
+    if (s->model->scale != NULL) {
+        strength *= s->model->scale[i / RG_LANES * 2 * RG_LANES + i % RG_LANES];
+        opening *= s->model->scale[(i / RG_LANES * 2 + 1) * RG_LANES + i % RG_LANES];
+    }
+    return isfinite(strength) && strength > 0
+               ? 9 * 3.14159265358979324 / 32 * plane_strain_modulus(s, i) * work * opening / strength
+               : INFINITY;
+}
+
+/* The face whose cohesive zone is shortest over its own longest edge. */
+static void find_worst_zone(const rg_solver *s, rg_estimate *e) {
+    const rg_law law = s->input->interface.law;
+    double work = law == RG_LAW_NONE ? 0 : rg_law_facts_of(law, s->model->law.shape, s->model->law.beta).work;
+    struct {
+        double ratio;
+        int rank;
+    } worst = {INFINITY, s->rank};
+    double zone[2] = {INFINITY, 0};
+    for (size_t i = 0; i < s->domain->iblocks * RG_LANES && work > 0; i++) {
+        double edge = longest_edge(s, i);
+        if (edge > 0 && zone_of(s, i, work) / edge < worst.ratio) { /* not in padding */
+            zone[0] = zone_of(s, i, work);
+            zone[1] = edge;
+            worst.ratio = zone[0] / edge;
         }
     }
-    MPI_Allreduce(MPI_IN_PLACE, &square, 1, MPI_DOUBLE, MPI_MAX, s->comm);
-    return sqrt(square);
+    MPI_Allreduce(MPI_IN_PLACE, &worst, 1, MPI_DOUBLE_INT, MPI_MINLOC, s->comm);
+    MPI_Bcast(zone, 2, MPI_DOUBLE, worst.rank, s->comm);
+    e->cohesive_zone = zone[0];
+    e->zone_edge = zone[1];
 }
 
 enum { DAY = 86400 };
@@ -135,8 +167,7 @@ rg_estimate rg_estimate_run(const rg_solver *s) {
     e.frames = frames(c, steps, e.dt);
     e.frame_bytes = rg_snapshots_frame_bytes(c) * (double)e.elements;
     e.seconds = 1.3 * s->pass_seconds * (double)e.steps; /* a step is a pass, the update and some output */
-    e.cohesive_zone = cohesive_zone(c, s);
-    e.largest_edge = largest_edge(s);
+    find_worst_zone(s, &e);
     return e;
 }
 
@@ -226,16 +257,20 @@ void rg_estimate_print(const rg_solver *s, const rg_estimate *e, FILE *out) {
                 "switched; the energy will show it\n",
                 c->interface.onset, steady_safety(c));
     }
-    if (isfinite(e->cohesive_zone) && e->largest_edge > 0) {
-        double ratio = e->cohesive_zone / e->largest_edge;
-        fprintf(out, "cohesive zone  %.3g m, %.2g times the longest edge (%.3g m)\n", e->cohesive_zone, ratio,
-                e->largest_edge);
+    if (isfinite(e->cohesive_zone)) {
+        double ratio = e->cohesive_zone / e->zone_edge;
+        fprintf(out,
+                "cohesive zone  %.3g m, %.2g times the longest edge (%.3g m) of the face that resolves it "
+                "worst\n",
+                e->cohesive_zone, ratio, e->zone_edge);
         if (ratio < 2) {
             fprintf(
                 out,
                 "warning: the cohesive zone is not resolved: it should span at least two edges, here %.2g; "
-                "the dissipated energy will depend on the mesh\n",
-                ratio);
+                "the dissipated energy will depend on the mesh; edges of %.2g m or %.2g of the strength "
+                "there "
+                "would resolve it\n",
+                ratio, e->cohesive_zone / 2, sqrt(ratio / 2));
         }
     }
 }

@@ -15,8 +15,8 @@ typedef struct {
     double bytes_per_element, peak_bytes_per_element; /* fields; and with output and cracks everywhere */
     double frames, frame_bytes; /* of field output; on disk, without compression and cracks */
     double seconds;             /* estimate for the time loop on these ranks and threads */
-    double cohesive_zone;       /* length (m); infinite where nothing breaks */
-    double largest_edge;        /* of the faces between elements (m) */
+    double cohesive_zone; /* length at the face that resolves it worst (m); infinite where none breaks */
+    double zone_edge;     /* longest edge of that face (m) */
 } rg_estimate;
 
 /* Collective; needs rg_spectrum to have run. */

@@ -16,8 +16,7 @@ rg_model *rg_model_make(const rg_case *c) {
                     .material = rg_materials_of_case(c),
                     .gradient = gradient_of(c),
                     .law = rg_law_make(c),
-                    .stiffest = 1,
-                    .toughness = c->interface.energy / (c->interface.strength * c->interface.strength)};
+                    .stiffest = 1};
     m->crack_stride = rg_crack_stride(&m->law);
     for (int i = 0; i < m->materials; i++) {
         size_t block = rg_history_block(rg_material_history(m->material[i].model));

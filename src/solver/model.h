@@ -13,9 +13,7 @@ typedef struct {
     rg_cohesive law;
     const rg_real *scale;           /* layout as in rg_interface_args; NULL: all faces alike */
     const rg_real *beta, *friction; /* likewise */
-    double stiffest;  /* largest ratio of strength to critical opening, over that of the law; 1: all alike */
-    double toughness; /* least energy over squared strength of faces that can break, before they differ at
-                         random (m/Pa); infinite: none can */
+    double stiffest; /* largest ratio of strength to critical opening, over that of the law; 1: all alike */
     size_t crack_stride, history_stride; /* values of a block of crack and history: as many as the longest
                                             needs */
 } rg_model;

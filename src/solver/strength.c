@@ -179,7 +179,7 @@ static factors factors_of(const search *look, const properties *p, const double 
 /* Fields that are filled, NULL where all faces are alike. */
 typedef struct {
     rg_real *scale, *beta, *friction;
-    double stiffest, toughness; /* as in rg_model, of this rank */
+    double stiffest; /* as in rg_model, of this rank */
 } fields;
 
 static void fill_face(search *look, const rg_tile *t, size_t i, fields *to) {
@@ -205,7 +205,6 @@ static void fill_face(search *look, const rg_tile *t, size_t i, fields *to) {
     }
     if (p.breaks && !p.open) {
         to->stiffest = fmax(to->stiffest, f.strength / f.opening);
-        to->toughness = fmin(to->toughness, p.energy / (p.strength * p.strength));
     }
 }
 
@@ -287,8 +286,7 @@ void rg_strength_make(const rg_solver *s, rg_model *m) {
                    .bad = {.which = RG_NOWHERE}};
     fields to = {.scale = field_if(true, 2 * slots),
                  .beta = field_if(sets_have(c, offsetof(rg_face_set, beta_at)), slots),
-                 .friction = field_if(sets_have(c, offsetof(rg_face_set, friction_at)), slots),
-                 .toughness = INFINITY};
+                 .friction = field_if(sets_have(c, offsetof(rg_face_set, friction_at)), slots)};
     find_materials(&look);
     for (size_t t = 0; t < d->tiles; t++) { /* expressions are not for threads */
         for (size_t i = d->tile[t].ibegin * RG_LANES; i < d->tile[t].iend * RG_LANES; i++) {
@@ -303,5 +301,4 @@ void rg_strength_make(const rg_solver *s, rg_model *m) {
     m->beta = to.beta;
     m->friction = to.friction;
     MPI_Allreduce(&to.stiffest, &m->stiffest, 1, MPI_DOUBLE, MPI_MAX, s->comm);
-    MPI_Allreduce(&to.toughness, &m->toughness, 1, MPI_DOUBLE, MPI_MIN, s->comm);
 }

@@ -5,7 +5,7 @@
 
 #include "solver/solver.h"
 
-/* Fills scale, beta and friction (NULL where all faces are alike in these), stiffest and toughness of a
+/* Fills scale, beta and friction (NULL where all faces are alike in these), and stiffest of a
  * model, of a solver whose domain is known. A face's random number comes from the seed and the positions of
  * its corners alone: it is the same on any partition and with any numbering. Ends the run if an expression is
  * not finite. Collective. */

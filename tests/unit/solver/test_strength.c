@@ -291,7 +291,6 @@ static void test_properties(void **state) {
     rg_case *c = read_case(2, set);
     rg_solver *s = rg_solver_make(c, MPI_COMM_SELF);
     size_t seen[4] = {0};
-    double least = 34 / 16e16;
     for (size_t t = 0; t < s->domain->tiles; t++) {
         const rg_tile *tile = &s->domain->tile[t];
         for (size_t i = tile->ibegin * RG_LANES; i < tile->iend * RG_LANES; i++) {
@@ -321,11 +320,9 @@ static void test_properties(void **state) {
                         1e-6 * f.opening * weakest);
             assert_true(fabs(face_field(s->model->beta, i) - beta) < 1e-6);
             assert_true(fabs(face_field(s->model->friction, i) - friction) < 1e-6);
-            least = which == 1 ? least : fmin(least, energy / strength / strength);
         }
     }
     assert_true(seen[0] > 0 && seen[1] > 0 && seen[2] > 0 && seen[3] > 0);
-    assert_true(fabs(s->model->toughness / least - 1) < 1e-6);
     assert_true(s->model->law.sliding == RG_SLIDING_COULOMB);
     rg_solver_free(s);
     rg_case_free(c);
@@ -341,7 +338,6 @@ static void test_expressions(void **state) {
     rg_solver *s[2] = {rg_solver_make(c[0], MPI_COMM_SELF), rg_solver_make(c[1], MPI_COMM_SELF)};
     const rg_cohesive *law[2] = {&s[0]->model->law, &s[1]->model->law};
     assert_true(s[0]->model->beta == NULL && s[1]->model->friction == NULL);
-    assert_true(fabs(s[0]->model->toughness / s[1]->model->toughness - 1) < 1e-15);
     size_t faces = s[0]->domain->iblocks * RG_LANES;
     for (size_t i = 0; i < faces; i++) {
         double normal[3], found[2][2];
@@ -431,7 +427,7 @@ static void test_uniform(void **state) {
     rg_case *c = read_case(0, NULL);
     rg_solver *s = rg_solver_make(c, MPI_COMM_SELF);
     assert_true(s->model->scale == NULL && s->model->beta == NULL && s->model->friction == NULL);
-    assert_true(s->model->stiffest == 1 && s->model->toughness == 34 / (400e6 * 400e6));
+    assert_true(s->model->stiffest == 1);
     rg_solver_free(s);
     rg_case_free(c);
 }
