@@ -237,7 +237,10 @@ static bool well_chosen(const rg_part *patch, const rg_part *part, const rg_mesh
 /* Numbered in the order of the mesh, in whole tiles; neighbours know each other; faces to elements outside,
  * and no others, are cut. */
 static bool well_connected(const rg_part *patch, const rg_mesh *mesh) {
-    bool good = (rg_gid)patch->tiles * patch->tile >= patch->total && patch->boundary == 0;
+    bool good = (rg_gid)patch->tiles * patch->tile >= patch->total &&
+                (rg_gid)(patch->tiles - 1) * patch->tile < patch->total && patch->boundary == 0 &&
+                patch->total == patch->elements && patch->tile == rg_tile_elements(patch->total);
+    rg_gid sides = 0;
     for (rg_lid t = 0; t < patch->tiles; t++) {
         good = good && patch->tile_id[t] == t;
     }
@@ -250,9 +253,10 @@ static bool well_connected(const rg_part *patch, const rg_mesh *mesh) {
             good = good && e->neighbour[f] == here && e->owner[f] == (here < 0 ? -1 : 0) &&
                    e->face[f] == (here < 0 ? -1 : mesh->face[4 * original + f]) &&
                    e->set[f] == (here < 0 && other >= 0 ? RG_PATCH_CUT : -1);
+            sides += here >= 0;
         }
     }
-    return good;
+    return good && sides == 2 * patch->interfaces;
 }
 
 static void check_patch(void) {
