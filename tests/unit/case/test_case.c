@@ -63,6 +63,7 @@ static void test_defaults(void **state) {
 /* What goes with the form, the law and the set of defaults that a case means; what is given stays. */
 static void test_defaults_that_follow(void **state) {
     (void)state;
+    enum { RATE = 2 };
     static const struct {
         const char *change[4];
         double beta_s, onset, safety;
@@ -119,6 +120,9 @@ static void test_defaults_that_follow(void **state) {
     write_bytes(base, strlen(base));
     for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
         int changes = 0;
+        if (i == RATE && sizeof(rg_real) < sizeof(double)) {
+            continue; /* that law needs double precision */
+        }
         while (changes < 4 && known[i].change[changes] != NULL) {
             changes++;
         }
