@@ -50,6 +50,16 @@ RG_INLINE void held_by_friction(const interface *s, int q, const vec3 n, vec3 he
     }
 }
 
+/* Takes from tau (Pa) what friction holds of it; out of line, for runs without it. */
+static __attribute__((noinline)) void take_friction(const interface *s, int q, const vec3 n, rg_vec area,
+                                                    vec3 tau) {
+    vec3 held;
+    held_by_friction(s, q, n, held);
+    for (int c = 0; c < 3; c++) {
+        tau[c] -= held[c] / rg_max(area, rg_splat(RG_NO_AREA));
+    }
+}
+
 /* Cauchy traction t of a point: its shear tau, less what friction holds of it, its tension <t_n>, and what of
  * both meets the strength. */
 typedef struct {
@@ -78,11 +88,7 @@ RG_INLINE void cauchy_traction(const interface *s, int q, const vec3 n, rg_vec a
         t->tau[c] = all[c] - tn * n[c];
     }
     if (is_frictional(s)) {
-        vec3 held;
-        held_by_friction(s, q, n, held);
-        for (int c = 0; c < 3; c++) {
-            t->tau[c] -= held[c] / rg_max(area, rg_splat(RG_NO_AREA));
-        }
+        take_friction(s, q, n, area, t->tau);
     }
     t->effective = rg_sqrt(t->tension * t->tension + t->shear * rg_dot(t->tau, t->tau));
 }
