@@ -11,7 +11,7 @@
 #include "case/read.h"
 #include "run.h"
 #include "solver/balance.h"
-#include "support/tap.h"
+#include "support/tap_memory.h"
 
 static const char text[] = "mesh: {cells: [2, 2, 4], size: [1e-3, 1e-3, 2e-3], rebalance: 1.1}\n"
                            "material: {model: neo-hookean, young: 260e9, poisson: 0.21, density: 3690}\n"

@@ -6,7 +6,7 @@
 
 #include "base/exact_sum.h"
 #include "base/hash.h"
-#include "support/tap.h"
+#include "support/tap_memory.h"
 
 enum { COUNT = 20000, SUMS = 2 }; /* samples and their negatives */
 #define TINY 0x1p-900

@@ -11,7 +11,7 @@
 #include "base/hash.h"
 #include "base/mem.h"
 #include "base/first_bad.h"
-#include "support/tap.h"
+#include "support/tap_memory.h"
 
 static int ranks;
 

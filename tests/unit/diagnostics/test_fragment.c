@@ -9,7 +9,7 @@
 #include "diagnostics/overlap.h"
 #include "domain/element.h"
 #include "solver/setup.h"
-#include "support/tap.h"
+#include "support/tap_memory.h"
 
 /* A box of 2 x 3 x 6 m, far from the origin, which turns and flies. */
 static const int64_t cells[3] = {4, 4, 12};

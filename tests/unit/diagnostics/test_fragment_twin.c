@@ -12,7 +12,7 @@
 #include "reference/reference.h"
 #include "solver/tile.h"
 #include "support/random_state.h"
-#include "support/tap.h"
+#include "support/tap_memory.h"
 
 /* Of the seeds the latter half make debris. */
 enum { SEEDS = 4, THROWS = 40 };

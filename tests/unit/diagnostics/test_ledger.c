@@ -14,7 +14,7 @@
 #include "solver/fields.h"
 #include "solver/tile.h"
 #include "support/random_state.h"
-#include "support/tap.h"
+#include "support/tap_memory.h"
 
 enum { SEED = 11 };
 #define EXACT 1e-12 /* of sums of some hundred terms, each rounded */

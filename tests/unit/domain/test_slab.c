@@ -7,7 +7,7 @@
 #include "base/hash.h"
 #include "base/mem.h"
 #include "layout.h"
-#include "support/tap.h"
+#include "support/tap_memory.h"
 
 enum { TOTAL = 1009, VALUES = 3 };
 

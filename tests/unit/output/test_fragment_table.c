@@ -11,7 +11,7 @@
 #include "base/error.h"
 #include "base/mem.h"
 #include "diagnostics/overlap.h"
-#include "support/tap.h"
+#include "support/tap_memory.h"
 
 /* ---- stand-ins ---- */
 

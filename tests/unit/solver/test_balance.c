@@ -9,7 +9,7 @@
 
 #include "base/mem.h"
 #include "solver/balance.h"
-#include "support/tap.h"
+#include "support/tap_memory.h"
 
 enum { TILES = 3 }; /* of each rank */
 

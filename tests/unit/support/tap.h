@@ -6,7 +6,6 @@
 #include <stdbool.h>
 #include <stdio.h>
 
-#include "base/mem.h"
 #include "support/figures.h"
 
 static int rank, number, failures;
@@ -47,12 +46,6 @@ static inline int finish(void) {
     }
     MPI_Finalize();
     return failures > 0;
-}
-
-/* The same of a program that gives back all its memory: a failure where blocks are left. */
-static inline int finish_with_nothing_left(void) {
-    report(rg_alloc_blocks() == 0, "memory", "all blocks are given back");
-    return finish();
 }
 
 #endif
