@@ -3,7 +3,7 @@
 import pathlib
 
 import pytest
-from conftest import CASES, example, launch
+from conftest import CASES, EVERYWHERE, example, launch
 
 LAYOUTS = [(1, 2), (2, 1), (2, 2), (3, 1)]  # ranks, threads; all compared with (1, 1)
 PROBES = [{"name": "a", "at": [0.01e-3, 0.03e-3, 0.5e-3]}, {"name": "b", "at": [-0.05e-3, 0.02e-3, -1.1e-3]}]
@@ -17,24 +17,9 @@ VARIANTS = {
     "thesis": {"interface.activation": "total", "interface.contact": "flux"},
     "conserving": {"interface.activation": "conserving", "interface.criterion": "mohr-coulomb", "interface.friction": 0.4},
     "isotropic": {"interface.penalty": "isotropic"},
-    "friction": {"interface.friction": 0.5, "interface.contact": "potential", "interface.activation": "conserving",
-                 "interface.law": "benzeggagh-kenane", "interface.shear": "fading", "interface.strength": "4e8*(1.05 + 0.05*nx)", "interface.sets": [
-        {"where": "x > 0", "beta": "y > 0 ? 0 : 1.5 + 0.2*ny", "energy": "30 + 5e4*x", "friction": 0.2, "weibull": {"modulus": 20, "area": 1e-9}},
-        {"where": "z*z < 1e-8", "law": "none"}]},
-    "continuous": {"interface.form": "continuous", "interface.faces": "nz*nz > 0.5"},
+    **EVERYWHERE,
     "prescribed": {"boundary": [{"set": "z+", "component": "z", "velocity": "1e8*t*(1 + 1e3*x)"},
                                 {"set": "x-", "component": "x", "displacement": "1e6*t*y"}]},
-    "loads": {"interface.sets": [{"where": "abs(z) < 5e-5 && abs(nz) > 0.8 && x > 0", "open": True}],
-              "tables": {"pulse": {"points": [[0, 0], [5e-8, 1], [2e-7, 0.2]], "smooth": True}},
-              "loads": [{"name": "pull", "set": "z+", "traction": {"x": "2e7*pulse(t)*(1 + 1e3*y)", "z": "3e8*pulse(t)"}},
-                        {"where": "abs(nx) > 0.5", "pressure": "2e8*pulse(2*t)*(1 + 1e2*z)", "from": 2e-8, "until": 1.5e-7},
-                        {"set": "y-", "force": {"y": 3}}, {"name": "fall", "acceleration": {"y": -4e7, "z": "1e11*x*t/1e-7"}}],
-              "boundary": [{"name": "hold", "set": "z-", "component": "z", "velocity": "1e8*t*x"}, {"set": "x+", "absorbing": True},
-                           {"set": "z-", "absorbing": True},
-                           {"name": "catch", "set": "y+", "component": "x", "displacement": "5*t", "from": 3e-8, "until": 1.3e-7}]},
-    "loads, continuous": {"interface.form": "continuous", "interface.faces": "nz*nz > 0.5",
-                          "boundary": [{"set": "x+", "absorbing": True}, {"set": "z-", "absorbing": True}],
-                          "loads": [{"name": "pull", "set": "z+", "traction": {"z": "3e8 + 1e12*x"}}]},
 }
 SETS = ["x86-64-v2", "x86-64-v3", "x86-64-v4"]
 KNOWN = " ".join((line for line in pathlib.Path("/proc/cpuinfo").read_text().splitlines() if line.startswith("flags")))
