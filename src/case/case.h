@@ -94,8 +94,10 @@ typedef struct {
 /* Most materials in a case, `material` included. */
 enum { RG_MAX_MATERIALS = 32 };
 
-/* Faces with properties of their own: those that `where` and `between` (NULL: no such condition) select. */
+/* Faces with properties of their own: those that `set`, `where` and `between` (NULL: no such condition)
+ * select. */
 typedef struct {
+    char *set;      /* named set of the mesh */
     rg_expr *where; /* not 0: by their middle x, y, z (m), unit normal nx, ny, nz */
     int names;
     char **between; /* names of the materials on both sides */

@@ -281,10 +281,12 @@ static const rg_key case_keys[] = {
 };
 
 static const rg_key face_set_keys[] = {
-    {.name = "where", .type = RG_KEY_EXPR, ELSE("between"), SOME_OF, .no_time = true, .normal = true,
+    {.name = "set", .type = RG_KEY_TEXT, ELSE("where or between"), SOME_OF, .offset = offsetof(rg_face_set, set),
+     MEANS("surface set of the mesh file: those of its faces that lie between elements; with `where` or `between` all hold")},
+    {.name = "where", .type = RG_KEY_EXPR, ELSE("set or between"), SOME_OF, .no_time = true, .normal = true,
      .offset = offsetof(rg_face_set, where),
      MEANS("faces where it is not 0, by their middle and unit normal, of either sign")},
-    {.name = "between", .type = RG_KEY_TEXTS, ELSE("where"), SOME_OF, .offset = offsetof(rg_face_set, between),
+    {.name = "between", .type = RG_KEY_TEXTS, ELSE("set or where"), SOME_OF, .offset = offsetof(rg_face_set, between),
      .offset_count = offsetof(rg_face_set, names), MEANS("names of the materials on both sides, or one twice; with `where` both hold")},
     {.name = "law", EXPLAINED(breakings), ELSE("interface"), .offset = offsetof(rg_face_set, breaking),
      MEANS("whether they can break")},

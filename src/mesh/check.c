@@ -99,6 +99,11 @@ static void check_neighbour(const rg_mesh *mesh, rg_input_errors *input_errors, 
                             " for its neighbour across face %d, but they do not share it",
                             rg_mesh_original(mesh, e),
                             other < mesh->elements ? rg_mesh_original(mesh, other) : other, f);
+    } else if (e < other && mesh->set[4 * e + f] != mesh->set[4 * other + g]) {
+        rg_input_errors_add(input_errors, e, 1 + f,
+                            "set: elements %" PRId64 " and %" PRId64
+                            " have the face between them in different sets",
+                            rg_mesh_original(mesh, e), rg_mesh_original(mesh, other));
     }
 }
 

@@ -4,13 +4,13 @@
  * centroids; a tile is the run of `tile_elements` (256; fewer in a small mesh) consecutive numbers.
  * Integers are signed and as wide as their values need, numbers are 64-bit floats, lengths are in m.
  *
- *   attributes      format = "rhegma mesh", version = 1 or 2, program
+ *   attributes      format = "rhegma mesh", version = 1, 2 or 3, program
  *                   vertices, elements, interfaces (interior faces), tile_elements, tiles, surface_sets,
  *                   volume_sets (how many there are); box [2][3]: lower and upper corner
  *   surface_sets    [surface_sets] names, at most 63 bytes each; not there if there are none
  *   volume_sets     [volume_sets] likewise
  *
- * and only in version 2, which is for sets that overlap,
+ * and only from version 2 on, which is for sets that overlap (3: and that have faces between elements),
  *
  *   attributes      surface_combinations, volume_combinations: rows of the next two, which are not there if 0
  *   surface_combinations  [rows][2] number of a combination, from 0 on, and one of the sets that it is of,
@@ -19,7 +19,8 @@
  *   corner          [elements][4] vertices, ascending; face f of an element is the one opposite corner f
  *   neighbour       [elements][4] element across face f; -1 on the surface
  *   face            [elements][4] which face of the neighbour that is; -1 on the surface
- *   set             [elements][4] surface set of face f, or surface_sets + its combination; -1 for none
+ *   set             [elements][4] surface set of face f, or surface_sets + its combination; -1 for none. A
+ *                   face between two elements has the same on both sides, before version 3 none
  *   region          [elements] volume set, or volume_sets + the combination; -1 for none
  *   original        [elements] number of the element in the input
  *
@@ -56,8 +57,8 @@
 #include "mesh/mesh.h"
 #include "mesh/tile_graph.h"
 
-/* A file without overlapping sets is of version 1, as all were before there were such. */
-enum { RG_MESH_VERSION = 2 };
+/* A file is of the lowest version that has what it holds, so that older programs read it if they can. */
+enum { RG_MESH_VERSION = 3 };
 
 typedef struct {
     rg_gid vertices, elements, interfaces;

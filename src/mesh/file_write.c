@@ -352,11 +352,19 @@ void rg_mesh_file_add_partitions(const char *path, int partitions, const rg_tile
     finish(&w);
 }
 
+static int64_t version_of(const rg_mesh *mesh) {
+    for (rg_gid slot = 0; slot < 4 * mesh->elements; slot++) {
+        if (mesh->neighbour[slot] >= 0 && mesh->set[slot] >= 0) {
+            return 3;
+        }
+    }
+    return mesh->surface.combinations > 0 || mesh->volume.combinations > 0 ? 2 : 1;
+}
+
 void rg_mesh_file_write(const char *path, const rg_mesh *mesh, int partitions,
                         const rg_tile_partition *partition) {
     int tile = rg_tile_elements(mesh->elements);
-    bool overlapping = mesh->surface.combinations > 0 || mesh->volume.combinations > 0;
-    target w = {.path = path, .version = overlapping ? 2 : 1, .tiles = (mesh->elements + tile - 1) / tile};
+    target w = {.path = path, .version = version_of(mesh), .tiles = (mesh->elements + tile - 1) / tile};
     w.element_start = RG_NEW(int64_t, (size_t)w.tiles + 1);
     for (int64_t t = 0; t <= w.tiles; t++) {
         rg_gid end = t * tile;

@@ -182,9 +182,20 @@ static rg_gid *count_members(const rg_sets *s, const int32_t *group, rg_gid coun
     return members;
 }
 
+/* Groups of the faces between two elements, from the first of them; of the others -1. [elements][4] */
+static int32_t *groups_inside(const rg_mesh *mesh) {
+    int32_t *group = RG_NEW(int32_t, 4 * (size_t)mesh->elements);
+    for (rg_gid slot = 0; slot < 4 * mesh->elements; slot++) {
+        group[slot] = mesh->neighbour[slot] > slot / 4 ? mesh->set[slot] : -1;
+    }
+    return group;
+}
+
 static void print_sets(const rg_mesh *mesh, FILE *out) {
     rg_gid free_faces = 0, free_elements = 0;
-    rg_gid *faces = count_members(&mesh->surface, mesh->set, 4 * mesh->elements);
+    int32_t *group = groups_inside(mesh);
+    rg_gid *sides = count_members(&mesh->surface, mesh->set, 4 * mesh->elements);
+    rg_gid *inside = count_members(&mesh->surface, group, 4 * mesh->elements);
     rg_gid *elements = count_members(&mesh->volume, mesh->region, mesh->region != NULL ? mesh->elements : 0);
     for (rg_gid slot = 0; slot < 4 * mesh->elements; slot++) {
         free_faces += mesh->neighbour[slot] < 0 && mesh->set[slot] < 0;
@@ -193,14 +204,17 @@ static void print_sets(const rg_mesh *mesh, FILE *out) {
         free_elements += mesh->region == NULL || mesh->region[e] < 0;
     }
     for (int32_t s = 0; s < mesh->surface.count; s++) {
-        fprintf(out, "surface set    %s: %" PRId64 " faces\n", mesh->surface.name[s], faces[s]);
+        fprintf(out, "surface set    %s: %" PRId64 " faces", mesh->surface.name[s], sides[s] - 2 * inside[s]);
+        inside[s] > 0 ? fprintf(out, ", and %" PRId64 " between elements\n", inside[s]) : fputc('\n', out);
     }
     fprintf(out, "               in no surface set: %" PRId64 " faces\n", free_faces);
     for (int32_t s = 0; s < mesh->volume.count; s++) {
         fprintf(out, "volume set     %s: %" PRId64 " elements\n", mesh->volume.name[s], elements[s]);
     }
     fprintf(out, "               in no volume set: %" PRId64 " elements\n", free_elements);
-    rg_free(faces);
+    rg_free(sides);
+    rg_free(inside);
+    rg_free(group);
     rg_free(elements);
 }
 

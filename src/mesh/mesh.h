@@ -21,13 +21,12 @@ typedef struct {
     rg_gid *corner;    /* [elements][4], ascending within an element (see kernels/layout.h) */
     rg_gid *neighbour; /* [elements][4]: element across local face f (opposite corner f); -1 on the surface */
     int8_t *face;      /* [elements][4]: the neighbour's local face number; -1 on the surface */
-    int32_t *set;      /* [elements][4]: group of a surface face among `surface`; -1 inside and for none */
-    rg_sets surface;   /* named sets of surface faces */
-    rg_gid *original;  /* [elements]: numbers that the elements had in the input; NULL: as here */
-    int32_t *region;   /* [elements]: group among `volume`; -1 for none; NULL: none at all */
-    rg_sets volume;    /* named sets of elements */
-    rg_gid
-        *inner; /* [inners][3]: vertices, ascending, of faces inside that the input names: an import only */
+    int32_t *set;    /* [elements][4]: group of a face among `surface`, the same on both sides; -1 for none */
+    rg_sets surface; /* named sets of faces, on the surface and inside */
+    rg_gid *original; /* [elements]: numbers that the elements had in the input; NULL: as here */
+    int32_t *region;  /* [elements]: group among `volume`; -1 for none; NULL: none at all */
+    rg_sets volume;   /* named sets of elements */
+    rg_gid *inner; /* [inners][3]: vertices, ascending, of faces inside that the input has: an import only */
     size_t inners;
 } rg_mesh;
 

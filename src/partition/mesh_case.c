@@ -35,6 +35,9 @@ static void check_sets(const rg_case *c) {
     for (int i = 0; i < c->loads; i++) {
         check_set(c, sets, "loads", i, c->load[i].set);
     }
+    for (int i = 0; i < c->interface.sets; i++) {
+        check_set(c, sets, "interface.sets", i, c->interface.set[i].set);
+    }
     rg_mesh_file_close(f);
 }
 
@@ -72,17 +75,30 @@ static rg_part *part_of_box(const rg_case *c, double *cost, bool known, int rank
     return part;
 }
 
-/* Faces of the whole mesh that are in both sets; collective. */
+/* Faces on the surface of the whole mesh that are in both sets; collective. */
 static int64_t count_shared(const rg_part *part, int32_t a, int32_t b, MPI_Comm comm) {
     int64_t count = 0;
     for (rg_lid e = 0; e < part->elements; e++) {
         for (int f = 0; f < 4; f++) {
             int32_t group = part->element[e].set[f];
-            count += rg_sets_hold(&part->surface, group, a) && rg_sets_hold(&part->surface, group, b);
+            count += part->element[e].neighbour[f] < 0 && rg_sets_hold(&part->surface, group, a) &&
+                     rg_sets_hold(&part->surface, group, b);
         }
     }
     MPI_Allreduce(MPI_IN_PLACE, &count, 1, MPI_INT64_T, MPI_SUM, comm);
     return count;
+}
+
+/* A set may have faces between elements alone. */
+static void refuse_inner_sets(const rg_case *c, const rg_part *part, MPI_Comm comm) {
+    for (int b = 0; b < c->boundaries && c->mesh.file != NULL; b++) {
+        int32_t set = rg_sets_find(&part->surface, c->boundary[b].set);
+        if (count_shared(part, set, set, comm) == 0) {
+            rg_speak(comm);
+            rg_fatal(RG_USAGE, "%s: boundary[%d].set: %s: no face of the surface is in it", c->path, b,
+                     c->boundary[b].set);
+        }
+    }
 }
 
 /* Sets may overlap; what they prescribe to one face must not contradict. */
@@ -111,6 +127,7 @@ rg_part *rg_part_of_case(const rg_case *c, double *cost, MPI_Comm comm) {
     MPI_Bcast(&known, 1, MPI_INT, 0, comm);
     rg_part *part = c->mesh.file != NULL ? part_of_file(c, cost, known, rank, comm)
                                          : part_of_box(c, cost, known, rank, comm);
+    refuse_inner_sets(c, part, comm);
     refuse_contradictions(c, part, comm);
     rg_materials_assign(c, part, comm);
     return part;

@@ -143,6 +143,7 @@ typedef struct {
     int64_t side, other;
     uint64_t place; /* of the face */
     double volume;  /* of the element */
+    int64_t set;    /* group of the face */
 } claim;
 
 /* Where face f is, its corners in their order. */
@@ -155,14 +156,14 @@ static uint64_t place_of(const rg_element *e, int f) {
 }
 
 static claim claim_of(const rg_element *e, int f) {
-    return (claim){4 * e->id + f, 4 * e->neighbour[f] + e->face[f], place_of(e, f), e->volume};
+    return (claim){4 * e->id + f, 4 * e->neighbour[f] + e->face[f], place_of(e, f), e->volume, e->set[f]};
 }
 
 /* Takes a claim upon face c->other of own element e, if e says the same of that face. */
 static bool accept(rg_element *e, const claim *c) {
     int f = (int)(c->other % 4);
     bool same = c->side != c->other && e->neighbour[f] == c->side / 4 && e->face[f] == c->side % 4 &&
-                place_of(e, f) == c->place;
+                place_of(e, f) == c->place && e->set[f] == c->set;
     if (same) {
         e->other_volume[f] = c->volume;
     }

@@ -11,6 +11,7 @@
 #include "base/first_bad.h"
 #include "domain/element.h"
 #include "layout.h"
+#include "solver/surface.h"
 
 /* What depends only on which nodes are constrained: c of them, then the free ones. For the mass M / (rho V):
  * impulse[c][c] = (Minv_cc)^-1, follow[f][c] = Minv_fc (Minv_cc)^-1. */
@@ -139,7 +140,9 @@ static uint16_t *list_nodes(const rg_constraints *k, const rg_sets *sets, const 
         bool *in = rg_sets_groups_in(sets, set[b]);
         for (size_t side = 0; side < RG_FACES * slots; side++) {
             int32_t group = k->domain->set[side];
-            for (int a = 0; group >= 0 && in[group] && a < RG_FNODES; a++) {
+            bool on =
+                group >= 0 && in[group] && rg_surface_has(k->domain, side / RG_FACES, (int)(side % RG_FACES));
+            for (int a = 0; on && a < RG_FNODES; a++) {
                 of[side / RG_FACES] |= (uint16_t)(1u << rg_face_node[side % RG_FACES][a]);
             }
         }

@@ -30,6 +30,7 @@ typedef struct {
     const rg_solver *s;
     double work;       /* of separation, over strength times opening */
     int (*between)[2]; /* [sets]: materials that a set names, the lower first; of others nothing */
+    bool **groups;     /* [sets]: groups of faces that are in its set of the mesh; NULL: it names none */
     int64_t *claimed;  /* [sets]: faces that each has */
     rg_first_bad bad;  /* where an expression is not what it must be; which: that of `bad_number` */
 } search;
@@ -73,6 +74,28 @@ static void find_materials(search *f) {
     }
 }
 
+/* Those of a set of the mesh that an entry names; the mesh file has been asked, the box has none inside. */
+static void find_groups(search *f) {
+    const rg_case *c = f->s->input;
+    for (int i = 0; i < c->interface.sets; i++) {
+        const char *name = c->interface.set[i].set;
+        int32_t set = name == NULL ? -1 : rg_sets_find(&f->s->part->surface, name);
+        if (name != NULL && set < 0) {
+            rg_speak(f->s->comm);
+            rg_fatal(RG_USAGE, "%s: interface.sets[%d].set: the mesh has no set named '%s'", c->path, i,
+                     name);
+        }
+        f->groups[i] = name == NULL ? NULL : rg_sets_groups_in(&f->s->part->surface, set);
+    }
+}
+
+static bool is_in_groups(const search *f, const bool *groups, const rg_tile *t, size_t i) {
+    int32_t link = f->s->domain->side[0][i]; /* both sides have the same */
+    int32_t group =
+        f->s->domain->set[4 * (t->begin * RG_LANES + (size_t)link / RG_FACES) + (size_t)link % RG_FACES];
+    return group >= 0 && groups[group];
+}
+
 /* Whether the materials on both sides of interface i are the two that set `number` names. */
 static bool lies_between(const search *f, int number, size_t i) {
     static const uint8_t alone[2] = {0, 0};
@@ -80,9 +103,13 @@ static bool lies_between(const search *f, int number, size_t i) {
     return f->between[number][0] == beside[0] && f->between[number][1] == beside[1];
 }
 
-/* Whether a set has interface i. */
-static bool has(search *f, int number, size_t i, const double middle[3], const double normal[3]) {
+/* Whether a set has interface i of tile t. */
+static bool has(search *f, int number, const rg_tile *t, size_t i, const double middle[3],
+                const double normal[3]) {
     const rg_face_set *set = &f->s->input->interface.set[number];
+    if (f->groups[number] != NULL && !is_in_groups(f, f->groups[number], t, i)) {
+        return false;
+    }
     double here = set->where == NULL ? 1 : rg_expr_face_value(set->where, middle, normal);
     if (!isfinite(here)) {
         rg_first_bad_note(&f->bad, bad_number(number, WHERE), middle, here);
@@ -105,7 +132,7 @@ static double value_of(search *look, int64_t which, double number, const rg_expr
 }
 
 /* Those of the last set that has the face, and of the interface where it says nothing. */
-static properties find_properties(search *look, size_t face, const double *x[RG_FCORNERS],
+static properties find_properties(search *look, const rg_tile *t, size_t face, const double *x[RG_FCORNERS],
                                   const double normal[3]) {
     const rg_case *c = look->s->input;
     const rg_face_set *set = &(const rg_face_set){0};
@@ -115,7 +142,7 @@ static properties find_properties(search *look, size_t face, const double *x[RG_
         middle[k] = (x[0][k] + x[1][k] + x[2][k]) / 3;
     }
     for (int i = 0; i < c->interface.sets; i++) {
-        if (has(look, i, face, middle, normal)) {
+        if (has(look, i, t, face, middle, normal)) {
             look->claimed[i]++;
             set = &c->interface.set[i];
             number = i;
@@ -192,7 +219,7 @@ static void fill_face(search *look, const rg_tile *t, size_t i, fields *to) {
         for (int c = 0; c < 3; c++) {
             normal[c] /= area;
         }
-        p = find_properties(look, i, x, normal);
+        p = find_properties(look, t, i, x, normal);
         f = factors_of(look, &p, x, area);
     }
     to->scale[i / RG_LANES * 2 * RG_LANES + i % RG_LANES] = (rg_real)f.strength;
@@ -216,9 +243,12 @@ static void refuse_empty_sets(const search *look) {
         const rg_face_set *set = &c->interface.set[i];
         if (look->claimed[i] == 0) {
             rg_speak(look->s->comm);
+            const char *named = set->set == NULL || set->where != NULL ? "" : set->set;
             rg_fatal(RG_USAGE, "%s: interface.sets[%d]: no face is in it%s%s", c->path, i,
-                     set->where != NULL ? ", where: " : " between its materials",
-                     set->where != NULL ? rg_expr_text(set->where) : "");
+                     set->where != NULL ? ", where: "
+                     : set->set != NULL ? " that lies between elements, set: "
+                                        : " between its materials",
+                     set->where != NULL ? rg_expr_text(set->where) : named);
         }
     }
 }
@@ -282,18 +312,24 @@ void rg_strength_make(const rg_solver *s, rg_model *m) {
     search look = {.s = s,
                    .work = rg_law_facts_of(m->law.law, m->law.shape, m->law.beta).work,
                    .between = rg_alloc((size_t)c->interface.sets + 1, sizeof *look.between),
+                   .groups = RG_NEW(bool *, (size_t)c->interface.sets + 1),
                    .claimed = RG_NEW(int64_t, (size_t)c->interface.sets + 1),
                    .bad = {.which = RG_NOWHERE}};
     fields to = {.scale = field_if(true, 2 * slots),
                  .beta = field_if(sets_have(c, offsetof(rg_face_set, beta_at)), slots),
                  .friction = field_if(sets_have(c, offsetof(rg_face_set, friction_at)), slots)};
     find_materials(&look);
+    find_groups(&look);
     for (size_t t = 0; t < d->tiles; t++) { /* expressions are not for threads */
         for (size_t i = d->tile[t].ibegin * RG_LANES; i < d->tile[t].iend * RG_LANES; i++) {
             fill_face(&look, &d->tile[t], i, &to);
         }
     }
     rg_free(look.between);
+    for (int i = 0; i < c->interface.sets; i++) {
+        rg_free(look.groups[i]);
+    }
+    rg_free(look.groups);
     refuse_bad_values(&look);
     refuse_empty_sets(&look);
     rg_free(look.claimed);

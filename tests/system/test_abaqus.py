@@ -278,12 +278,14 @@ def test_decks_at_random(tmp_path, first):
 
 @pytest.fixture(scope="module")
 def meshes(scratch):
-    """One body; in the second file the surfaces overlap each other and the skin, and so do the volumes."""
+    """One body; in the second file the surfaces overlap each other, the skin and a plane inside, and so do the volumes."""
     head = "*NODE\n" + "".join(f"{n}, {x}, {y}, {z}\n" for n, (x, y, z) in NODES.items()) + "*ELEMENT, TYPE=C3D4, ELSET=all\n" + (
         "".join(f"{e}, {', '.join(map(str, nodes))}\n" for e, nodes in ELEMENTS.items()))
     sides = {name: f"*SURFACE, NAME={name}\n" + "".join(f"{e}, S{f + 1}\n" for e, f in SURFACES[name]) for name in SURFACES}
     more = "*ELSET, ELSET=up, GENERATE\n25, 48\n*SURFACE, NAME=skin\nall,\n*SURFACE, NAME=ends\n" + "".join(
         f"{e}, S{f + 1}\n" for name in ("top", "bottom") for e, f in SURFACES[name])
+    middle = "".join(f"{e}, S{f + 1}\n" for e in VOLUMES["low"] for f in range(4) if on_plane(corners(e, f), 2, 1))
+    more += f"*SURFACE, NAME=middle\n{middle}*SURFACE, NAME=mixed\n{middle}" + "".join(f"{e}, S{f + 1}\n" for e, f in SURFACES["top"])
     files = []
     for name, text in (("apart", head + "".join(sides.values())), ("over", head + more + "".join(sides.values()))):
         (scratch / f"{name}.inp").write_text(text)
@@ -315,6 +317,23 @@ def test_sets_that_overlap_act_like_others(run, meshes, name, keys):
     apart, over = (run(case(mesh, name, **keys), ranks=2) for mesh in meshes)
     assert (apart.dir / "energy.csv").read_bytes() == (over.dir / "energy.csv").read_bytes()
     assert float((apart.dir / "energy.csv").read_text().splitlines()[-1].split(",")[2]) > 0  # it moves
+
+
+def test_a_surface_inside(run, meshes):
+    """Named, it is what an expression selects; a boundary takes the faces of its set that are on the surface."""
+    law = {"law": "linear", "strength": 1e9, "energy": 10}
+    where, named = ({"interface": {**law, "sets": [{**plane, "open": True}]}, "boundary": [{"set": top, "component": "z", "velocity": 1}, *PULL[1:]]}
+                    for plane, top in (({"where": "abs(z - 1e-3) < 1e-9"}, "top"), ({"set": "middle"}, "mixed")))
+    apart, over = run(case(meshes[0], "where", **where), ranks=2), run(case(meshes[1], "named", **named), ranks=2)
+    assert (apart.dir / "energy.csv").read_bytes() == (over.dir / "energy.csv").read_bytes()
+    whole = run(case(meshes[0], "whole", **where | {"interface": law}), ranks=2)
+    assert apart.energy["kinetic"][-1] != whole.energy["kinetic"][-1]
+    said = launch("mesh", "--info", meshes[1]).stdout
+    assert "middle: 0 faces, and 8 between elements\n" in said and "mixed: 8 faces, and 8 between elements\n" in said
+    said = launch("check", case(meshes[1], "held inside", boundary=[{"set": "middle", "component": "z", "velocity": 1}]))
+    assert said.returncode == 2 and said.stderr.endswith("boundary[0].set: middle: no face of the surface is in it\n")
+    said = launch("check", case(meshes[1], "unknown", interface={**law, "sets": [{"set": "midle", "open": True}]}))
+    assert said.returncode == 2 and "interface.sets[0].set: midle: " in said.stderr and said.stderr.endswith("did you mean 'middle'?\n")
 
 
 def test_conditions_that_contradict(meshes):

@@ -67,8 +67,8 @@ def test_entities_without_groups(tmp_path):
     solids = [(number, kind, 0, entity, nodes) for number, kind, _, entity, nodes in SOLIDS]
     names, region, marked, said = convert(tmp_path, faces + solids)
     assert names == {"surface_sets": ["31", "32"], "volume_sets": ["21", "22"]}
-    assert region == {71: "21", 72: "22"} and marked == {(71, 3): "31"}
-    assert said == [": 1 faces of surface sets lie between elements, not on the surface: in no set"]
+    assert region == {71: "21", 72: "22"} and marked == {(71, 3): "31", (71, 0): "32", (72, 3): "32"}
+    assert said == [": 1 faces of surface sets lie between elements: interface.sets may name them, boundary leaves them out"]
 
 
 def test_many_entities(tmp_path):

@@ -247,17 +247,19 @@ static int by_vertices(const void *a, const void *b) {
     return (p->name > q->name) - (p->name < q->name);
 }
 
-/* A face of the surface. */
-struct outer {
+/* A face of one element. */
+struct side {
     rg_gid slot;                   /* 4 * element + face */
     const struct triangle *vertex; /* any triangle there; from it on the named ones */
     size_t named;
 };
 
 struct surface {
-    struct outer *face; /* by vertices, ascending */
+    struct side *face; /* of the surface, by vertices, ascending */
     size_t faces, room;
-    int64_t inside, nowhere; /* named triangles between two elements; that are no faces */
+    struct side *inner; /* both sides of named faces between two elements */
+    size_t inners, inner_room;
+    int64_t inside, nowhere; /* named faces between two elements; triangles that are no faces */
 };
 
 /* One group of equal triangles: the named ones come first, then the unnamed ones, then the faces. */
@@ -272,7 +274,11 @@ static void look_at_group(const struct triangle *t, size_t count, rg_mesh *mesh,
     s->nowhere += named > 0 && faces == 0;
     if (faces == 1) {
         s->face = rg_grow(s->face, &s->room, s->faces, sizeof *s->face);
-        s->face[s->faces++] = (struct outer){t[triangles].name, t, named};
+        s->face[s->faces++] = (struct side){t[triangles].name, t, named};
+    }
+    for (size_t i = triangles; named > 0 && faces > 1 && i < count; i++) {
+        s->inner = rg_grow(s->inner, &s->inner_room, s->inners, sizeof *s->inner);
+        s->inner[s->inners++] = (struct side){t[i].name, t, named};
     }
     if (triangles > 0 && faces > 1) {
         for (int i = 0; i < 3; i++) {
@@ -325,7 +331,9 @@ static struct triangle *list_triangles(rg_import *m, const rg_gid *vertex, const
 
 static void tell_faces(const rg_import *m, const struct surface *s) {
     if (s->inside > 0) {
-        rg_warn("%s: %" PRId64 " faces of surface sets lie between elements, not on the surface: in no set",
+        rg_warn("%s: %" PRId64
+                " faces of surface sets lie between elements: interface.sets may name them, boundary leaves "
+                "them out",
                 m->path, s->inside);
     }
     if (s->nowhere > 0) {
@@ -461,15 +469,20 @@ static struct node_set *list_node_sets(rg_import *m) {
 
 /* ---- all faces ---- */
 
+/* The sets of a face by name. */
+static void put_named(struct marks *k, const struct side *face, int32_t *group) {
+    for (size_t i = 0; i < face->named; i++) {
+        *group = rg_sets_join(k->joining, *group, face->vertex[i].set);
+    }
+}
+
 /* The sets of a face of the surface: by name, and by its element. */
-static void put_face(struct marks *k, const struct outer *face, int32_t *group) {
+static void put_face(struct marks *k, const struct side *face, int32_t *group) {
     const rg_import *m = k->import;
     int32_t count = 0;
     const int32_t *skin =
         m->skin != NULL ? rg_sets_of(&m->skin_sets, &m->skin[face->slot / 4], &count) : NULL;
-    for (size_t i = 0; i < face->named; i++) {
-        *group = rg_sets_join(k->joining, *group, face->vertex[i].set);
-    }
+    put_named(k, face, group);
     for (int32_t s = 0; s < count; s++) {
         *group = rg_sets_join(k->joining, *group, skin[s]);
     }
@@ -479,6 +492,9 @@ static void put_into_sets(struct marks *k, const struct node_set *sets, const st
                           rg_mesh *mesh) {
     for (size_t f = 0; f < s->faces; f++) {
         put_face(k, &s->face[f], &mesh->set[s->face[f].slot]);
+    }
+    for (size_t f = 0; f < s->inners; f++) {
+        put_named(k, &s->inner[f], &mesh->set[s->inner[f].slot]);
     }
     for (int32_t i = 0; i < k->import->node_set.count; i++) {
         if (sets[i].set >= 0) {
@@ -510,6 +526,7 @@ static void mark_faces(rg_import *m, const rg_gid *vertex, rg_mesh *mesh) {
     rg_free(k.mark);
     rg_free(sets);
     rg_free(s.face);
+    rg_free(s.inner);
     rg_free(list);
 }
 

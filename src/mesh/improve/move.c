@@ -88,7 +88,7 @@ static bool note_edge(face_edges *list, rg_gid end, int32_t label) {
         list->edge[list->count++] = (face_edge){end, label, false, 0};
     }
     list->edge[i].differ = list->edge[i].differ || list->edge[i].label != label;
-    list->edge[i].faces += label == RG_KEPT ? 1 : 2;
+    list->edge[i].faces += label < RG_SURFACE ? 1 : 2;
     return true;
 }
 

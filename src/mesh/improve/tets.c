@@ -177,6 +177,9 @@ static int32_t label_of(const rg_mesh *mesh, rg_gid slot) {
     if (other < 0) {
         return RG_SURFACE + mesh->set[slot] + 1;
     }
+    if (mesh->set[slot] >= 0) {
+        return -mesh->set[slot] - 1;
+    }
     for (int i = 0; i < 3; i++) {
         name[i] = mesh->corner[4 * e + rg_face_node[slot % 4][i]];
     }
@@ -216,6 +219,11 @@ rg_tets rg_tets_make(rg_mesh *mesh) {
     return t;
 }
 
+/* The sets of a face with this label. */
+static int32_t group_of(int32_t label) {
+    return label < 0 ? -label - 1 : label >= RG_SURFACE ? label - RG_SURFACE - 1 : -1;
+}
+
 /* Corners ascending, with their faces. */
 static void put(rg_mesh *mesh, rg_gid e, const rg_tet *tet) {
     for (int i = 0; i < 4; i++) {
@@ -224,7 +232,7 @@ static void put(rg_mesh *mesh, rg_gid e, const rg_tet *tet) {
             place += tet->corner[k] < tet->corner[i];
         }
         mesh->corner[4 * e + place] = tet->corner[i];
-        mesh->set[4 * e + place] = tet->label[i] >= RG_SURFACE ? tet->label[i] - RG_SURFACE - 1 : -1;
+        mesh->set[4 * e + place] = group_of(tet->label[i]);
     }
     mesh->original[e] = tet->original;
     if (mesh->region != NULL) {

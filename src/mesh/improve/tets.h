@@ -9,7 +9,7 @@
 #include "mesh/mesh.h"
 
 /* Labels of faces: 0 inside, RG_KEPT on a face inside that must stay where it is (between two volume sets, or
- * named), RG_SURFACE + group + 1 on the surface. */
+ * a triangle of the input), -group - 1 where it is in sets besides, RG_SURFACE + group + 1 on the surface. */
 enum { RG_KEPT = 1, RG_SURFACE = 2 };
 
 typedef struct {

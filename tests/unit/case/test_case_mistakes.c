@@ -213,7 +213,8 @@ static const mistake mistakes[] = {
      "    - {between: [steel]}\n"
      "    - {between: steel}\n"
      "    - {between: [stel, steel, glue]}\n",
-     ":12:7: interface.sets[0]: missing where or between; allowed: where, between, or both\n"
+     ":12:7: interface.sets[0]: missing set, where or between; allowed: set, where, between, or several of "
+     "them\n"
      ":13:28: interface.sets[1].between: stel: no such material; " PAIR "; did you mean 'steel'?\n"
      ":14:17: interface.sets[2].between: [steel]: wrong number of entries; " PAIR "\n"
      ":15:17: interface.sets[3].between: steel: not a list; allowed: list of texts\n"

@@ -146,7 +146,8 @@ static void add_faces(void) {
 
 #define LEFT                                                                                                 \
     WARNING "2 nodes belong to no tetrahedron and are left out; the first is node 5 at (9, 9, 9.5) m\n"
-#define BETWEEN "faces of surface sets lie between elements, not on the surface: in no set\n"
+#define BETWEEN                                                                                              \
+    "faces of surface sets lie between elements: interface.sets may name them, boundary leaves them out\n"
 #define NOWHERE "triangles of surface sets are no faces of tetrahedra: left out\n"
 
 static void expect_faces(size_t count, const rg_import_face *list, int status, const char *said) {
@@ -167,7 +168,8 @@ static void test_faces(void **state) {
                                    {{40, 30, 20}, 9, RG_IMPORT_UNNAMED},
                                    {{40, 20, 30}, 10, 1}};
     expect_faces(4, both, RG_OK,
-                 LEFT WARNING "1 " BETWEEN X5 "e 1: 0 1 2 3, top at 2\ne 2: 1 2 3 4\ninner 1 2 3\n");
+                 LEFT WARNING "1 " BETWEEN X5
+                              "e 1: 0 1 2 3, side at 0, top at 2\ne 2: 1 2 3 4, side at 3\ninner 1 2 3\n");
     /* with node 60, 99 and 5, of which the second is not there and the others are no corners; and behind all
      * faces */
     const rg_import_face nowhere[] = {{{10, 20, 50}, 7, 0},
@@ -181,7 +183,10 @@ static void test_faces(void **state) {
     const rg_import_face two[] = {{{40, 10, 20}, 9, 1}, {{20, 10, 40}, 7, 0}};
     expect_faces(2, two, RG_OK, LEFT X5 "e 1: 0 1 2 3, top and side at 2\ne 2: 1 2 3 4\n");
     const rg_import_face inside[] = {{{40, 30, 20}, 7, 1}, {{20, 30, 40}, 9, 0}};
-    expect_faces(2, inside, RG_OK, LEFT WARNING "1 " BETWEEN X5 "e 1: 0 1 2 3\ne 2: 1 2 3 4\ninner 1 2 3\n");
+    expect_faces(2, inside, RG_OK,
+                 LEFT WARNING
+                 "1 " BETWEEN X5
+                 "e 1: 0 1 2 3, top and side at 0\ne 2: 1 2 3 4, top and side at 3\ninner 1 2 3\n");
 }
 
 /* Sets of nodes: faces of the surface all of whose corners are in one. */

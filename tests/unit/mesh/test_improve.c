@@ -160,11 +160,21 @@ static void test_volume_sets_stay(void **state) {
     rg_mesh_free(m);
 }
 
-/* Faces that the input names stay; where it does not, the plane does not survive. */
+/* Faces that the input names, or has in a set, stay; where it does not, the plane does not survive. Sets stay
+ * with their faces: 6 on one half of the plane, 7 on the other. */
 static void test_inner_faces_stay(void **state) {
     (void)state;
-    for (int named = 0; named < 2; named++) {
+    for (int named = 0; named < 3; named++) {
         rg_mesh *m = layered();
+        double area[8] = {0}, half = 0;
+        for (rg_gid slot = 0; named == 2 && slot < 4 * m->elements; slot++) {
+            double centre = 0;
+            for (int i = 0; i < 3; i++) {
+                centre += face_vertex(m, slot, i)[0] / 3;
+            }
+            m->set[slot] = !in_middle(m, slot) ? m->set[slot] : centre < 0.4 ? 6 : 7;
+            half += m->set[slot] == 6 ? face_area(m, slot) / 2 : 0;
+        }
         m->inner = RG_NEW(rg_gid, (size_t)(12 * m->elements));
         for (rg_gid slot = 0; named == 1 && slot < 4 * m->elements; slot++) {
             for (int i = 0; i < 3 && in_middle(m, slot); i++) {
@@ -181,8 +191,14 @@ static void test_inner_faces_stay(void **state) {
             memcpy(m->inner + 3 * k, swap, sizeof swap);
         }
         improve(m);
-        if (named == 1) {
+        for (rg_gid slot = 0; slot < 4 * m->elements; slot++) {
+            assert_int_equal(m->set[slot] >= 6, named == 2 && in_middle(m, slot));
+            area[m->set[slot] >= 0 ? m->set[slot] : 0] += face_area(m, slot) / 2;
+        }
+        if (named > 0) {
             assert_close(middle_area(m), 0.3, 1e-12);
+            assert_close(area[6] + area[7], named == 2 ? 0.3 : 0, 1e-12);
+            assert_close(area[6], half, 1e-12);
         } else {
             assert_true(middle_area(m) < 0.2);
         }

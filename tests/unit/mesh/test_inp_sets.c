@@ -104,8 +104,8 @@ static void test_surface_sets(void **state) {
                                 "*SURFACE, NAME=d\n2, S2\n2, S3\n2, S4\n",
            X5 "e 1: 0 1 2 3, c at 1, b at 2, a at 3\ne 2: 1 2 3 4, d at 0, d at 1, d at 2\n");
     expect(NODES SOLIDS ONE TWO "*SURFACE, NAME=a\n1, S3\n2, S1\n",
-           WARNING ": 1 faces of surface sets lie between elements, not on the surface: in no set\n" X5
-                   "e 1: 0 1 2 3\ne 2: 1 2 3 4\ninner 1 2 3\n");
+           WARNING ": 1 faces of surface sets lie between elements: interface.sets may name them, boundary "
+                   "leaves them out\n" X5 "e 1: 0 1 2 3, a at 0\ne 2: 1 2 3 4, a at 3\ninner 1 2 3\n");
     /* By sets of elements, of both names; one patch does not take the elements of another. */
     expect(NODES "*ELEMENT, TYPE=C3D4, ELSET=p\n" ONE "*ELEMENT, TYPE=C3D4, ELSET=q\n" TWO
                  "*SURFACE, NAME=a\np, S1\n*SURFACE, NAME=b\nq, S4\nP, S2\n",

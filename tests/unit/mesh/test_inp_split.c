@@ -166,14 +166,16 @@ static void test_input(void **state) {
     split = true;
     expect(words, WARNING
            ": 1 nodes belong to no tetrahedron and are left out; the first is node 12 at (0.5, 0.5, -1) "
-           "m\n" WARNING ": 2 faces of surface sets lie between elements, not on the surface: in no set\n"
+           "m\n" WARNING ": 2 faces of surface sets lie between elements: interface.sets may name them, "
+           "boundary leaves them out\n"
            "x 0: 0 0 0\nx 1: 1 0 0\nx 2: 1 1 0\nx 3: 0 1 0\nx 4: 0 0 1\nx 5: 1 0 1\nx 6: 1 1 1\nx 7: 0 1 1\n"
            "x 8: 0.5 0.5 2\nx 9: 2 0 0\nx 10: 2 0 1\n"
-           "e 1: 0 4 6 7 in h, s and free at 2\ne 1: 0 4 5 6 in h, free at 3\ne 1: 0 1 5 6 in h, free at 3\n"
-           "e 1: 0 1 2 6 in h, free at 3\ne 1: 0 2 6 7 in h, free at 0\n"
+           "e 1: 0 4 6 7 in h, s and free at 2\ne 1: 0 4 5 6 in h, free at 3\ne 1: 0 1 5 6 in h, s at 0, "
+           "free at 3\n"
+           "e 1: 0 1 2 6 in h, s at 0, free at 3\ne 1: 0 2 6 7 in h, free at 0\n"
            "e 1: 0 2 3 7 in h, free at 0, s and free at 1, free at 3\n"
            "e 2: 4 5 6 8 in p, s at 2\ne 2: 4 6 7 8 in p\n"
-           "e 3: 1 5 6 10\ne 3: 1 2 9 10\ne 3: 1 2 6 10\ninner 1 2 6\ninner 1 5 6\n");
+           "e 3: 1 5 6 10, s at 3\ne 3: 1 2 9 10\ne 3: 1 2 6 10, s at 3\ninner 1 2 6\ninner 1 5 6\n");
     split = false;
 }
 

@@ -110,7 +110,7 @@ static rg_mesh *chain(void) {
     return m;
 }
 
-/* What a case changes in the chain: `corner`, `neighbour` or `face` at a place. */
+/* What a case changes in the chain: `corner`, `neighbour`, `face` or `set` at a place. */
 typedef struct {
     char what;
     int at;
@@ -126,6 +126,7 @@ static void check_changed(void) {
         c->what == 'c'   ? (void)(m->corner[c->at] = c->value)
         : c->what == 'n' ? (void)(m->neighbour[c->at] = c->value)
         : c->what == 'f' ? (void)(m->face[c->at] = (int8_t)c->value)
+        : c->what == 's' ? (void)(m->set[c->at] = (int32_t)c->value)
                          : (void)(m->vertices = c->value);
     }
     rg_mesh_check(m, "chain");
@@ -141,6 +142,10 @@ static void test_changes(void **state) {
           "3\n"}},
         {{'v', 0, 7, "no element uses vertex 6\n"}},
         /* slots 0 and 7 are one face, 4 and 11 another */
+        {{'s', 4, 1, "set: elements 72 and 73 have the face between them in different sets\n"}},
+        {{'s', 4, 2, ""},
+         {'s', 11, 2, ""},
+         {'s', 7, 2, "set: elements 71 and 72 have the face between them in different sets\n"}},
         {{'n', 0, 3,
           "neighbour: element 71 takes element 3 for its neighbour across face 0, but they do not share it\n"
           "neighbour: element 72 takes element 71 for its neighbour across face 3, but they do not share "

@@ -272,6 +272,33 @@ static void write_counts(FILE *out, const rg_mesh *m, const char *parts) {
             faces[1], faces[2], faces[3], faces[0], elements[1], elements[2], elements[0]);
 }
 
+/* Faces between two elements are counted by themselves, once. */
+static void test_inner_sets(void **state) {
+    (void)state;
+    rg_mesh *m = scattered(2, 3);
+    const double x[5][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}};
+    memcpy(m->x, x, sizeof x);
+    m->vertices = 5;
+    for (int k = 0; k < 4; k++) {
+        m->corner[k] = k;
+        m->corner[4 + k] = k + 1;
+    }
+    for (int slot = 0; slot < 8; slot++) {
+        m->set[slot] = slot == 0 || slot == 7 ? 2 : slot == 3 || slot == 5 ? 0 : slot == 4 ? 2 : -1;
+    }
+    rg_mesh_connect(m);
+    char *text;
+    size_t length;
+    FILE *stream = open_memstream(&text, &length);
+    rg_mesh_info(m, 1, stream);
+    fclose(stream);
+    assert_non_null(strstr(text, "surface set    top: 2 faces\nsurface set    side: 0 faces\n"
+                                 "surface set    foot: 1 faces, and 1 between elements\n"
+                                 "               in no surface set: 3 faces\n"));
+    free(text);
+    rg_mesh_free(m);
+}
+
 static void test_scattered(void **state) {
     (void)state;
     static const int counts[] = {400, 130, 9, 8, 3, 1};
@@ -442,9 +469,9 @@ static void test_stored_partitions(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_scattered),         cmocka_unit_test(test_extremes),
-        cmocka_unit_test(test_regular),           cmocka_unit_test(test_quality),
-        cmocka_unit_test(test_stored_partitions),
+        cmocka_unit_test(test_scattered), cmocka_unit_test(test_inner_sets),
+        cmocka_unit_test(test_extremes),  cmocka_unit_test(test_regular),
+        cmocka_unit_test(test_quality),   cmocka_unit_test(test_stored_partitions),
     };
     int failed = cmocka_run_group_tests_name("mesh_info", tests, NULL, NULL);
     return failed + (rg_alloc_blocks() > 0); /* all is given back */

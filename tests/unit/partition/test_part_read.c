@@ -124,8 +124,8 @@ static void write_silly(int64_t tiles) {
     rg_free(owner);
 }
 
-/* A box of which each fourth element is in no volume set, and each fourth in two; two sides have a set more.
- */
+/* A box of which each fourth element is in no volume set, and each fourth in two; two sides have a set more,
+ * and some faces inside are in it too. */
 static rg_mesh *make_mesh(const struct box *b) {
     rg_mesh *mesh = rg_mesh_box(b->cells, b->origin, b->size, b->jitter, 5);
     mesh->region = RG_NEW(int32_t, (size_t)mesh->elements);
@@ -138,7 +138,8 @@ static rg_mesh *make_mesh(const struct box *b) {
     for (rg_gid e = 0; e < mesh->elements; e++) {
         for (int f = 0; f < 4; f++) {
             int32_t *set = &mesh->set[4 * e + f];
-            *set = *set == 1 || *set == 2 ? *set + 6 : *set;
+            rg_gid other = mesh->neighbour[4 * e + f];
+            *set = *set == 1 || *set == 2 ? *set + 6 : other >= 0 && (e + other) % 5 == 0 ? 6 : *set;
         }
         mesh->region[e] = (int32_t)(e % 4 - 1);
         mesh->original[e] = 2 * mesh->original[e] + 7;

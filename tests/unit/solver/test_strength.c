@@ -357,6 +357,51 @@ static void test_expressions(void **state) {
     }
 }
 
+/* ---- Faces that the mesh names ---- */
+
+/* A mesh some faces inside of which are in set "weak", and half of these in "weaker" besides. */
+static rg_mesh *mesh_with_sets(const rg_case *c) {
+    rg_mesh *mesh = rg_mesh_of_case(c);
+    int32_t weak = rg_sets_add(&mesh->surface, "weak"), weaker = rg_sets_add(&mesh->surface, "weaker");
+    int32_t both = rg_sets_combine(&mesh->surface, 2, (const int32_t[]){weak, weaker});
+    for (rg_gid slot = 0; slot < 4 * mesh->elements; slot++) {
+        rg_gid a = slot / 4, b = mesh->neighbour[slot], key = a * a + b * b;
+        mesh->set[slot] = b >= 0 && key % 3 == 0 ? (key % 2 == 0 ? both : weak) : mesh->set[slot];
+    }
+    return mesh;
+}
+
+static void test_named(void **state) {
+    (void)state;
+    const char *const set[] = {
+        "interface.sets=[{set: weak, strength: 200e6}, {set: weaker, strength: 100e6}, "
+        "{set: weak, where: z > 0, strength: 800e6}]"};
+    rg_case *c = read_case(1, set);
+    rg_mesh *mesh = mesh_with_sets(c);
+    rg_part *part = rg_part_distribute(mesh, 96, MPI_COMM_SELF);
+    rg_solver *s = rg_solver_make_from_part(c, part, MPI_COMM_SELF);
+    size_t seen[4] = {0};
+    for (size_t t = 0; t < s->domain->tiles; t++) {
+        const rg_tile *tile = &s->domain->tile[t];
+        for (size_t i = tile->ibegin * RG_LANES; i < tile->iend * RG_LANES; i++) {
+            int32_t link = s->domain->side[0][i];
+            face f = face_of(s, tile, i);
+            if (f.area > 0) {
+                rg_gid a = s->domain->id[tile->begin * RG_LANES + (size_t)link / RG_FACES];
+                rg_gid b = mesh->neighbour[4 * a + link % RG_FACES], key = a * a + b * b;
+                int which = key % 3 != 0 ? 0 : f.middle[2] > 0 ? 3 : key % 2 == 0 ? 2 : 1;
+                static const double strength[] = {1, 0.5, 0.25, 2};
+                assert_true(fabs(f.strength - strength[which]) < 1e-6);
+                seen[which]++;
+            }
+        }
+    }
+    assert_true(seen[0] > 0 && seen[1] > 0 && seen[2] > 0 && seen[3] > 0);
+    rg_solver_free(s);
+    rg_mesh_free(mesh);
+    rg_case_free(c);
+}
+
 /* ---- Sets that are none ---- */
 
 static const char *asked;
@@ -408,6 +453,10 @@ static void test_empty(void **state) {
         const char *sets, *words;
     } wrong[] = {
         {"interface.sets=[{where: z > 1, energy: 1}]", "interface.sets[0]: no face is in it, where: z > 1\n"},
+        {"interface.sets=[{set: x-, energy: 1}]",
+         "interface.sets[0]: no face is in it that lies between elements, set: x-\n"},
+        {"interface.sets=[{where: 1, energy: 1}, {set: weak, energy: 1}]",
+         "interface.sets[1].set: the mesh has no set named 'weak'\n"},
         {"interface.sets=[{where: 1, energy: 1}, {where: 'nx > 2', strength: 1}, {where: 0, energy: 1}]",
          "interface.sets[1]: no face is in it, where: nx > 2\n"},
     };
@@ -434,17 +483,12 @@ static void test_uniform(void **state) {
 
 int main(int argc, char **argv) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_weibull),
-        cmocka_unit_test(test_seed_and_keep),
-        cmocka_unit_test(test_numbers),
-        cmocka_unit_test(test_formula),
-        cmocka_unit_test(test_without_softening),
-        cmocka_unit_test(test_sets),
-        cmocka_unit_test(test_properties),
-        cmocka_unit_test(test_expressions),
-        cmocka_unit_test(test_empty),
-        cmocka_unit_test(test_uniform),
-        cmocka_unit_test(test_not_finite),
+        cmocka_unit_test(test_weibull),           cmocka_unit_test(test_seed_and_keep),
+        cmocka_unit_test(test_numbers),           cmocka_unit_test(test_formula),
+        cmocka_unit_test(test_without_softening), cmocka_unit_test(test_sets),
+        cmocka_unit_test(test_properties),        cmocka_unit_test(test_named),
+        cmocka_unit_test(test_expressions),       cmocka_unit_test(test_empty),
+        cmocka_unit_test(test_uniform),           cmocka_unit_test(test_not_finite),
     };
     omp_set_num_threads(1); /* a child has none of its parent's threads */
     MPI_Init(&argc, &argv);
