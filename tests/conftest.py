@@ -33,11 +33,13 @@ EVERYWHERE = {  # changes of fragments.yaml that must not change the bits, on an
               "loads": [{"name": "pull", "set": "z+", "traction": {"x": "2e7*pulse(t)*(1 + 1e3*y)", "z": "3e8*pulse(t)"}},
                         {"where": "abs(nx) > 0.5", "pressure": "2e8*pulse(2*t)*(1 + 1e2*z)", "from": 2e-8, "until": 1.5e-7},
                         {"set": "y-", "force": {"y": 3}}, {"name": "fall", "acceleration": {"y": -4e7, "z": "1e11*x*t/1e-7"}}],
-              "boundary": [{"name": "hold", "set": "z-", "component": "z", "velocity": "1e8*t*x"}, {"set": "x+", "absorbing": True},
-                           {"set": "z-", "absorbing": True},
+              "boundary": [{"name": "hold", "set": "z-", "angle": "2e4*t", "axis": [0, 1, 3], "translation": {"z": "3e6*t*t"}}, {"set": "x+", "absorbing": True},
+                           {"set": "z+", "absorbing": True}, {"name": "roll", "where": "nx < -0.5 && z > 0", "normal": "1e7*t*z", "until": 1.6e-7},
+                           {"set": "y+", "direction": [1, 0, 2], "velocity": 3, "from": 1.4e-7},
                            {"name": "catch", "set": "y+", "component": "x", "displacement": "5*t", "from": 3e-8, "until": 1.3e-7}]},
     "loads, continuous": {"interface.form": "continuous", "interface.faces": "nz*nz > 0.5",
-                          "boundary": [{"set": "x+", "absorbing": True}, {"set": "z-", "absorbing": True}],
+                          "boundary": [{"set": "x+", "absorbing": True}, {"set": "z-", "absorbing": True}, {"where": "nx < -0.5", "normal": 0},
+                                       {"set": "y+", "direction": [1, 0, 2], "velocity": "1e7*t", "from": 3e-8}],
                           "loads": [{"name": "pull", "set": "z+", "traction": {"z": "3e8 + 1e12*x"}}]},
 }
 TIMEOUT = int(os.environ.get("RHEGMA_TIMEOUT", 300))  # seconds: a run that hangs is a failure

@@ -1,10 +1,30 @@
 /* What follows from the values of a case. */
 #include "case/case.h"
 
+#include <math.h>
 #include <string.h>
 
+bool rg_boundary_is_along_line(const rg_boundary *b) {
+    return !b->absorbing &&
+           (b->prescribed == RG_PRESCRIBED_VELOCITY || b->prescribed == RG_PRESCRIBED_DISPLACEMENT);
+}
+
 bool rg_boundary_has_component(const rg_boundary *b) {
-    return !b->absorbing;
+    const double *d = b->direction;
+    return rg_boundary_is_along_line(b) && !(fabs(d[0]) + fabs(d[1]) + fabs(d[2]) > 0);
+}
+
+bool rg_boundary_is_placed(const rg_boundary *b) {
+    return !b->absorbing &&
+           (b->prescribed == RG_PRESCRIBED_DISPLACEMENT || b->prescribed == RG_PRESCRIBED_ANGLE);
+}
+
+static bool ends_before(const rg_boundary *a, const rg_boundary *b) {
+    return a->until > 0 && a->until <= b->from;
+}
+
+bool rg_boundaries_meet(const rg_boundary *a, const rg_boundary *b) {
+    return !ends_before(a, b) && !ends_before(b, a);
 }
 
 const rg_material_input *rg_case_material(const rg_case *c, int i) {

@@ -37,22 +37,31 @@ enum {
     RG_FIELDS_COMMON = 63 | RG_FIELD_FRAGMENT, /* what every run puts out by default */
 };
 
-/* The registry of prescribed motions, of which an entry of `boundary` is one: X(NAME, key, unit), with `join`
- * between them. What each does to the nodes: solver/constraint.c. */
-#define RG_PRESCRIBED(X, join) X(VELOCITY, "velocity", "m/s") join X(DISPLACEMENT, "displacement", "m")
+/* The registry of prescribed motions, of which an entry of `boundary` is one: X(NAME, key, unit, meaning),
+ * with `join` between them. What each does to the nodes: solver/motion.h. */
+#define RG_PRESCRIBED(X, join)                                                                               \
+    X(VELOCITY, "velocity", "m/s", "prescribed velocity")                                                    \
+    join X(DISPLACEMENT, "displacement", "m", "prescribed displacement") join X(                             \
+        NORMAL, "normal", "m/s",                                                                             \
+        "velocity along each face's outward normal of reference, free across: 0 is a roller") join           \
+    X(ANGLE, "angle", "rad", "the set moves as a rigid body, turned by so much about `axis`")
 
-#define RG_PRESCRIBED_ENUM(NAME, key, unit) RG_PRESCRIBED_##NAME,
-#define RG_PRESCRIBED_KEY(NAME, key, unit)  key
+#define RG_PRESCRIBED_ENUM(NAME, key, unit, meaning) RG_PRESCRIBED_##NAME,
+#define RG_PRESCRIBED_KEY(NAME, key, unit, meaning)  key
 typedef enum { RG_PRESCRIBED(RG_PRESCRIBED_ENUM, ) RG_PRESCRIBED_KINDS } rg_prescribed;
 
 typedef struct {
-    char *name;    /* column prefix in history.csv; NULL: it has no columns */
-    char *set;     /* named set of faces */
-    int component; /* 0, 1, 2 for x, y, z; -1: of what has none */
+    char *name;          /* column prefix in history.csv; NULL: it has no columns */
+    char *set;           /* named set of faces, or */
+    rg_expr *where;      /* not 0: faces of the surface, by their middle and outward normal */
+    int component;       /* 0, 1, 2 for x, y, z; -1: of what has none */
+    double direction[3]; /* of a velocity or displacement in place of a component, of any length; or 0 */
     rg_prescribed prescribed;
     rg_expr *value;
-    bool absorbing;     /* waves leave by it, and nothing is prescribed */
-    double from, until; /* a motion is prescribed in between (s); until 0: without end */
+    double axis[3], at[3];   /* about which an angle turns; a point of it (m) */
+    rg_expr *translation[3]; /* of a point of the axis (m), beside an angle; NULL: 0 */
+    bool absorbing;          /* waves leave by it, and nothing is prescribed */
+    double from, until;      /* a motion is prescribed in between (s); until 0: without end */
 } rg_boundary;
 
 /* What a load is, of which it has one: X(NAME, key, unit), with `join` between them. What each does:
@@ -216,8 +225,14 @@ typedef struct {
     } checkpoint;
 } rg_case;
 
-/* Whether an entry of `boundary` prescribes one component. */
+/* Whether an entry of `boundary` prescribes a velocity or displacement along one line; along an axis of
+ * coordinates; whether it prescribes places, not only velocities. */
+bool rg_boundary_is_along_line(const rg_boundary *b);
 bool rg_boundary_has_component(const rg_boundary *b);
+bool rg_boundary_is_placed(const rg_boundary *b);
+
+/* Whether two entries act at the same time. */
+bool rg_boundaries_meet(const rg_boundary *a, const rg_boundary *b);
 
 /* Input of material i (0: `material`, then the others), and its name. */
 const rg_material_input *rg_case_material(const rg_case *c, int i);

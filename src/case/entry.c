@@ -5,7 +5,10 @@
 #include "base/mem.h"
 
 const rg_node *rg_entry_given(const rg_entry *e, const char *key) {
-    return rg_node_find(e->item, key, strlen(key));
+    const char *dot = strchr(key, '.');
+    const rg_node *section = dot == NULL ? e->item : rg_node_find(e->item, key, (size_t)(dot - key));
+    const char *last = dot == NULL ? key : dot + 1;
+    return section == NULL ? NULL : rg_node_find(section, last, strlen(last));
 }
 
 void rg_entry_wrong(const rg_entry *e, const char *key, rg_place at, rg_subject subject, const char *what) {

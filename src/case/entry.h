@@ -10,7 +10,7 @@ typedef struct {
     const char *path; /* "loads[2]" */
 } rg_entry;
 
-/* The key as it stands in the entry; NULL: it does not. */
+/* The key as it stands in the entry, or in a section of it ("weibull.seed"); NULL: it does not. */
 const rg_node *rg_entry_given(const rg_entry *e, const char *key);
 
 /* Reports what is wrong with a key of the entry (NULL: with the entry), with what `subject` says besides. */

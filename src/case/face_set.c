@@ -2,7 +2,7 @@
 #include <string.h>
 
 #include "base/mem.h"
-#include "case/check.h"
+#include "case/entry.h"
 
 /* "alumina, steel" */
 static void list_names(const rg_case *c, char *text, size_t size) {
@@ -36,22 +36,14 @@ static void check_between(rg_check *ck, const rg_node *node, const rg_face_set *
     rg_free(key);
 }
 
-/* A key of the set that is being checked; NULL: not given. */
-static const rg_node *given(const rg_node *item, const char *key) {
-    const char *dot = strchr(key, '.');
-    const rg_node *section = dot == NULL ? item : rg_node_find(item, key, (size_t)(dot - key));
-    const char *last = dot == NULL ? key : dot + 1;
-    return section == NULL ? NULL : rg_node_find(section, last, strlen(last));
-}
-
 /* Reports a key that is given to no purpose. */
 static void refuse(rg_check *ck, const rg_node *item, const char *path, const char *name, const char *why) {
-    const rg_node *node = given(item, name);
+    rg_entry e = {ck, item, path};
+    const rg_node *node = rg_entry_given(&e, name);
     if (node != NULL) {
-        char value[64], *key = rg_text_format("%s.%s", path, name);
-        rg_subject subject = {.key = key, .value = rg_node_line(node, value, sizeof value)};
-        rg_problem_add(ck->problems, node->key_at, &subject, "%s", why);
-        rg_free(key);
+        char value[64];
+        rg_subject subject = {.value = rg_node_line(node, value, sizeof value)};
+        rg_entry_wrong(&e, name, node->key_at, subject, why);
     }
 }
 
@@ -98,7 +90,7 @@ static void check_shear(rg_check *ck, const rg_node *item, const rg_face_set *se
 }
 
 static void check_weibull(rg_check *ck, const rg_node *item, const rg_face_set *set, const char *path) {
-    const rg_node *modulus = given(item, "weibull.modulus");
+    const rg_node *modulus = rg_entry_given(&(rg_entry){ck, item, path}, "weibull.modulus");
     if (modulus == NULL) {
         refuse(ck, item, path, "weibull.area", "not used without weibull.modulus");
         refuse(ck, item, path, "weibull.seed", "not used without weibull.modulus");

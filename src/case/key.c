@@ -206,8 +206,15 @@ bool rg_key_used(const rg_key *key, const void *base) {
         return ((const rg_case *)base)->interface.weibull.modulus > 0;
     case RG_GROUP_LAW:
         return ((const rg_case *)base)->interface.law == key->law;
+    case RG_GROUP_LINE:
+        return rg_boundary_is_along_line(base);
     case RG_GROUP_COMPONENT:
         return rg_boundary_has_component(base);
+    case RG_GROUP_RIGID:
+        return !((const rg_boundary *)base)->absorbing &&
+               ((const rg_boundary *)base)->prescribed == RG_PRESCRIBED_ANGLE;
+    case RG_GROUP_MOTION:
+        return !((const rg_boundary *)base)->absorbing;
     case RG_GROUP_PRESCRIBED:
         return ((const rg_boundary *)base)->prescribed == key->prescribed;
     case RG_GROUP_ALWAYS:

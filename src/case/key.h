@@ -48,7 +48,10 @@ typedef enum {
     RG_GROUP_SWITCH,     /* if points switch from DG to a law: there is one, and DG terms */
     RG_GROUP_ONSET,      /* ... by the conserving activation */
     RG_GROUP_WEIBULL,    /* if interface.weibull.modulus is given */
-    RG_GROUP_COMPONENT,  /* boundary entries: if one component is prescribed */
+    RG_GROUP_LINE,       /* boundary entries: if a velocity or displacement is prescribed */
+    RG_GROUP_COMPONENT,  /* ... of a component */
+    RG_GROUP_RIGID,      /* ... if an angle is */
+    RG_GROUP_MOTION,     /* ... if anything is */
     RG_GROUP_PRESCRIBED, /* boundary entries: if that is what is prescribed */
     RG_GROUPS,
 } rg_key_group;

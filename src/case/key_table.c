@@ -320,23 +320,35 @@ static const rg_key other_material_keys[] = {
 #include "case/material_keys.h"
 };
 
-#define PRESCRIBED(NAME, key, unit_)                                                                 \
+#define BOUNDARY(member) .offset = offsetof(rg_boundary, member)
+#define PRESCRIBED(NAME, key, unit_, words)                                                                 \
     {.name = (key), .unit = (unit_), .type = RG_KEY_EXPR, ELSE("another motion"), ONE_OF, .group = RG_GROUP_PRESCRIBED,  \
-     .prescribed = RG_PRESCRIBED_##NAME, .offset = offsetof(rg_boundary, value), MEANS("prescribed " key)},
+     .no_place = RG_PRESCRIBED_##NAME == RG_PRESCRIBED_ANGLE, .prescribed = RG_PRESCRIBED_##NAME, BOUNDARY(value), MEANS(words)},
+#define TRANSLATION(key, i, words) \
+    {.name = (key), .unit = "m", .type = RG_KEY_EXPR, ELSE("0"), GROUP(RIGID), .no_place = true, BOUNDARY(translation[i]), MEANS(words)},
 
 static const rg_key boundary_keys[] = {
-    {.name = "name", .type = RG_KEY_TEXT, ELSE("no columns"), .offset = offsetof(rg_boundary, name),
+    {.name = "name", .type = RG_KEY_TEXT, ELSE("no columns"), BOUNDARY(name),
      MEANS("column prefix in history.csv of the force that holds it, on the solid, and its work: letters, digits, _ and -")},
-    {.name = "set", .type = RG_KEY_TEXT, .choice = box_sets, REQUIRED, .offset = offsetof(rg_boundary, set),
+    {.name = "set", .type = RG_KEY_TEXT, .choice = box_sets, ELSE("where"), BOUNDARY(set),
      MEANS("a side of the box, or a surface set of the mesh file")},
-    {.name = "component", CHOICE(components), DEFAULT(0), GROUP(COMPONENT), .absent = "required of a velocity or displacement",
-     .offset = offsetof(rg_boundary, component), MEANS("of the motion that is prescribed")},
+    {.name = "where", .type = RG_KEY_EXPR, ELSE("set"), .no_time = true, .normal = true, BOUNDARY(where),
+     MEANS("faces of the surface where it is not 0, by their middle and outward normal")},
+    {.name = "component", CHOICE(components), DEFAULT(0), GROUP(COMPONENT), .absent = "required of a velocity or displacement, or `direction`",
+     BOUNDARY(component), MEANS("of the motion that is prescribed")},
+    {.name = "direction", REAL3, ANY, ELSE("a component"), GROUP(LINE), BOUNDARY(direction),
+     MEANS("along which the velocity or displacement is prescribed, free across: of any length")},
     RG_PRESCRIBED(PRESCRIBED, )
-    {.name = "absorbing", .type = RG_KEY_BOOL, ELSE("a motion"), ONE_OF, .offset = offsetof(rg_boundary, absorbing),
+    {.name = "absorbing", .type = RG_KEY_BOOL, ELSE("a motion"), ONE_OF, BOUNDARY(absorbing),
      MEANS("true: waves that meet it straight on leave by it (Lysmer & Kuhlemeyer 1969): the traction is -rho c_d v along the normal, -rho c_s v across")},
-    {.name = "from", .unit = "s", REAL, FROM(0), ELSE("0"), GROUP(COMPONENT), .offset = offsetof(rg_boundary, from),
+    {.name = "axis", REAL3, ANY, ELSE("required of an angle"), GROUP(RIGID), BOUNDARY(axis), MEANS("about which the set turns, by the right hand: of any length")},
+    {.name = "at", .unit = "m", REAL3, ANY, ELSE("0, 0, 0"), GROUP(RIGID), BOUNDARY(at), MEANS("a point of the axis at the start")},
+    TRANSLATION("translation.x", 0, "of the axis along x, beside the turn")
+    TRANSLATION("translation.y", 1, "along y")
+    TRANSLATION("translation.z", 2, "along z")
+    {.name = "from", .unit = "s", REAL, FROM(0), ELSE("0"), GROUP(MOTION), BOUNDARY(from),
      MEANS("the motion is prescribed from this time on, and free before")},
-    {.name = "until", .unit = "s", REAL, ABOVE(0), ELSE("the end of the run"), GROUP(COMPONENT), .offset = offsetof(rg_boundary, until),
+    {.name = "until", .unit = "s", REAL, ABOVE(0), ELSE("the end of the run"), GROUP(MOTION), BOUNDARY(until),
      MEANS("and no more from this one on: the side is released")},
 };
 

@@ -217,6 +217,12 @@ void rg_estimate_print(const rg_solver *s, const rg_estimate *e, FILE *out) {
     for (int i = 0; i < s->model->materials; i++) {
         print_material(s, e, i, out);
     }
+    for (int i = 0; i < c->boundaries; i++) {
+        char words[160];
+        rg_constraints_describe(s->constraints, i, words, sizeof words);
+        fprintf(out, "boundary       %s%s%s\n", c->boundary[i].name != NULL ? c->boundary[i].name : "",
+                c->boundary[i].name != NULL ? ": " : "", words);
+    }
     for (int i = 0; i < c->loads; i++) {
         char words[80];
         rg_loads_describe(s->loads, i, words, sizeof words);

@@ -106,7 +106,8 @@ static void refuse_contradictions(const rg_case *c, const rg_part *part, MPI_Com
     for (int b = 0; b < c->boundaries && part->surface.combinations > 0; b++) {
         for (int a = 0; a < b; a++) {
             const rg_boundary *p = &c->boundary[a], *q = &c->boundary[b];
-            int64_t faces = p->component != q->component || p->component < 0
+            int64_t faces = p->component != q->component || p->component < 0 || p->set == NULL ||
+                                    q->set == NULL || !rg_boundaries_meet(p, q)
                                 ? 0
                                 : count_shared(part, rg_sets_find(&part->surface, p->set),
                                                rg_sets_find(&part->surface, q->set), comm);

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/dense.h"
 #include "base/mem.h"
 #include "domain/element.h"
 #include "solver/selection.h"
@@ -288,7 +289,7 @@ static uint8_t *find_faces(const rg_case *c, const rg_domain *d, const rg_part *
     uint8_t *all = RG_NEW(uint8_t, d->blocks * RG_LANES + 1);
     for (int b = 0; b < c->boundaries; b++) {
         if (c->boundary[b].absorbing) {
-            rg_selection s = {"boundary", b, c->boundary[b].set, NULL};
+            rg_selection s = {"boundary", b, c->boundary[b].set, c->boundary[b].where};
             uint8_t *here = rg_selection_faces(&s, c, d, part, comm);
             for (size_t slot = 0; slot < d->blocks * RG_LANES; slot++) {
                 all[slot] |= here[slot];
@@ -333,29 +334,13 @@ static unsigned nodes_of(unsigned faces) {
     return nodes;
 }
 
-/* P = ((M^-1)_cc)^-1 over the mass [n x n], by Gauss and Jordan; the matrix is positive definite. */
+/* P = ((M^-1)_cc)^-1 over the mass [n x n]. */
 static void make_matrix(const rg_absorbing *a, const entry *e) {
     int n = e->damped;
-    double m[RG_NODES][RG_NODES];
     for (int i = 0; i < n * n; i++) {
-        m[i / n][i % n] = a->surface.inverse_mass[e->node[i / n]][e->node[i % n]];
+        e->matrix[i] = a->surface.inverse_mass[e->node[i / n]][e->node[i % n]];
     }
-    for (int k = 0; k < n; k++) {
-        double pivot = 1 / m[k][k];
-        m[k][k] = 1;
-        for (int j = 0; j < n; j++) {
-            m[k][j] *= pivot;
-        }
-        for (int i = 0; i < n; i++) {
-            double factor = m[i][k];
-            for (int j = 0; i != k && j < n; j++) {
-                m[i][j] = (j == k ? 0 : m[i][j]) - factor * m[k][j];
-            }
-        }
-    }
-    for (int i = 0; i < n * n; i++) {
-        e->matrix[i] = m[i / n][i % n];
-    }
+    rg_dense_invert(n, e->matrix);
 }
 
 static void make_matrices(rg_absorbing *a) {

@@ -11,7 +11,8 @@
 #include "base/first_bad.h"
 #include "domain/element.h"
 #include "layout.h"
-#include "solver/surface.h"
+#include "solver/oblique.h"
+#include "solver/supports.h"
 
 /* What depends only on which nodes are constrained: c of them, then the free ones. For the mass M / (rho V):
  * impulse[c][c] = (Minv_cc)^-1, follow[f][c] = Minv_fc (Minv_cc)^-1. */
@@ -48,18 +49,13 @@ typedef struct {
 struct rg_constraints {
     const rg_case *input;
     const rg_domain *domain;
+    rg_supports *supports;
+    rg_oblique *oblique;         /* what is not along axes */
     int64_t *key;                /* [entries], by which a checkpoint knows them */
     size_t entries, *tile_begin; /* entries of tile t: tile_begin[t] .. tile_begin[t + 1] - 1 */
     entry *entry;
     pattern *patterns[1 << RG_NODES];
-    rg_account *account;
-    int *item;               /* [boundaries]: of the account; -1: it has no name */
-    bool named;              /* some have */
-    double dt_last, dt_kick; /* the step that led here; that of the kick */
-    bool timed, *acts;       /* some begin or end; [boundaries]: which act at present */
-    bool varies;             /* some value depends on time or is a displacement */
-    bool moving;             /* at the start the velocities are the initial ones */
-    rg_first_bad bad;        /* where a value was not finite first, and when */
+    bool varies; /* some value depends on time or is a displacement */
 };
 
 /* ---- Patterns ---- */
@@ -122,46 +118,13 @@ static const pattern *pattern_of(rg_constraints *k, unsigned mask) {
 
 /* ---- Set-up ---- */
 
-static int set_number(const rg_part *part, const char *name) {
-    int set = rg_sets_find(&part->surface, name);
-    if (set < 0) {
-        rg_fatal(RG_USAGE, "boundary: the mesh has no set named '%s'", name);
-    }
-    return set;
-}
-
-/* Bits of the nodes of each element on the set of each boundary: mask[boundaries][slots]. */
-static uint16_t *list_nodes(const rg_constraints *k, const rg_sets *sets, const int *set,
-                            rg_assembly *nodes) {
-    size_t slots = k->domain->blocks * RG_LANES;
-    uint16_t *mask = RG_NEW(uint16_t, (size_t)k->input->boundaries * slots + 1);
-    for (int b = 0; b < k->input->boundaries; b++) {
-        uint16_t *of = mask + (size_t)b * slots;
-        bool *in = rg_sets_groups_in(sets, set[b]);
-        for (size_t side = 0; side < RG_FACES * slots; side++) {
-            int32_t group = k->domain->set[side];
-            bool on =
-                group >= 0 && in[group] && rg_surface_has(k->domain, side / RG_FACES, (int)(side % RG_FACES));
-            for (int a = 0; on && a < RG_FNODES; a++) {
-                of[side / RG_FACES] |= (uint16_t)(1u << rg_face_node[side % RG_FACES][a]);
-            }
-        }
-        rg_free(in);
-        if (nodes != NULL) {
-            rg_assembly_spread(nodes, of);
-        }
-    }
-    return mask;
-}
-
 /* Boundary that prescribes component c of each node of an element, -1 for none; returns the mask of those
  * nodes. */
-static unsigned constrained_nodes(const rg_constraints *k, const uint16_t *on_set, size_t slot, int c,
-                                  int16_t which[RG_NODES]) {
+static unsigned constrained_nodes(const rg_constraints *k, size_t slot, int c, int16_t which[RG_NODES]) {
     unsigned mask = 0;
     for (int b = 0; b < k->input->boundaries; b++) {
-        unsigned here = on_set[(size_t)b * k->domain->blocks * RG_LANES + slot];
-        for (int n = 0; k->input->boundary[b].component == c && n < RG_NODES; n++) {
+        unsigned here = k->supports->nodes[b] == NULL ? 0 : k->supports->nodes[b][slot];
+        for (int n = 0; rg_support_has_axis(&k->input->boundary[b], c) && n < RG_NODES; n++) {
             if ((here >> n & 1) != 0) {
                 which[n] = (int16_t)b;
                 mask |= 1u << n;
@@ -169,10 +132,6 @@ static unsigned constrained_nodes(const rg_constraints *k, const uint16_t *on_se
         }
     }
     return mask;
-}
-
-static bool boundary_varies(const rg_boundary *b) {
-    return !b->absorbing && (b->prescribed == RG_PRESCRIBED_DISPLACEMENT || rg_expr_uses_time(b->value));
 }
 
 static void add_entry(rg_constraints *k, double mass, size_t slot, int c, unsigned mask,
@@ -184,7 +143,7 @@ static void add_entry(rg_constraints *k, double mass, size_t slot, int c, unsign
     *e = (entry){.slot = (rg_lid)slot, .component = (int8_t)c, .pattern = pattern_of(k, mask), .mass = mass};
     for (int i = 0; i < e->pattern->constrained; i++) {
         e->boundary[i] = which[e->pattern->node[i]];
-        e->varies = e->varies || boundary_varies(&k->input->boundary[e->boundary[i]]);
+        e->varies = e->varies || rg_support_varies(&k->input->boundary[e->boundary[i]]);
     }
 }
 
@@ -213,27 +172,22 @@ static void make_parts(rg_constraints *k, const entry *e) {
 }
 
 rg_constraints *rg_constraints_make(const rg_case *c, const rg_domain *d, const rg_part *part,
-                                    const rg_material *m, rg_assembly *nodes, rg_account *account) {
+                                    const rg_material *m, rg_assembly *nodes, rg_account *account,
+                                    MPI_Comm comm) {
     rg_constraints *k = RG_NEW(rg_constraints, 1);
-    *k = (rg_constraints){.input = c, .domain = d, .account = account, .bad = {.which = RG_NOWHERE}};
-    int *set = RG_NEW(int, (size_t)c->boundaries + 1);
-    k->item = RG_NEW(int, (size_t)c->boundaries + 1);
-    k->acts = RG_NEW(bool, (size_t)c->boundaries + 1);
+    *k = (rg_constraints){
+        .input = c, .domain = d, .supports = rg_supports_make(c, d, part, nodes, account, comm)};
+    k->oblique = rg_oblique_make(k->supports, m, nodes, comm);
     for (int b = 0; b < c->boundaries; b++) {
-        set[b] = set_number(part, c->boundary[b].set);
-        k->varies = k->varies || boundary_varies(&c->boundary[b]);
-        k->item[b] = c->boundary[b].name == NULL ? -1 : rg_account_add(account, c->boundary[b].name);
-        k->named = k->named || k->item[b] >= 0;
-        k->timed = k->timed || c->boundary[b].from > 0 || c->boundary[b].until > 0;
+        k->varies = k->varies || rg_support_varies(&c->boundary[b]);
     }
-    uint16_t *on_set = list_nodes(k, &part->surface, set, nodes);
     k->tile_begin = RG_NEW(size_t, d->tiles + 1);
     for (size_t t = 0; t < d->tiles; t++) {
         k->tile_begin[t] = k->entries;
         for (size_t slot = d->tile[t].begin * RG_LANES; slot < d->tile[t].end * RG_LANES; slot++) {
-            for (int comp = 0; comp < 3; comp++) {
+            for (int comp = 0; comp < 3 && !rg_oblique_has(k->oblique, slot); comp++) {
                 int16_t which[RG_NODES];
-                unsigned mask = constrained_nodes(k, on_set, slot, comp, which);
+                unsigned mask = constrained_nodes(k, slot, comp, which);
                 if (mask != 0) {
                     add_entry(k, rg_element_mass(d, m, slot), slot, comp, mask, which);
                 }
@@ -241,66 +195,50 @@ rg_constraints *rg_constraints_make(const rg_case *c, const rg_domain *d, const 
         }
     }
     k->tile_begin[d->tiles] = k->entries;
-    for (size_t n = 0; k->timed && n < k->entries; n++) {
+    for (size_t n = 0; k->supports->timed && n < k->entries; n++) {
         make_parts(k, &k->entry[n]);
     }
-    rg_free(on_set);
-    rg_free(set);
+    rg_supports_forget(k->supports);
     return k;
 }
 
 /* ---- Values ---- */
 
+static const rg_boundary *boundary_of(const rg_constraints *k, const entry *e, int i) {
+    return &k->input->boundary[e->boundary[i]];
+}
+
 static double value_at(const rg_constraints *k, const entry *e, int i, double time) {
     double x[3];
     rg_node_position(k->domain->corner + 12 * (size_t)e->slot, e->pattern->node[i], x);
-    return rg_expr_value(k->input->boundary[e->boundary[i]].value, x, time);
+    return rg_support_value(boundary_of(k, e, i), e->component, x, time);
 }
 
 /* Whether the displacement of constrained node i is prescribed, not its velocity alone. */
 static bool is_placed(const rg_constraints *k, const entry *e, int i) {
-    return k->input->boundary[e->boundary[i]].prescribed == RG_PRESCRIBED_DISPLACEMENT;
+    return rg_boundary_is_placed(boundary_of(k, e, i));
 }
 
 /* Velocity of constrained node i at `time`; of a prescribed displacement, its difference over a step. */
 static double velocity_at(const rg_constraints *k, const entry *e, int i, double time, double dt) {
-    if (!is_placed(k, e, i)) {
-        return value_at(k, e, i, time);
-    }
-    double half = 0.5 * dt;
-    return dt > 0 ? (value_at(k, e, i, time + half) - value_at(k, e, i, time - half)) / dt : 0;
+    double x[3];
+    rg_node_position(k->domain->corner + 12 * (size_t)e->slot, e->pattern->node[i], x);
+    return rg_support_velocity(boundary_of(k, e, i), e->component, x, time, dt);
 }
 
 /* Notes that constrained node i of an entry was told something that is not finite at `time`. */
 static void note(rg_constraints *k, const entry *e, int i, double time) {
     double x[3];
-    if (k->bad.which == RG_NOWHERE || k->bad.value == time) { /* what comes later only follows */
-        rg_node_position(k->domain->corner + 12 * (size_t)e->slot, e->pattern->node[i], x);
-        rg_first_bad_note(&k->bad, e->boundary[i], x, time);
-    }
+    rg_node_position(k->domain->corner + 12 * (size_t)e->slot, e->pattern->node[i], x);
+    rg_supports_note(k->supports, e->boundary[i], x, time);
 }
 
 bool rg_constraints_told(const rg_constraints *k, char *words, size_t size, MPI_Comm comm) {
-    rg_first_bad bad = k->bad;
-    double first = bad.which == RG_NOWHERE ? INFINITY : bad.value;
-    MPI_Allreduce(MPI_IN_PLACE, &first, 1, MPI_DOUBLE, MPI_MIN, comm);
-    if (bad.which != RG_NOWHERE && bad.value > first) { /* it only followed */
-        bad.which = RG_NOWHERE;
-    }
-    bool found = rg_first_bad_lowest(&bad, comm);
-    if (found) {
-#define KEY(NAME, key, unit) key,
-        static const char *const key[] = {RG_PRESCRIBED(KEY, )};
-#undef KEY
-        const rg_boundary *b = &k->input->boundary[bad.which];
-        snprintf(words, size, "boundary[%d].%s: %s is not finite at (%g, %g, %g), t = %g s", (int)bad.which,
-                 key[b->prescribed], rg_expr_text(b->value), bad.x[0], bad.x[1], bad.x[2], bad.value);
-    }
-    return found;
+    return rg_supports_told(k->supports, words, size, comm);
 }
 
 void rg_constraints_start(rg_constraints *k, const rg_real *u, const rg_real *velocity, MPI_Comm comm) {
-    int64_t jumps = 0;
+    int64_t jumps = rg_oblique_start(k->oblique, u, velocity);
     for (size_t n = 0; n < k->entries; n++) {
         entry *e = &k->entry[n];
         for (int i = 0; i < e->pattern->constrained; i++) {
@@ -334,16 +272,12 @@ void rg_constraints_start(rg_constraints *k, const rg_real *u, const rg_real *ve
 }
 
 void rg_constraints_set(rg_constraints *k, double time, double dt_last, double dt) {
-    k->dt_last = dt_last;
-    k->dt_kick = 0.5 * (dt_last + dt);
-    for (int b = 0; b < k->input->boundaries; b++) {
-        const rg_boundary *of = &k->input->boundary[b];
-        k->acts[b] = time >= of->from && !(of->until > 0 && time >= of->until);
-    }
+    rg_supports_set(k->supports, time, dt_last, dt);
+    rg_oblique_set(k->oblique, time, dt);
     for (size_t n = 0; k->varies && n < k->entries; n++) {
         entry *e = &k->entry[n];
         for (int i = 0; e->varies && i < e->pattern->constrained; i++) {
-            if (!k->acts[e->boundary[i]]) {
+            if (!k->supports->acts[e->boundary[i]]) {
                 continue;
             }
             if (is_placed(k, e, i)) {
@@ -374,10 +308,10 @@ static int position(const pattern *p, int node) {
 /* That of the nodes of an entry whose boundaries act at present. */
 static const pattern *pattern_now(const rg_constraints *k, const entry *e) {
     unsigned mask = 0;
-    for (int i = 0; k->timed && i < e->pattern->constrained; i++) {
-        mask |= (k->acts[e->boundary[i]] ? 1u : 0u) << e->pattern->node[i];
+    for (int i = 0; k->supports->timed && i < e->pattern->constrained; i++) {
+        mask |= (k->supports->acts[e->boundary[i]] ? 1u : 0u) << e->pattern->node[i];
     }
-    return k->timed ? k->patterns[mask] : e->pattern;
+    return k->supports->timed ? k->patterns[mask] : e->pattern;
 }
 
 /* Adds to the velocities of an entry's nodes what brings those that are constrained now, by pattern p, to
@@ -419,25 +353,27 @@ static void book(const rg_constraints *k, const entry *e, const double impulse[R
     for (int i = 0; i < e->pattern->constrained; i++) {
         rg_account_entry sum = {{0, 0, 0}, 0, 0};
         int boundary = e->boundary[i];
-        bool told = k->item[boundary] < 0;
+        bool told = k->supports->item[boundary] < 0;
         for (int j = 0; j < i; j++) {
             told = told || e->boundary[j] == boundary;
         }
         for (int j = i; !told && j < e->pattern->constrained; j++) {
             if (e->boundary[j] == boundary) {
-                double force = impulse[j] / k->dt_kick, before = 0.5 * k->dt_last * force * e->is.before[j];
+                double force = impulse[j] / k->supports->dt_kick,
+                       before = 0.5 * k->supports->dt_last * force * e->is.before[j];
                 sum.force[e->component] += force;
                 sum.before += before;
                 sum.after += 0.5 * impulse[j] * (e->is.before[j] + e->is.target[j]) - before;
             }
         }
         if (!told) {
-            rg_account_book(k->account, k->item[boundary], &sum);
+            rg_account_book(k->supports->account, k->supports->item[boundary], &sum);
         }
     }
 }
 
 void rg_constraints_kick(rg_constraints *k, size_t tile, rg_real *velocity, rg_real *now) {
+    rg_oblique_kick(k->oblique, tile, velocity, now);
     for (size_t n = k->tile_begin[tile]; n < k->tile_begin[tile + 1]; n++) {
         entry *e = &k->entry[n];
         const pattern *p = pattern_now(k, e);
@@ -446,12 +382,12 @@ void rg_constraints_kick(rg_constraints *k, size_t tile, rg_real *velocity, rg_r
             e->is.work_now = e->is.work + correct(e, p, e->is.present, now, impulse);
         }
         e->is.work += correct(e, p, e->is.target, velocity, impulse);
-        if (k->named) {
+        if (k->supports->named) {
             book(k, e, impulse);
         }
         memcpy(e->is.before, e->is.target, sizeof e->is.before);
         for (int i = 0; p != e->pattern && i < e->pattern->constrained; i++) {
-            if (!k->acts[e->boundary[i]]) { /* where it may begin */
+            if (!k->supports->acts[e->boundary[i]]) { /* where it may begin */
                 e->is.before[i] = velocity[rg_node_index((size_t)e->slot, e->pattern->node[i], e->component)];
             }
         }
@@ -459,11 +395,12 @@ void rg_constraints_kick(rg_constraints *k, size_t tile, rg_real *velocity, rg_r
 }
 
 void rg_constraints_drift(rg_constraints *k, size_t tile, rg_real *u) {
+    rg_oblique_drift(k->oblique, tile, u);
     for (size_t n = k->tile_begin[tile]; n < k->tile_begin[tile + 1]; n++) {
         entry *e = &k->entry[n];
         for (int i = 0; i < e->pattern->constrained; i++) {
             rg_real *here = &u[rg_node_index((size_t)e->slot, e->pattern->node[i], e->component)];
-            if (is_placed(k, e, i) && k->acts[e->boundary[i]]) {
+            if (is_placed(k, e, i) && k->supports->acts[e->boundary[i]]) {
                 *here = (rg_real)e->is.displacement[i];
             } else if (is_placed(k, e, i)) {
                 e->is.displacement[i] = *here;
@@ -473,6 +410,7 @@ void rg_constraints_drift(rg_constraints *k, size_t tile, rg_real *u) {
 }
 
 void rg_constraints_work(const rg_constraints *k, rg_exact_sum *work) {
+    rg_oblique_work(k->oblique, work);
     for (size_t n = 0; n < k->entries; n++) {
         rg_exact_add(work, k->entry[n].is.work_now);
     }
@@ -488,6 +426,11 @@ void rg_constraints_register(rg_constraints *k, rg_state *st) {
     }
     void *first = k->entries == 0 ? NULL : &k->entry[0].is;
     rg_state_add_list(st, "constraint", RG_STATE_DOUBLE, VALUES, first, sizeof *k->entry, k->entries, k->key);
+    rg_oblique_register(k->oblique, st);
+}
+
+void rg_constraints_describe(const rg_constraints *k, int b, char *words, size_t size) {
+    rg_supports_describe(k->supports, b, words, size);
 }
 
 void rg_constraints_free(rg_constraints *k) {
@@ -498,8 +441,8 @@ void rg_constraints_free(rg_constraints *k) {
         rg_free(k->patterns[i]);
     }
     rg_free(k->entry);
-    rg_free(k->item);
-    rg_free(k->acts);
+    rg_oblique_free(k->oblique);
+    rg_supports_free(k->supports);
     rg_free(k->key);
     rg_free(k->tile_begin);
     rg_free(k);

@@ -1,4 +1,5 @@
-/* Prescribed velocities and displacements on named sets of faces, on every node of the face.
+/* Prescribed velocities and displacements on faces of the surface, on every node of the face. Here those
+ * along axes of coordinates; the others in solver/oblique.h.
  *
  * The mass matrix of an element couples its nodes, so a prescribed node moves the free ones: with d the
  * change of velocity wanted at the constrained nodes c, the reaction impulse is J = (Minv_cc)^-1 d, and the
@@ -24,7 +25,8 @@ typedef struct rg_constraints rg_constraints;
  * touch the set. Entries that have a name get an item of the account. Keeps references to `c`, `d` and
  * `account`. Collective; free with rg_constraints_free. */
 rg_constraints *rg_constraints_make(const rg_case *c, const rg_domain *d, const rg_part *part,
-                                    const rg_material *m, rg_assembly *nodes, rg_account *account);
+                                    const rg_material *m, rg_assembly *nodes, rg_account *account,
+                                    MPI_Comm comm);
 
 /* Takes the fields at t = 0 as what the constrained nodes come from. Collective; ends the run with a message
  * (RG_USAGE) if a value is not finite then. */
@@ -52,6 +54,9 @@ void rg_constraints_work(const rg_constraints *k, rg_exact_sum *work);
 /* Registers what the constraints must remember: all that varies of their entries, keyed by 4 * global number
  * of the element + component. */
 void rg_constraints_register(rg_constraints *k, rg_state *st);
+
+/* Entry b of `boundary` in words: "velocity along x on 2.5e-09 m2". */
+void rg_constraints_describe(const rg_constraints *k, int b, char *words, size_t size);
 
 void rg_constraints_free(rg_constraints *k);
 

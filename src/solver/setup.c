@@ -109,7 +109,8 @@ static rg_solver *make(const rg_case *input, rg_part *part, MPI_Comm comm) {
         rg_strength_make(s, model);
     }
     s->account = rg_account_make(comm);
-    s->constraints = rg_constraints_make(input, s->domain, s->part, model->material, s->assembly, s->account);
+    s->constraints =
+        rg_constraints_make(input, s->domain, s->part, model->material, s->assembly, s->account, comm);
     s->bodies = rg_bodies_make(input, s->domain, s->part, model->material, s->threads, comm);
     s->loads = rg_loads_make(input, s->domain, s->part, model->material, s->account, s->threads, comm);
     s->absorbing =

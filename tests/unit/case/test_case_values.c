@@ -237,7 +237,7 @@ static const mistake keys[] = {
      ":14:3: boundary[1]: no value; allowed: " BOUNDARY_LIST "\n"
      ":14:15: boundary[0].set: given twice, first at line 14 column 6\n"
      ":14:55: boundary[0].a.b: unknown key: the parts of a dotted key stand on lines of their own\n"
-     ":16:5: boundary[2].set: missing; allowed: x-, x+, y-, y+, z-, z+\n"
+     ":16:5: boundary[2]: missing set or where; allowed: exactly one of set, where\n"
      ":16:5: boundary[2]: missing " MOTIONS(
          " or ") " or absorbing; " ONE_MOTION
                  ":17:5: boundary[3]: []: not a mapping of keys; allowed: " BOUNDARY_LIST "\n"},

@@ -281,7 +281,7 @@ static void test_unknown_sides(void **state) {
          "[x-, x+]}]",
          "rhegma: block: bodies[0].faces[1]: the mesh has no set named 'x+'\n"},
         {"boundary=[{set: y+, component: x, velocity: 0}, {set: x+, component: x, velocity: 0}]",
-         "rhegma: boundary: the mesh has no set named 'x+'\n"},
+         "rhegma: block: boundary[1].set: the mesh has no set named 'x+'\n"},
         {"boundary=[{set: x-, component: x, velocity: 0}]", ""},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {

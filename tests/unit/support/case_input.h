@@ -22,7 +22,10 @@
 /* What is allowed of the motions of a boundary. */
 #define MOTIONS(join) RG_PRESCRIBED(RG_PRESCRIBED_KEY, join)
 #define ONE_MOTION    "allowed: exactly one of " MOTIONS(", ") ", absorbing\n"
-#define BOUNDARY_LIST "list of {name, set, component, " MOTIONS(" or ") " or absorbing, from, until}"
+#define BOUNDARY_LIST                                                                                        \
+    "list of {name, set, where, component, direction, " MOTIONS(                                             \
+        " or ") " or absorbing, axis, at, translation, "                                                     \
+                "from, until}"
 #include "cohesive/facts.h"
 
 /* The smallest case; the tests of mistakes change one place of it and know its lines and columns. */
