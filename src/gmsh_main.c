@@ -16,7 +16,7 @@
 #include "version.h"
 
 static int convert(const rg_mesh_arguments *a) {
-    rg_mesh *mesh = rg_gmsh_read(a->input, a->scale);
+    rg_mesh *mesh = rg_gmsh_read(a->input, &a->how, &(rg_gmsh_size){a->size, a->curvature});
     rg_mesh_finish(mesh, a);
     rg_mesh_free(mesh);
     return RG_OK;
@@ -55,6 +55,7 @@ int main(int argc, char **argv) {
         prctl(PR_SET_PDEATHSIG, SIGKILL); /* it ends with this one */
     }
     int result = child == 0 ? convert(&a) : wait_for(child, a.input);
+    rg_expr_free(a.size);
     rg_free(a.override);
     return result;
 }

@@ -23,11 +23,16 @@
 #include "partition/mesh_case.h"
 
 static const char usage[] =
-    "usage: rhegma mesh IN -o OUT.h5 [--scale S] [--improve]   a mesh file from Abaqus (.inp), VTK (.vtk\n"
-    "                                               .vtu), or from what Gmsh reads or meshes (.msh .bdf\n"
-    "                                               .unv .geo .step ...); S: m per unit of IN; --improve\n"
-    "                                               makes flat elements less flat; --split cuts hexahedra,\n"
-    "                                               wedges and pyramids of Abaqus into tetrahedra\n"
+    "usage: rhegma mesh IN -o OUT.h5 [options]   a mesh file from Abaqus (.inp), VTK (.vtk .vtu), or from\n"
+    "                                               what Gmsh reads or meshes (.msh .bdf .unv .geo .step "
+    "...)\n"
+    "         --unit U        lengths of IN are in m, cm, mm, um, nm, in or ft; or\n"
+    "         --scale S       S: m per unit of IN; STEP and IGES say their own unit\n"
+    "         --merge D       nodes as near as D (in the unit of IN) to one another become one\n"
+    "         --split         cuts hexahedra, wedges and pyramids into tetrahedra\n"
+    "         --size D        elements of a geometry: their size, a number or an expression in x, y, z (in\n"
+    "                         the unit of IN); --curvature N: N elements at least around a full turn\n"
+    "         --improve       makes flat elements less flat\n"
     "       rhegma mesh CASE.yaml -o OUT.h5 [--set a.b=value]   a mesh file from the mesh of a case\n"
     "       rhegma mesh --info MESH.h5 [--case CASE.yaml]   what a mesh file holds; its time steps with the\n"
     "                                               fastest material of a case, else for waves of 1 m/s\n"
@@ -39,13 +44,43 @@ static _Noreturn void complain(const char *what, const char *argument) {
     rg_fatal(RG_USAGE, "mesh: %s%s%s\n%s", what, argument[0] != '\0' ? ": " : "", argument, usage);
 }
 
-static double read_scale(const char *text) {
-    char *end;
-    double scale = strtod(text, &end);
-    if (end == text || *end != '\0' || !(scale > 0) || !isfinite(scale)) {
-        complain("--scale must be a number > 0, not", text);
+static double read_number(const char *option, const char *text) {
+    char *end, what[64];
+    double number = strtod(text, &end);
+    if (end == text || *end != '\0' || !(number > 0) || !isfinite(number)) {
+        snprintf(what, sizeof what, "%s must be a number > 0, not", option);
+        complain(what, text);
     }
-    return scale;
+    return number;
+}
+
+static double read_unit(const char *text) {
+    static const struct {
+        const char *name;
+        double scale;
+    } units[] = {{"m", 1},     {"cm", 1e-2},   {"mm", 1e-3},  {"um", 1e-6},
+                 {"nm", 1e-9}, {"in", 0.0254}, {"ft", 0.3048}};
+    for (size_t i = 0; i < sizeof units / sizeof *units; i++) {
+        if (strcmp(units[i].name, text) == 0) {
+            return units[i].scale;
+        }
+    }
+    complain("--unit is one of m, cm, mm, um, nm, in and ft, not", text);
+}
+
+static rg_expr *read_size(const char *text) {
+    char *why = NULL;
+    rg_expr *size = rg_expr_new(text, &why);
+    if (size == NULL) {
+        rg_fatal(RG_USAGE, "mesh: --size %s: %s", text, why);
+    }
+    if (rg_expr_is_number(size) && !(rg_expr_value(size, (const double[3]){0}, 0) > 0)) {
+        complain("--size must be > 0, not", text);
+    }
+    if (rg_expr_uses_time(size)) {
+        complain("--size must not depend on t", text);
+    }
+    return size;
 }
 
 static void read_option(rg_mesh_arguments *a, const char *option, const char *value) {
@@ -55,7 +90,15 @@ static void read_option(rg_mesh_arguments *a, const char *option, const char *va
     if (strcmp(option, "-o") == 0) {
         a->output = value;
     } else if (strcmp(option, "--scale") == 0) {
-        a->scale = read_scale(value);
+        a->how.scale = read_number(option, value);
+    } else if (strcmp(option, "--unit") == 0) {
+        a->unit = value;
+    } else if (strcmp(option, "--merge") == 0) {
+        a->how.merge = read_number(option, value);
+    } else if (strcmp(option, "--size") == 0) {
+        a->size = read_size(value);
+    } else if (strcmp(option, "--curvature") == 0) {
+        a->curvature = read_number(option, value);
     } else if (strcmp(option, "--partition") == 0) {
         a->partition = value;
     } else if (strcmp(option, "--case") == 0) {
@@ -78,6 +121,27 @@ static bool ends_with(const char *text, const char *end) {
     return n >= m && strcmp(text + n - m, end) == 0;
 }
 
+static bool is_case(const char *path) {
+    return ends_with(path, ".yaml") || ends_with(path, ".yml");
+}
+
+/* What is read without Gmsh. */
+static bool is_text(const char *path) {
+    return ends_with(path, ".inp") || ends_with(path, ".vtk") || ends_with(path, ".vtu");
+}
+
+/* An option that says something of an import; NULL: none is given. */
+static const char *import_option(const rg_mesh_arguments *a) {
+    return a->improve         ? "--improve"
+           : a->how.split     ? "--split"
+           : a->how.merge > 0 ? "--merge"
+           : a->unit != NULL  ? "--unit"
+           : a->how.scale > 0 ? "--scale"
+           : a->size != NULL  ? "--size"
+           : a->curvature > 0 ? "--curvature"
+                              : NULL;
+}
+
 static void check_together(const rg_mesh_arguments *a) {
     if (a->input == NULL) {
         complain("nothing to read", "");
@@ -95,12 +159,17 @@ static void check_together(const rg_mesh_arguments *a) {
     if (a->output != NULL && same_file(a->input, a->output)) {
         complain("it would take the place of what it is made from: -o", a->output);
     }
-    if (a->split && !ends_with(a->input, ".inp")) {
-        complain("--split is for Abaqus input; not understood with", a->input);
+    const char *import = import_option(a);
+    if (import != NULL && (a->info || a->partition != NULL || is_case(a->input))) {
+        char what[100];
+        snprintf(what, sizeof what, "%s is for a mesh on its way in; not understood with it", import);
+        complain(what, a->info ? "--info" : a->partition != NULL ? "--partition" : a->input);
     }
-    if (a->improve && (a->info || a->partition != NULL)) {
-        complain("--improve is for a mesh on its way in; not understood with it",
-                 a->info ? "--info" : "--partition");
+    if ((a->size != NULL || a->curvature > 0) && is_text(a->input)) {
+        complain("it is a mesh already, so --size and --curvature say nothing of it", a->input);
+    }
+    if (a->unit != NULL && a->how.scale > 0) {
+        complain("--unit and --scale say the same; not understood together", a->unit);
     }
     if (!a->info && a->material != NULL) {
         complain("--case is for --info", "");
@@ -108,14 +177,14 @@ static void check_together(const rg_mesh_arguments *a) {
 }
 
 rg_mesh_arguments rg_mesh_arguments_read(int argc, char **argv, int first) {
-    rg_mesh_arguments a = {.scale = 1, .override = RG_NEW(const char *, (size_t)argc)};
+    rg_mesh_arguments a = {.override = RG_NEW(const char *, (size_t)argc)};
     for (int i = first; i < argc; i++) {
         if (strcmp(argv[i], "--info") == 0) {
             a.info = true;
         } else if (strcmp(argv[i], "--improve") == 0) {
             a.improve = true;
         } else if (strcmp(argv[i], "--split") == 0) {
-            a.split = true;
+            a.how.split = true;
         } else if (argv[i][0] == '-') {
             read_option(&a, argv[i], i + 1 < argc ? argv[i + 1] : NULL);
             i++;
@@ -126,6 +195,8 @@ rg_mesh_arguments rg_mesh_arguments_read(int argc, char **argv, int first) {
         }
     }
     check_together(&a);
+    a.how.scale = a.unit != NULL ? read_unit(a.unit) : a.how.scale > 0 ? a.how.scale : 1;
+    a.how.merge *= a.how.scale;
     return a;
 }
 
@@ -181,12 +252,35 @@ static void improve(rg_mesh *mesh) {
            mesh->elements);
 }
 
+/* A unit that was forgotten shows in the time that waves take. */
+static void judge_size(const rg_mesh *mesh, const char *input) {
+    static const double speed = 5e3, longest = 0.1, shortest = 1e-11; /* m/s, s */
+    double box[2][3], length = 0, edge = INFINITY;
+    rg_mesh_box_around(mesh, box);
+    for (int i = 0; i < 3; i++) {
+        length = fmax(length, box[1][i] - box[0][i]);
+    }
+    for (rg_gid e = 0; e < mesh->elements; e++) {
+        edge = fmin(edge, rg_mesh_longest_edge(mesh, e));
+    }
+    if (length > longest * speed) {
+        rg_warn(
+            "%s: the body is %.4g m long, which waves of %g m/s cross in %.2g s: is that its unit? (--unit)",
+            input, length, speed, length / speed);
+    } else if (edge < shortest * speed) {
+        rg_warn("%s: an element is %.4g m long, which waves of %g m/s cross in %.2g s: is that its unit? "
+                "(--unit)",
+                input, edge, speed, edge / speed);
+    }
+}
+
 void rg_mesh_finish(rg_mesh *mesh, const rg_mesh_arguments *a) {
     rg_mesh_check_elements(mesh, a->input);
     rg_mesh_sort(mesh);
     rg_mesh_connect(mesh);
     rg_mesh_check(mesh, a->input);
     tell_parts(mesh, a->input);
+    judge_size(mesh, a->input);
     if (a->improve) {
         improve(mesh);
         rg_mesh_check(mesh, a->input);
@@ -197,9 +291,6 @@ void rg_mesh_finish(rg_mesh *mesh, const rg_mesh_arguments *a) {
 }
 
 static int from_case(const rg_mesh_arguments *a) {
-    if (a->improve) {
-        complain("--improve is for imports; not understood with a case", a->input);
-    }
     rg_case *c = rg_case_read(a->input, a->overrides, a->override, stderr);
     if (c == NULL) {
         return RG_USAGE;
@@ -213,11 +304,10 @@ static int from_case(const rg_mesh_arguments *a) {
     return RG_OK;
 }
 
-/* What is read without Gmsh. */
 static int from_text(const rg_mesh_arguments *a) {
-    rg_mesh *mesh = ends_with(a->input, ".vtk")   ? rg_vtk_read(a->input, a->scale)
-                    : ends_with(a->input, ".vtu") ? rg_vtu_read(a->input, a->scale)
-                                                  : rg_inp_read(a->input, a->scale, a->split, stdout);
+    rg_mesh *mesh = ends_with(a->input, ".vtk")   ? rg_vtk_read(a->input, &a->how)
+                    : ends_with(a->input, ".vtu") ? rg_vtu_read(a->input, &a->how)
+                                                  : rg_inp_read(a->input, &a->how, stdout);
     rg_mesh_finish(mesh, a);
     rg_mesh_free(mesh);
     return RG_OK;
@@ -329,15 +419,16 @@ int rg_mesh_command(int argc, char **argv) {
         status = show(&a);
     } else if (a.partition != NULL) {
         status = store_partitions(&a);
-    } else if (ends_with(a.input, ".yaml") || ends_with(a.input, ".yml")) {
+    } else if (is_case(a.input)) {
         status = from_case(&a);
     } else if (ends_with(a.input, ".h5")) {
         complain("a mesh file already, which --info shows", a.input);
-    } else if (ends_with(a.input, ".inp") || ends_with(a.input, ".vtk") || ends_with(a.input, ".vtu")) {
+    } else if (is_text(a.input)) {
         status = from_text(&a);
     } else {
         status = from_gmsh(argc, argv);
     }
+    rg_expr_free(a.size);
     rg_free(a.override);
     return status;
 }

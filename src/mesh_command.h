@@ -4,21 +4,24 @@
 
 #include <stdbool.h>
 
-#include "mesh/mesh.h"
+#include "case/expr.h"
+#include "mesh/import/import.h"
 
 typedef struct {
     const char *input, *output;
     const char *material; /* --case: a case file with the material for --info */
-    double scale;         /* m per unit of the input */
+    rg_import_how how;    /* --scale, --unit, --merge, --split */
+    const char *unit;     /* --unit; NULL: none */
+    rg_expr *size;        /* --size; NULL: none */
+    double curvature;     /* --curvature; 0: none */
     bool info;
-    bool split;            /* --split */
     bool improve;          /* --improve */
     const char *partition; /* --partition: numbers of ranks, separated by commas */
     int overrides;
     const char **override; /* --set */
 } rg_mesh_arguments;
 
-/* Reads "IN -o OUT.h5 [--scale S]" and so on from argv[first] on. Ends the run with a message and RG_USAGE if
+/* Reads "IN -o OUT.h5 [--unit U]" and so on from argv[first] on. Ends the run with a message and RG_USAGE if
  * something is wrong. */
 rg_mesh_arguments rg_mesh_arguments_read(int argc, char **argv, int first);
 

@@ -9,11 +9,12 @@ _rhegma() {
         return
         ;;
     -o | --restart) COMPREPLY=($(compgen -d -- "$word")) && return ;;
-    --walltime | --scale) return ;;
+    --unit) COMPREPLY=($(compgen -W "m cm mm um nm in ft" -- "$word")) && return ;;
+    --walltime | --scale | --merge | --size | --curvature) return ;;
     esac
     case $command in
     run) options+=" --restart --overwrite --walltime" ;;
-    mesh) options="-o --scale --split --improve --set --info --case --partition --help" ;;
+    mesh) options="-o --unit --scale --merge --split --size --curvature --improve --set --info --case --partition --help" ;;
     keys) options="--markdown --schema --help" ;;
     verify) options="--help" ;;
     esac

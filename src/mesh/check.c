@@ -150,7 +150,7 @@ static void check_twins(const rg_mesh *mesh, const rg_gid *twin, rg_input_errors
                 words, RG_INPUT_ERROR_WORDS,
                 "elements %" PRId64 " and %" PRId64
                 " have different vertices at the same place (%.9g, %.9g, %.9g) m: the mesh is open there; "
-                "merge its duplicate nodes",
+                "merge its duplicate nodes (rhegma mesh --merge)",
                 element_of(mesh, twin[v]), element_of(mesh, v), x[0], x[1], x[2]);
         }
     }

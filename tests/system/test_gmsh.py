@@ -62,6 +62,62 @@ def test_groups_by_name_and_number(tmp_path):
     assert said == [": 3 nodes belong to no tetrahedron and are left out; the first is node 6 at (5.5, 5, 6.75) m"]
 
 
+def test_split(tmp_path):
+    """A hexahedron, a wedge and a pyramid of Gmsh's types and orders side by side, a quadrangle on top, another between two."""
+    points = {1: (0, 0, 0), 2: (1, 0, 0), 3: (1, 1, 0), 4: (0, 1, 0), 5: (0, 0, 1), 6: (1, 0, 1), 7: (1, 1, 1), 8: (0, 1, 1),
+              9: (2, 0, 0), 10: (2, 0, 1), 11: (0.5, 0.5, 2), 12: (3, 3, 3)}
+    middles = {8: [8, 27, 20], 6: [6, 18, 15], 5: [5, 14, 13]}
+    for kinds in ((HEXA, 6, 7, QUAD), (12, 13, 14, 10), (17, 18, 19, 16)):
+        order = (HEXA, 12, 17).index(kinds[0])
+        solid = [corners + (12,) * (middles[len(corners)][order] - len(corners))
+                 for corners in ((1, 2, 3, 4, 5, 6, 7, 8), (2, 9, 3, 6, 10, 7), (5, 6, 7, 8, 11))]
+        sides = [corners + (12,) * ((0, 5, 4)[order]) for corners in ((1, 2, 3, 4), (2, 3, 7, 6))]
+        elements = [(1, kinds[3], 1, 31, sides[0]), (2, kinds[3], 2, 32, sides[1]), (7, kinds[0], 3, 21, solid[0]),
+                    (8, kinds[1], 4, 22, solid[1]), (9, kinds[2], 4, 23, solid[2])]
+        assert "--split cuts" in refused(tmp_path, elements, points=points)
+        source, out = mesh(tmp_path / "a.msh", elements, points=points), tmp_path / "split.h5"
+        process = launch("mesh", source, "-o", out, "--split")
+        assert process.returncode == 0, process.stderr
+        with h5py.File(out) as file:
+            region, sets, inside = file["region"][:], file["set"][:], file["neighbour"][:] >= 0
+            assert sorted(file["original"][:]) == [7] * 6 + [8] * 3 + [9] * 2
+            assert (region[file["original"][:] == 7] == 0).all() and (region == 1).sum() == 5
+            assert (sets == 0).sum() == 2 and not inside[sets == 0].any() and (sets == 1).sum() == 4 and inside[sets == 1].all()
+            x = np.zeros((file.attrs["vertices"], 3))
+            x[file["vertex"][:]] = file["x"][:]
+            c = x[file["corner"][:]]
+            assert np.abs(np.linalg.det(c[:, 1:] - c[:, :1])).sum() / 6 == pytest.approx(1 + 0.5 + 1 / 3, rel=1e-14)
+
+
+def test_size(tmp_path):
+    """Of the elements of a geometry: a number, an expression, and along curves; a mesh has its own."""
+    (tmp_path / "box.geo").write_text('SetFactory("OpenCASCADE"); Box(1) = {0, 0, 0, 4, 1, 1};')
+    (tmp_path / "ball.geo").write_text('SetFactory("OpenCASCADE"); Sphere(1) = {0, 0, 0, 1};')
+
+    def edges(source, *options):
+        """Middles and lengths of edges (m)."""
+        process = launch("mesh", tmp_path / source, "-o", tmp_path / "size.h5", "--unit", "cm", *options)
+        assert process.returncode == 0, process.stderr
+        with h5py.File(tmp_path / "size.h5") as file:
+            x = np.zeros((file.attrs["vertices"], 3))
+            x[file["vertex"][:]] = file["x"][:]
+            ends = x[file["corner"][:][:, [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]]]].reshape(-1, 2, 3)
+        return ends.mean(axis=1), np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
+
+    for size in (0.5, 0.25):
+        _, length = edges("box.geo", "--size", size)
+        assert 0.9 * size < length.mean() / 1e-2 < 1.25 * size
+    middle, length = edges("box.geo", "--size", "x < 2 ? 0.2 : 0.5")
+    low, high = (length[(middle[:, 0] > a) & (middle[:, 0] < b)].mean() / 1e-2 for a, b in ((0, 0.015), (0.03, 0.04)))
+    assert 0.15 < low < 0.22 and 0.35 < high < 0.55
+    coarse, fine = (len(edges("ball.geo", "--curvature", n)[1]) for n in (6, 24))
+    assert fine > 10 * coarse
+    process = launch("mesh", tmp_path / "box.geo", "-o", tmp_path / "bad.h5", "--size", "x - 1")
+    assert process.returncode == 2 and "box.geo: --size: x - 1 is -1 at (0, " in process.stderr
+    process = launch("mesh", mesh(tmp_path / "a.msh", SOLIDS), "-o", tmp_path / "bad.h5", "--size", 1)
+    assert process.returncode == 2 and "it is a mesh already, so --size and --curvature say nothing" in process.stderr
+
+
 def test_entities_without_groups(tmp_path):
     faces = [(1, TRI, 0, 31, (1, 2, 3)), (2, TRI, 0, 32, (2, 3, 4))]
     solids = [(number, kind, 0, entity, nodes) for number, kind, _, entity, nodes in SOLIDS]
@@ -161,10 +217,10 @@ HEX = (9, HEXA, 1, 21, (1, 2, 4, 3, 5, 6, 8, 7))
 def test_other_elements(tmp_path):
     said = refused(tmp_path, [HEX], points=CUBE)
     assert said == ("1 elements of type 'Hexahedron 8', the first of them element 9; only tetrahedra of first and second order "
-                    "are possible\n")
+                    "are possible; --split cuts hexahedra, wedges and pyramids\n")
     said = refused(tmp_path, [(7, QUAD, 3, 31, (1, 2, 5, 3)), *SOLIDS])
     assert said == ("1 elements of type 'Quadrilateral 4', the first of them element 7; only tetrahedra of first and second "
-                    "order are possible\n")
+                    "order are possible; --split cuts hexahedra, wedges and pyramids\n")
     _, region, _, said = convert(tmp_path, [(8, TRI, 3, 32, (1, 2, 3)), (7, QUAD, 0, 31, (1, 2, 5, 3)), *SOLIDS])
     assert len(region) == 2 and said == []
 

@@ -94,9 +94,28 @@ static void test_mistakes(void **state) {
         {{"a.msh", "-o", "b.h5", "--case", "c.yaml"}, "--case is for --info"},
         {{"a.h5", "-o", "b.h5"}, "a mesh file already, which --info shows: a.h5"},
         {{"box.yaml", "-o", "b.h5", "--improve"},
-         "--improve is for imports; not understood with a case: box.yaml"},
-        {{"a.vtk", "-o", "b.h5", "--split"}, "--split is for Abaqus input; not understood with: a.vtk"},
-        {{"box.yaml", "-o", "b.h5", "--split"}, "--split is for Abaqus input; not understood with: box.yaml"},
+         "--improve is for a mesh on its way in; not understood with it: box.yaml"},
+        {{"box.yaml", "-o", "b.h5", "--split"},
+         "--split is for a mesh on its way in; not understood with it: box.yaml"},
+        {{"box.yaml", "-o", "b.h5", "--scale", "2"},
+         "--scale is for a mesh on its way in; not understood with it: box.yaml"},
+        {{"--info", "a.h5", "--unit", "mm"},
+         "--unit is for a mesh on its way in; not understood with it: --info"},
+        {{"--info", "a.h5", "--merge", "1"},
+         "--merge is for a mesh on its way in; not understood with it: --info"},
+        {{"--partition", "2", "a.h5", "--size", "1"},
+         "--size is for a mesh on its way in; not understood with it: --partition"},
+        {{"--info", "a.h5", "--curvature", "9"},
+         "--curvature is for a mesh on its way in; not understood with it: --info"},
+        {{"a.msh", "-o", "b.h5", "--unit", "MM"}, "--unit is one of m, cm, mm, um, nm, in and ft, not: MM"},
+        {{"a.msh", "-o", "b.h5", "--unit", "mm", "--scale", "1"},
+         "--unit and --scale say the same; not understood together: mm"},
+        {{"a.msh", "-o", "b.h5", "--merge", "0"}, "--merge must be a number > 0, not: 0"},
+        {{"a.geo", "-o", "b.h5", "--size", "0"}, "--size must be > 0, not: 0"},
+        {{"a.geo", "-o", "b.h5", "--size", "1 + t"}, "--size must not depend on t: 1 + t"},
+        {{"a.geo", "-o", "b.h5", "--curvature", "x"}, "--curvature must be a number > 0, not: x"},
+        {{"a.vtk", "-o", "b.h5", "--size", "1"},
+         "it is a mesh already, so --size and --curvature say nothing of it: a.vtk"},
         {{"box.yaml", "-o", "link.h5"}, "it would take the place of what it is made from: -o: link.h5"},
     };
     assert_int_equal(link("box.yaml", "link.h5"), 0);
@@ -120,13 +139,13 @@ static void test_arguments(void **state) {
     rg_mesh_arguments a = rg_mesh_arguments_read(12, argv, 2);
     assert_string_equal(a.input, "in.msh");
     assert_string_equal(a.output, "out.h5");
-    assert_true(a.scale == 0.25 && a.improve && !a.info && a.material == NULL && a.partition == NULL);
+    assert_true(a.how.scale == 0.25 && a.improve && !a.info && a.material == NULL && a.partition == NULL);
     assert_int_equal(a.overrides, 2);
     assert_true(strcmp(a.override[0], "a=1") == 0 && strcmp(a.override[1], "b=2") == 0);
     rg_free(a.override);
     char *other[] = {"--info", "--case", "c.yaml", "m.h5"};
     a = rg_mesh_arguments_read(4, other, 0);
-    assert_true(a.info && !a.improve && a.scale == 1 && a.output == NULL && a.overrides == 0);
+    assert_true(a.info && !a.improve && a.how.scale == 1 && a.output == NULL && a.overrides == 0);
     assert_string_equal(a.material, "c.yaml");
     assert_string_equal(a.input, "m.h5");
     rg_free(a.override);
@@ -155,6 +174,68 @@ static void test_import(void **state) {
     expect(WORDS("none.yaml", "-o", "none.h5"), RG_USAGE,
            "none.yaml: cannot be read: No such file or directory\n");
     assert_int_not_equal(access("none.h5", F_OK), 0);
+}
+
+/* Units, nodes that coincide (by different nodes, of which the surface names one each), and sizes that make
+ * one doubt. */
+static void test_units(void **state) {
+    (void)state;
+    static const char touching[] =
+        "*NODE\n1, 0, 0, 0\n2, 1, 0, 0\n3, 0, 1, 0\n4, 0, 0, 1\n12, 1, 0, 0\n13, 0, 1, 0.015625\n14, 0, 0, "
+        "1\n5, 1, 1, 1\n"
+        "*ELEMENT, TYPE=C3D4\n1, 1, 2, 3, 4\n2, 12, 13, 14, 5\n*SURFACE, NAME=crack\n2, S1\n";
+    write_text("touching.inp", touching);
+    char said[2000];
+    snprintf(said, sizeof said,
+             "touching.inp: 3 nodes merged with others within 2e-05 m; the first is node 12 with node 2 at "
+             "(0.001, 0, "
+             "0) m, the farthest are 1.5625e-05 m apart\n");
+    words = WORDS("touching.inp", "-o", "touching.h5", "--unit", "mm", "--merge", "0.02");
+    char found[2000];
+    assert_int_equal(run_child(run_command, found, sizeof found), RG_OK);
+    if (strstr(found, said) == NULL ||
+        strstr(found, "touching.h5: 0.001 x 0.001 x 0.001 m, 2 elements, 5 vertices, 1 surface sets") ==
+            NULL) {
+        fail_msg("said: %s", found);
+    }
+    rg_mesh *m = rg_mesh_file_read("touching.h5");
+    int inside = 0;
+    for (int slot = 0; slot < 8; slot++) {
+        inside += m->neighbour[slot] >= 0 && m->set[slot] == 0;
+    }
+    assert_int_equal(inside, 2);
+    rg_mesh_free(m);
+    words = WORDS("touching.inp", "-o", "touching.h5", "--unit", "mm", "--merge", "0.01");
+    assert_int_equal(run_child(run_command, found, sizeof found), RG_OK);
+    assert_non_null(strstr(found, "touching.inp: 2 nodes merged with others within 1e-05 m"));
+    assert_non_null(strstr(found, "the mesh has 2 parts that share no face\n"));
+    static const struct {
+        const char *unit, *warning;
+    } units[] = {
+        {"ft", ""},
+        {"in", ""},
+        {"cm", ""},
+        {"um", ""},
+        {"nm", "rhegma: warning: pair.inp: an element is 7.517e-09 m long, which waves of 5000 m/s cross in "
+               "1.5e-12 s: is that its unit? (--unit)\n"}};
+    write_text("pair.inp", pair);
+    for (size_t i = 0; i < sizeof units / sizeof *units; i++) {
+        words = WORDS("pair.inp", "-o", "pair.h5", "--unit", units[i].unit);
+        assert_int_equal(run_child(run_command, found, sizeof found), RG_OK);
+        assert_int_equal(strstr(found, "is that its unit") != NULL, units[i].warning[0] != '\0');
+        assert_non_null(strstr(found, units[i].warning));
+        m = rg_mesh_file_read("pair.h5");
+        const double scale[] = {0.3048, 0.0254, 0.01, 1e-6, 1e-9};
+        assert_true(m->x[3 * 4 + 2] == scale[i] * 10);
+        rg_mesh_free(m);
+    }
+    words = WORDS("pair.inp", "-o", "pair.h5", "--scale", "400");
+    assert_int_equal(run_child(run_command, found, sizeof found), RG_OK);
+    assert_non_null(
+        strstr(found, "rhegma: warning: pair.inp: the body is 2800 m long, which waves of 5000 m/s cross in "
+                      "0.56 s: is that its unit? (--unit)\n"));
+    unlink("touching.inp");
+    unlink("touching.h5");
 }
 
 /* Parts without a common face: up to eight are told, each by its first element. */
@@ -345,10 +426,11 @@ static int tear_down(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_mistakes), cmocka_unit_test(test_arguments),
-        cmocka_unit_test(test_import),   cmocka_unit_test(test_parts),
-        cmocka_unit_test(test_improve),  cmocka_unit_test(test_other_formats),
-        cmocka_unit_test(test_show),     cmocka_unit_test(test_partitions),
+        cmocka_unit_test(test_mistakes),      cmocka_unit_test(test_arguments),
+        cmocka_unit_test(test_import),        cmocka_unit_test(test_parts),
+        cmocka_unit_test(test_improve),       cmocka_unit_test(test_units),
+        cmocka_unit_test(test_other_formats), cmocka_unit_test(test_show),
+        cmocka_unit_test(test_partitions),
     };
     return cmocka_run_group_tests_name("mesh_command", tests, set_up, tear_down);
 }

@@ -3,6 +3,7 @@
 #include <errno.h>
 #include <gmshc.h>
 #include <inttypes.h>
+#include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
@@ -14,8 +15,27 @@
 #include "mesh/import/gmsh_sets.h"
 #include "mesh/import/import.h"
 
-/* Gmsh's element types. */
-enum { TRI3 = 2, TET4 = 4, TRI6 = 9, TET10 = 11 };
+/* Gmsh's element types; corners come first. */
+typedef struct {
+    int type, nodes, corners;
+    bool solid;
+} shape;
+
+static const shape shapes[] = {{2, 3, 3, false},  {9, 6, 3, false},  {4, 4, 4, true},   {11, 10, 4, true},
+                               {3, 4, 4, false},  {10, 9, 4, false}, {16, 8, 4, false}, {5, 8, 8, true},
+                               {12, 27, 8, true}, {17, 20, 8, true}, {6, 6, 6, true},   {13, 18, 6, true},
+                               {18, 15, 6, true}, {7, 5, 5, true},   {14, 14, 5, true}, {19, 13, 5, true}};
+enum { WHOLE = 4 }; /* the first ones are taken without a cut */
+
+/* NULL: another type, or one that has to be cut where that was not asked for. */
+static const shape *shape_of(int type, bool split) {
+    for (size_t i = 0; i < (split ? sizeof shapes / sizeof *shapes : WHOLE); i++) {
+        if (shapes[i].type == type) {
+            return &shapes[i];
+        }
+    }
+    return NULL;
+}
 
 void rg_gmsh_require(const char *path, int error) {
     if (error == 0) {
@@ -61,7 +81,42 @@ static bool has_unit(const char *path) {
     return false;
 }
 
-static void open_model(const char *path) {
+/* What Gmsh asks while it meshes; it has one thread. */
+struct asking {
+    const char *path;
+    const rg_expr *at;
+};
+
+static double size_at(int dim, int tag, double x, double y, double z, void *context) {
+    const struct asking *asked = context;
+    double size = rg_expr_value(asked->at, (const double[]){x, y, z}, 0);
+    (void)dim;
+    (void)tag;
+    if (!isfinite(size) || !(size > 0)) {
+        rg_fatal(RG_USAGE, "%s: --size: %s is %g at (%g, %g, %g)", asked->path, rg_expr_text(asked->at), size,
+                 x, y, z);
+    }
+    return size;
+}
+
+static void make_mesh(const char *path, const rg_gmsh_size *size) {
+    int error;
+    struct asking asked = {path, size->at};
+    if (size->at != NULL && rg_expr_is_number(size->at)) { /* points of the geometry may ask for less */
+        gmshOptionSetNumber("Mesh.MeshSizeMax", rg_expr_value(size->at, (const double[3]){0}, 0), &error);
+    } else if (size->at != NULL) {
+        gmshOptionSetNumber("Mesh.MeshSizeExtendFromBoundary", 0, &error);
+        gmshModelMeshSetSizeCallback(size_at, &asked, &error);
+        rg_gmsh_require(path, error);
+    }
+    if (size->curvature > 0) {
+        gmshOptionSetNumber("Mesh.MeshSizeFromCurvature", size->curvature, &error);
+    }
+    gmshModelMeshGenerate(3, &error);
+    rg_gmsh_require(path, error);
+}
+
+static void open_model(const char *path, const rg_gmsh_size *size) {
     int error;
     FILE *f = rg_open_input(path);
     if (f == NULL) {
@@ -78,8 +133,9 @@ static void open_model(const char *path) {
     gmshOpen(path, &error);
     rg_gmsh_require(path, error);
     if (!has_volume_elements(path)) {
-        gmshModelMeshGenerate(3, &error);
-        rg_gmsh_require(path, error);
+        make_mesh(path, size);
+    } else if (size->at != NULL || size->curvature > 0) {
+        rg_fatal(RG_USAGE, "%s: it is a mesh already, so --size and --curvature say nothing", path);
     }
 }
 
@@ -108,8 +164,9 @@ static _Noreturn void refuse_type(const char *path, const rg_gmsh_block *b) {
     rg_fatal(
         RG_USAGE,
         "%s: %zu elements of type '%s', the first of them element %zu; only tetrahedra of first and second "
-        "order are possible",
-        path, b->count, error == 0 ? name : "?", b->tag[0]);
+        "order are possible%s",
+        path, b->count, error == 0 ? name : "?", b->tag[0],
+        shape_of(b->type, true) != NULL ? "; --split cuts hexahedra, wedges and pyramids" : "");
 }
 
 struct taking {
@@ -124,33 +181,47 @@ static void take_elements(void *context, const rg_gmsh_block *b) {
         t->left_out += (int64_t)b->count;
         return;
     }
-    if (b->type != TET4 && b->type != TET10) {
+    const shape *is = shape_of(b->type, t->import->how.split);
+    if (is == NULL) {
         refuse_type(t->import->path, b);
     }
-    int each = b->type == TET4 ? 4 : 10;
     for (size_t e = 0; e < b->count; e++) {
-        rg_import_element(t->import, (rg_gid)b->tag[e], each, b->node + (size_t)each * e);
-        for (int32_t s = 0; s < b->sets; s++) {
-            rg_import_put(t->import, t->import->elements - 1, b->set[s]);
+        const size_t *node = b->node + (size_t)is->nodes * e;
+        rg_gid first = t->import->elements;
+        if (is->corners == 4) {
+            rg_import_element(t->import, (rg_gid)b->tag[e], is->nodes, node);
+        } else {
+            rg_import_solid(t->import, (rg_gid)b->tag[e], is->corners, node);
         }
+        for (int32_t s = 0; s < b->sets; s++) {
+            for (rg_gid k = first; k < t->import->elements; k++) {
+                rg_import_put(t->import, k, b->set[s]);
+            }
+        }
+    }
+}
+
+static void take_face(rg_import *m, const shape *is, const size_t *node, size_t tag, int32_t set) {
+    if (is->corners == 4) {
+        rg_import_add_quadrangle(m, node, (rg_gid)tag, set);
+    } else {
+        rg_import_add_face(m, (rg_import_face){{node[0], node[1], node[2]}, (rg_gid)tag, set});
     }
 }
 
 static void take_faces(void *context, const rg_gmsh_block *b) {
     rg_import *m = context;
-    bool triangles = b->type == TRI3 || b->type == TRI6;
-    if (!triangles && b->sets > 0) {
+    const shape *is = shape_of(b->type, m->how.split);
+    if (is == NULL && b->sets > 0) {
         refuse_type(m->path, b);
     }
-    for (size_t i = 0; triangles && i < b->count; i++) {
-        const size_t *node = b->node + (b->type == TRI3 ? 3 : 6) * i;
-        rg_import_face face = {{node[0], node[1], node[2]}, (rg_gid)b->tag[i], RG_IMPORT_UNNAMED};
+    for (size_t i = 0; is != NULL && i < b->count; i++) {
+        const size_t *node = b->node + (size_t)is->nodes * i;
         for (int32_t s = 0; s < b->sets; s++) {
-            face.set = b->set[s];
-            rg_import_add_face(m, face);
+            take_face(m, is, node, b->tag[i], b->set[s]);
         }
         if (b->sets == 0) {
-            rg_import_add_face(m, face);
+            take_face(m, is, node, b->tag[i], RG_IMPORT_UNNAMED);
         }
     }
 }
@@ -161,12 +232,12 @@ static void take_names(rg_sets *to, const rg_sets *from) {
     }
 }
 
-rg_mesh *rg_gmsh_read(const char *path, double scale) {
-    rg_import m = {.path = path, .scale = scale};
-    open_model(path);
-    if (has_unit(path) && scale != 1) {
+rg_mesh *rg_gmsh_read(const char *path, const rg_import_how *how, const rg_gmsh_size *size) {
+    rg_import m = {.path = path, .how = *how};
+    open_model(path, size);
+    if (has_unit(path) && how->scale != 1) {
         rg_warn("%s: the file says its unit, so its lengths are in m already; --scale multiplies them by %g",
-                path, scale);
+                path, how->scale);
     }
     read_nodes(&m);
     rg_gmsh_sets volumes = rg_gmsh_sets_read(path, 3), surfaces = rg_gmsh_sets_read(path, 2);

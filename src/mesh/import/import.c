@@ -11,6 +11,8 @@
 #include "base/mem.h"
 #include "base/tet.h"
 #include "layout.h"
+#include "mesh/import/merge.h"
+#include "mesh/import/solid.h"
 
 static const double straight = 1e-6; /* of an edge: how far its middle node may be off */
 
@@ -23,7 +25,7 @@ void rg_import_node(rg_import *m, size_t number, const double x[3]) {
     m->number = rg_grow(m->number, &m->number_room, m->nodes, sizeof *m->number);
     m->number[m->nodes] = number;
     for (size_t i = 0; i < 3; i++) {
-        m->x[3 * m->nodes + i] = m->scale * x[i];
+        m->x[3 * m->nodes + i] = m->how.scale * x[i];
     }
     m->nodes++;
 }
@@ -39,13 +41,36 @@ static void map_nodes(rg_import *m) {
     m->mapped = m->nodes;
 }
 
+/* Rows that stand for no other number, and of those that coincide the first for all. */
+static void merge_nodes(rg_import *m) {
+    rg_free(m->twin);
+    m->twin = RG_NEW(size_t, m->nodes);
+    for (size_t n = 0; n < m->nodes; n++) {
+        m->twin[n] = (size_t)rg_gid_map_get(&m->row, (rg_gid)m->number[n]);
+    }
+    rg_merged found = rg_merge(m->nodes, m->x, m->how.merge, m->twin);
+    printf("%s: %" PRId64 " nodes merged with others within %g m", m->path, found.count, m->how.merge);
+    if (found.count > 0) {
+        const double *x = m->x + 3 * found.first;
+        printf("; the first is node %zu with node %zu at (%g, %g, %g) m, the farthest are %g m apart",
+               m->number[found.first], m->number[m->twin[found.first]], x[0], x[1], x[2], found.farthest);
+    }
+    putchar('\n');
+}
+
 /* Row of the node with this number, SIZE_MAX if there is none. */
 static size_t row_of(rg_import *m, size_t number) {
     if (m->mapped < m->nodes) {
         map_nodes(m);
+        m->how.merge > 0 ? merge_nodes(m) : (void)0;
     }
     rg_lid row = m->nodes > 0 ? rg_gid_map_get(&m->row, (rg_gid)number) : -1;
-    return row >= 0 ? (size_t)row : SIZE_MAX;
+    return row < 0 ? SIZE_MAX : m->twin != NULL ? m->twin[row] : (size_t)row;
+}
+
+size_t rg_import_number(rg_import *m, size_t number) {
+    size_t row = row_of(m, number);
+    return row == SIZE_MAX ? number : m->number[row];
 }
 
 static void look_at_middles(rg_import *m, const size_t *node) {
@@ -92,6 +117,18 @@ void rg_import_element(rg_import *m, rg_gid name, int nodes, const size_t *node)
     }
 }
 
+int rg_import_solid(rg_import *m, rg_gid name, int corners, const size_t *node) {
+    size_t same[8], tet[RG_SOLID_TETS][4];
+    for (int i = 0; i < corners; i++) {
+        same[i] = rg_import_number(m, node[i]);
+    }
+    int count = rg_solid_split(corners, same, tet);
+    for (int t = 0; t < count; t++) {
+        rg_import_element(m, name, 4, tet[t]);
+    }
+    return count;
+}
+
 void rg_import_put(rg_import *m, rg_gid element, int32_t set) {
     m->volumes.sets = &m->volume;
     m->region[element] = rg_sets_join(&m->volumes, m->region[element], set);
@@ -110,6 +147,17 @@ void rg_import_put_skin(rg_import *m, rg_gid element, int32_t set) {
 void rg_import_add_face(rg_import *m, rg_import_face face) {
     m->face = rg_grow(m->face, &m->face_room, m->faces, sizeof *m->face);
     m->face[m->faces++] = face;
+}
+
+void rg_import_add_quadrangle(rg_import *m, const size_t corner[4], rg_gid name, int32_t set) {
+    size_t same[4], triangle[2][3];
+    for (int i = 0; i < 4; i++) {
+        same[i] = rg_import_number(m, corner[i]);
+    }
+    int count = rg_solid_quadrangle(same, triangle);
+    for (int t = 0; t < count; t++) {
+        rg_import_add_face(m, (rg_import_face){{triangle[t][0], triangle[t][1], triangle[t][2]}, name, set});
+    }
 }
 
 void rg_import_add_point(rg_import *m, size_t node, int32_t set) {
@@ -201,7 +249,7 @@ static void tell_nodes(const rg_import *m, const struct numbered *order, const r
     int64_t unused = 0;
     size_t first = 0, last = SIZE_MAX; /* a number that no node has */
     for (size_t n = 0; n < m->nodes; n++) {
-        bool again = order[n].number == last;
+        bool again = order[n].number == last || (m->twin != NULL && m->twin[order[n].row] != order[n].row);
         last = order[n].number;
         if (!again && vertex[order[n].row] < 0) {
             first = unused++ == 0 ? order[n].row : first;
@@ -558,5 +606,6 @@ rg_mesh *rg_import_finish(rg_import *m) {
     rg_free(m->face);
     rg_free(m->point);
     rg_free(m->skin);
+    rg_free(m->twin);
     return mesh;
 }

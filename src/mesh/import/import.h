@@ -25,14 +25,22 @@ typedef struct {
 /* Set of a face that is only known to be a place of its own, not by a name. */
 enum { RG_IMPORT_UNNAMED = -1 };
 
+/* What is asked of an import. */
+typedef struct {
+    double scale; /* m per unit of the input */
+    double merge; /* nodes as near as this become one (m); 0: none */
+    bool split;   /* hexahedra, wedges and pyramids become tetrahedra */
+} rg_import_how;
+
 typedef struct {
     const char *path; /* begins the messages */
-    double scale;     /* m per unit of the input */
-    size_t nodes;     /* rows below, in the order of the input */
-    double *x;        /* [nodes][3] m */
-    size_t *number;   /* [nodes]: the input's */
-    rg_gid_map row;   /* of a number, among the first `mapped` rows; numbers may be far apart */
+    rg_import_how how;
+    size_t nodes;   /* rows below, in the order of the input */
+    double *x;      /* [nodes][3] m */
+    size_t *number; /* [nodes]: the input's */
+    rg_gid_map row; /* of a number, among the first `mapped` rows; numbers may be far apart */
     size_t mapped;
+    size_t *twin; /* [mapped]: the row that stands for a row; NULL: each for itself */
     rg_gid elements;
     size_t *corner;  /* [elements][4] rows of nodes */
     rg_gid *name;    /* [elements] numbers */
@@ -60,6 +68,9 @@ void rg_import_node(rg_import *m, size_t number, const double x[3]);
  * must be there already; ends the run with a message if they are not. */
 void rg_import_element(rg_import *m, rg_gid name, int nodes, const size_t *node);
 
+/* Adds the tetrahedra of a solid with 4, 5, 6 or 8 corners (solid.h), all by its name; returns how many. */
+int rg_import_solid(rg_import *m, rg_gid name, int corners, const size_t *node);
+
 /* Puts an element, by its row, into a set of `volume`, once all sets are there. */
 void rg_import_put(rg_import *m, rg_gid element, int32_t set);
 
@@ -67,6 +78,14 @@ void rg_import_put(rg_import *m, rg_gid element, int32_t set);
 void rg_import_put_skin(rg_import *m, rg_gid element, int32_t set);
 
 void rg_import_add_face(rg_import *m, rg_import_face face);
+
+/* Adds the two triangles of a quadrangle, cut as the solids beside it are. */
+void rg_import_add_quadrangle(rg_import *m, const size_t corner[4], rg_gid name, int32_t set);
+
+/* The number of the node that stands for this one, by which solids are cut: its own unless nodes are merged.
+ */
+size_t rg_import_number(rg_import *m, size_t number);
+
 void rg_import_add_point(rg_import *m, size_t node, int32_t set);
 
 /* The mesh, neither sorted nor connected, with `original`, `region` and sets; frees the rest. Sets of nodes

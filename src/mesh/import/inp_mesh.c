@@ -6,8 +6,7 @@
 
 #include "base/error.h"
 #include "base/mem.h"
-#include "mesh/import/import.h"
-#include "mesh/import/inp_split.h"
+#include "mesh/import/solid.h"
 
 typedef struct {
     rg_inp_model *model;
@@ -43,12 +42,11 @@ static void take_tetrahedron(building *b, size_t e) {
 
 static void take_split(building *b, size_t e) {
     const rg_inp_model *m = b->model;
-    uint32_t tet[RG_INP_TETS][4];
-    int count = rg_inp_split(m->kind[e], m->node + m->start[e], tet);
-    for (int t = 0; t < count; t++) {
-        const size_t node[4] = {tet[t][0], tet[t][1], tet[t][2], tet[t][3]};
-        rg_import_element(&b->import, m->elements.number[e], 4, node);
+    size_t node[8];
+    for (int k = 0; k < m->kind[e]; k++) {
+        node[k] = m->node[m->start[e] + (size_t)k];
     }
+    rg_import_solid(&b->import, m->elements.number[e], m->kind[e], node);
 }
 
 static void take_elements(building *b) {
@@ -121,9 +119,14 @@ static void name_element_sets(building *b) {
     }
 }
 
-static void add_face(building *b, size_t element, const uint32_t node[3], int32_t set) {
+static void add_face(building *b, size_t element, const size_t node[3], int32_t set) {
     rg_import_add_face(
         &b->import, (rg_import_face){{node[0], node[1], node[2]}, b->model->elements.number[element], set});
+}
+
+static void add_triangle(building *b, size_t element, int32_t set) {
+    const uint32_t *node = b->model->node + b->model->start[element];
+    add_face(b, element, (const size_t[]){node[0], node[1], node[2]}, set);
 }
 
 static void fill_element_sets(building *b) {
@@ -144,7 +147,7 @@ static void fill_element_sets(building *b) {
                     rg_import_put(&b->import, tet, volume);
                 }
             } else if (b->model->kind[e] == 3) {
-                add_face(b, e, b->model->node + b->model->start[e], surface);
+                add_triangle(b, e, surface);
             }
         }
         rg_free(found.row);
@@ -155,20 +158,22 @@ static void fill_element_sets(building *b) {
 
 static void take_face(building *b, const rg_inp_surface *s, const rg_inp_patch *p, int32_t set, size_t e) {
     int kind = b->model->kind[e], count = 0;
-    uint32_t triangle[2][3];
+    size_t triangle[2][3], node[8];
     if (kind == 0) {
         return; /* of an element that is left out, and said to be: it has no nodes here */
     }
-    const uint32_t *node = b->model->node + b->model->start[e];
     if (kind == 3 && (p->face == RG_INP_FREE || p->face == RG_INP_SIDE)) {
-        add_face(b, e, node, set);
+        add_triangle(b, e, set);
         return;
     }
     for (rg_gid tet = b->element[e]; p->face == RG_INP_FREE && tet < b->element[e + 1]; tet++) {
         rg_import_put_skin(&b->import, tet, set);
     }
-    if (kind > 3 && p->face >= 0 && p->face < RG_INP_FACES) {
-        count = rg_inp_face(kind, p->face, node, triangle);
+    for (int k = 0; kind > 3 && k < (kind == 10 ? 4 : kind); k++) {
+        node[k] = rg_import_number(&b->import, b->model->node[b->model->start[e] + (size_t)k]);
+    }
+    if (kind > 3 && p->face >= 0 && p->face < RG_SOLID_FACES) {
+        count = rg_solid_face(kind, p->face, node, triangle);
     }
     for (int t = 0; t < count; t++) {
         add_face(b, e, triangle[t], set);
@@ -251,8 +256,8 @@ static void tell(const building *b) {
     }
 }
 
-rg_mesh *rg_inp_mesh(const char *path, double scale, rg_inp_model *model) {
-    building b = {.model = model, .import = {.path = path, .scale = scale}};
+rg_mesh *rg_inp_mesh(const char *path, const rg_import_how *how, rg_inp_model *model) {
+    building b = {.model = model, .import = {.path = path, .how = *how}};
     take_nodes(&b);
     take_elements(&b);
     name_element_sets(&b);

@@ -565,13 +565,15 @@ static rg_inp_model *choose_model(reader *r) {
     return r->whole;
 }
 
-rg_mesh *rg_inp_read(const char *path, double scale, bool split, FILE *out) {
-    reader r = {
-        .lines = rg_inp_open(path), .whole = rg_inp_model_make(), .section = RG_INP_UNKNOWN, .split = split};
+rg_mesh *rg_inp_read(const char *path, const rg_import_how *how, FILE *out) {
+    reader r = {.lines = rg_inp_open(path),
+                .whole = rg_inp_model_make(),
+                .section = RG_INP_UNKNOWN,
+                .split = how->split};
     leave_part(&r);
     read_lines(&r);
     rg_inp_report_judge(&r.report, path);
-    rg_mesh *mesh = rg_inp_mesh(path, scale, choose_model(&r));
+    rg_mesh *mesh = rg_inp_mesh(path, how, choose_model(&r));
     rg_inp_report_print(&r.report, path, out);
     for (size_t i = 0; i < r.parts; i++) {
         rg_inp_model_free(r.part[i].model);

@@ -2,15 +2,14 @@
 #ifndef RG_INP_READ_H
 #define RG_INP_READ_H
 
-#include <stdbool.h>
 #include <stdio.h>
 
-#include "mesh/mesh.h"
+#include "mesh/import/import.h"
 
-/* Reads the mesh of an input file, with lengths times `scale` in m, as the manuals define it: nodes and
+/* Reads the mesh of an input file as the manuals define it: nodes and
  * elements, given (*NODE, *ELEMENT, in local systems) and generated (*NGEN, *NFILL, *ELGEN, *ELCOPY), in one
  * body or in parts that instances place, in one file or several. Elements are tetrahedra of any physics, with
- * `split` those too that hexahedra, wedges and pyramids are cut into (inp_split.h), by their numbers;
+ * `split` those too that hexahedra, wedges and pyramids are cut into (solid.h), by their numbers;
  * triangles (S3, CPS6, SFM3D3, ...) only name faces.
  *
  * Volume sets are all sets of elements, surface sets all surfaces, sets of triangles, and sets of nodes that
@@ -21,6 +20,6 @@
  * with a warning (elements that are no solids), or ends the run: other solids, keywords and parameters that
  * are not known here. The result is neither sorted nor connected; `original` holds the file's element
  * numbers, in later instances plus a multiple of a power of ten. The caller frees it. */
-rg_mesh *rg_inp_read(const char *path, double scale, bool split, FILE *out);
+rg_mesh *rg_inp_read(const char *path, const rg_import_how *how, FILE *out);
 
 #endif

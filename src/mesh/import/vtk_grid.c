@@ -11,11 +11,20 @@
 #include "base/error.h"
 #include "base/files.h"
 #include "base/mem.h"
-#include "mesh/import/import.h"
 #include "mesh/rows.h"
 
-/* VTK's numbers of cell types. */
-enum { TRIANGLE = 5, TETRAHEDRON = 10, TRIANGLE_2 = 22, TETRAHEDRON_2 = 24 };
+/* VTK's numbers of cell types that are read; corners come first. */
+typedef struct {
+    int type, nodes, corners;
+    bool solid;
+} shape;
+
+static const shape shapes[] = {{5, 3, 3, false},  {22, 6, 3, false}, {10, 4, 4, true},  {24, 10, 4, true},
+                               {8, 4, 4, false},  {9, 4, 4, false},  {23, 8, 4, false}, {28, 9, 4, false},
+                               {30, 6, 4, false}, {11, 8, 8, true},  {12, 8, 8, true},  {25, 20, 8, true},
+                               {29, 27, 8, true}, {33, 24, 8, true}, {13, 6, 6, true},  {26, 15, 6, true},
+                               {31, 12, 6, true}, {32, 18, 6, true}, {14, 5, 5, true},  {27, 13, 5, true}};
+enum { WHOLE = 4, PIXEL = 8, VOXEL = 11, NODES = 27 }; /* the first ones are taken without a cut */
 
 /* Points, lines and other surfaces, which are left out. */
 static const int flat[] = {0, 1, 2, 3, 4, 6, 7, 8, 9, 21, 23, 28, 30, 34, 35, 36, 68, 69, 70, 75, 76};
@@ -23,7 +32,7 @@ static const int flat[] = {0, 1, 2, 3, 4, 6, 7, 8, 9, 21, 23, 28, 30, 34, 35, 36
 typedef struct {
     const rg_vtk_grid *grid;
     rg_import import;
-    rg_gid *element; /* [cells]: of the import, -1 for none */
+    rg_gid *element; /* [cells + 1]: those of the import begin here, and end with the next */
     int64_t left_out;
 } building;
 
@@ -61,18 +70,26 @@ double rg_vtk_decode(const unsigned char *from, rg_vtk_kind kind, size_t bytes, 
 
 /* ---- cells ---- */
 
+static void exchange(size_t *a, size_t *b) {
+    size_t swap = *a;
+    *a = *b;
+    *b = swap;
+}
+
 static int type_of(const rg_vtk_grid *g, size_t cell) {
     double type = g->type[cell];
     return type >= 0 && type < 256 ? (int)type : -1;
 }
 
-/* Corners of the cell: how many nodes it has for us. */
-static int nodes_of(int type) {
-    return type == TRIANGLE        ? 3
-           : type == TRIANGLE_2    ? 6
-           : type == TETRAHEDRON   ? 4
-           : type == TETRAHEDRON_2 ? 10
-                                   : 0;
+/* NULL: a cell of another type, or one that has to be cut where that was not asked for. */
+static const shape *shape_of(const building *b, size_t cell) {
+    int type = type_of(b->grid, cell);
+    for (size_t i = 0; i < (b->import.how.split ? sizeof shapes / sizeof *shapes : WHOLE); i++) {
+        if (shapes[i].type == type) {
+            return &shapes[i];
+        }
+    }
+    return NULL;
 }
 
 static bool is_flat(int type) {
@@ -84,8 +101,9 @@ static bool is_flat(int type) {
     return false;
 }
 
-/* The nodes of a cell, checked. */
-static void take_nodes(const rg_vtk_grid *g, size_t cell, int count, size_t node[10]) {
+/* The nodes of a cell, checked; of pixels and voxels the corners in turn. */
+static void take_nodes(const rg_vtk_grid *g, size_t cell, const shape *s, size_t node[NODES]) {
+    int count = s->nodes;
     double from = g->start[cell], to = g->start[cell + 1];
     bool good = from >= 0 && to <= (double)g->nodes && to - from == count;
     for (int i = 0; i < count && good; i++) {
@@ -97,18 +115,25 @@ static void take_nodes(const rg_vtk_grid *g, size_t cell, int count, size_t node
         rg_fatal(RG_USAGE, "%s: cell %zu of type %d has not the %d points that it should have", g->path, cell,
                  (int)g->type[cell], count);
     }
+    for (int i = 2; i < count && (s->type == PIXEL || s->type == VOXEL); i += 4) {
+        exchange(&node[i], &node[i + 1]);
+    }
 }
 
-static void take_tetrahedron(building *b, size_t cell, int count) {
-    size_t node[10];
-    take_nodes(b->grid, cell, count, node);
-    if (count == 10) { /* the last two middles stand the other way round */
-        size_t swap = node[8];
-        node[8] = node[9];
-        node[9] = swap;
+static void take_solid(building *b, size_t cell, const shape *s) {
+    size_t node[NODES];
+    take_nodes(b->grid, cell, s, node);
+    if (s->corners > 4) {
+        int64_t inverted = b->import.inverted;
+        rg_import_solid(&b->import, (rg_gid)cell, s->corners, node);
+        b->import.inverted =
+            s->corners == 6 ? inverted : b->import.inverted; /* writers differ about wedges */
+        return;
     }
-    b->element[cell] = b->import.elements;
-    rg_import_element(&b->import, (rg_gid)cell, count, node);
+    if (s->nodes == 10) { /* the last two middles stand the other way round */
+        exchange(&node[8], &node[9]);
+    }
+    rg_import_element(&b->import, (rg_gid)cell, s->nodes, node);
 }
 
 static void take_cells(building *b) {
@@ -120,21 +145,23 @@ static void take_cells(building *b) {
     }
     b->element = RG_NEW(rg_gid, g->cells + 1);
     for (size_t cell = 0; cell < g->cells; cell++) {
-        int type = type_of(g, cell), count = nodes_of(type);
-        b->element[cell] = -1;
-        if (type == TETRAHEDRON || type == TETRAHEDRON_2) {
-            take_tetrahedron(b, cell, count);
-        } else if (count == 0 && is_flat(type)) {
+        const shape *s = shape_of(b, cell);
+        b->element[cell] = b->import.elements;
+        if (s != NULL && s->solid) {
+            take_solid(b, cell, s);
+        } else if (s == NULL && is_flat(type_of(g, cell))) {
             b->left_out++;
-        } else if (count == 0) {
+        } else if (s == NULL) {
             first = solids++ == 0 ? cell : first;
         }
     }
+    b->element[g->cells] = b->import.elements;
     if (solids > 0) {
         rg_fatal(RG_USAGE,
                  "%s: %" PRId64
                  " cells are neither tetrahedra nor flat, the first of them cell %zu of type %d; "
-                 "only tetrahedra of first and second order are possible",
+                 "only tetrahedra of first and second order are possible; --split cuts hexahedra, wedges and "
+                 "pyramids",
                  g->path, solids, first, type_of(g, first));
     }
 }
@@ -148,14 +175,14 @@ static int ascending(const void *a, const void *b) {
 
 /* Adds the different values of the cells of a kind to `sets` as "array.number"; false: they are no numbers of
  * sets. */
-static bool name_sets(const building *b, const rg_vtk_array *a, bool triangles, rg_sets *sets) {
+static bool name_sets(const building *b, const rg_vtk_array *a, bool faces, rg_sets *sets) {
     const rg_vtk_grid *g = b->grid;
     double *value = RG_NEW(double, g->cells + 1);
     size_t count = 0, kept = 0;
     bool whole = true;
     for (size_t cell = 0; cell < g->cells; cell++) {
-        int nodes = nodes_of(type_of(g, cell));
-        if (nodes > 0 && (nodes == 3 || nodes == 6) == triangles) {
+        const shape *s = shape_of(b, cell);
+        if (s != NULL && s->solid != faces) {
             value[count++] = a->value[cell];
             whole = whole && fabs(a->value[cell]) < 1e9 && a->value[cell] == floor(a->value[cell]);
         }
@@ -185,19 +212,24 @@ static int32_t set_of(const rg_sets *sets, const rg_vtk_array *a, double value) 
 }
 
 static void add_face(building *b, size_t cell, int32_t set) {
-    size_t node[10];
-    take_nodes(b->grid, cell, nodes_of(type_of(b->grid, cell)), node);
-    rg_import_add_face(&b->import, (rg_import_face){{node[0], node[1], node[2]}, (rg_gid)cell, set});
+    size_t node[NODES];
+    const shape *s = shape_of(b, cell);
+    take_nodes(b->grid, cell, s, node);
+    if (s->corners == 4) {
+        rg_import_add_quadrangle(&b->import, node, (rg_gid)cell, set);
+    } else {
+        rg_import_add_face(&b->import, (rg_import_face){{node[0], node[1], node[2]}, (rg_gid)cell, set});
+    }
 }
 
-/* `named`: whether the array names sets of volumes, of triangles. */
+/* `named`: whether the array names sets of volumes, of faces. */
 static void fill_sets(building *b, const rg_vtk_array *a, const bool named[2]) {
     double last[2] = {NAN, NAN};
     int32_t set[2] = {-1, -1};
     for (size_t cell = 0; cell < b->grid->cells; cell++) {
-        int nodes = nodes_of(type_of(b->grid, cell));
-        bool face = nodes == 3 || nodes == 6;
-        if (nodes == 0 || !named[face]) {
+        const shape *s = shape_of(b, cell);
+        bool face = s != NULL && !s->solid;
+        if (s == NULL || !named[face]) {
             continue;
         }
         if (a->value[cell] != last[face]) { /* mostly it is that of the cell before */
@@ -206,8 +238,9 @@ static void fill_sets(building *b, const rg_vtk_array *a, const bool named[2]) {
         }
         if (face) {
             add_face(b, cell, set[face]);
-        } else {
-            rg_import_put(&b->import, b->element[cell], set[face]);
+        }
+        for (rg_gid e = b->element[cell]; e < b->element[cell + 1]; e++) {
+            rg_import_put(&b->import, e, set[face]);
         }
     }
 }
@@ -228,8 +261,8 @@ static void take_sets(building *b) {
         fill_sets(b, &g->array[i], named[i]);
     }
     for (size_t cell = 0; cell < g->cells && !any; cell++) { /* places, though without a name */
-        int nodes = nodes_of(type_of(g, cell));
-        if (nodes == 3 || nodes == 6) {
+        const shape *s = shape_of(b, cell);
+        if (s != NULL && !s->solid) {
             add_face(b, cell, RG_IMPORT_UNNAMED);
         }
     }
@@ -250,8 +283,8 @@ static void free_grid(rg_vtk_grid *g) {
     rg_free(g->type);
 }
 
-rg_mesh *rg_vtk_mesh(rg_vtk_grid *g, double scale) {
-    building b = {.grid = g, .import = {.path = g->path, .scale = scale}};
+rg_mesh *rg_vtk_mesh(rg_vtk_grid *g, const rg_import_how *how) {
+    building b = {.grid = g, .import = {.path = g->path, .how = *how}};
     take_cells(&b);
     take_sets(&b);
     if (b.left_out > 0) {

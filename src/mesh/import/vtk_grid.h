@@ -6,7 +6,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "mesh/mesh.h"
+#include "mesh/import/import.h"
 
 /* Values of the cells, one each, by a name. */
 typedef struct {
@@ -34,11 +34,11 @@ double rg_vtk_decode(const unsigned char *from, rg_vtk_kind kind, size_t bytes, 
  * name. Ends the run where that is too long for a set. */
 void rg_vtk_add_array(rg_vtk_grid *g, const char *name, double *value);
 
-/* The mesh, with lengths times `scale` in m, and frees the grid. Arrays of whole numbers name sets:
+/* The mesh, and frees the grid. Arrays of whole numbers name sets:
  * "array.number" is the volume set of the tetrahedra, and the surface set of the triangles, that have this
  * number. Ends the run where cells are damaged, or solids of another shape. `original` holds the numbers of
  * the cells, from 0 on. */
-rg_mesh *rg_vtk_mesh(rg_vtk_grid *g, double scale);
+rg_mesh *rg_vtk_mesh(rg_vtk_grid *g, const rg_import_how *how);
 
 /* Reads a whole file into text[size + 1], which begins as NULL and 0 and ends with a zero byte; the caller
  * frees it. Ends the run with a message (RG_USAGE) if it cannot be opened; false if it cannot be read to its

@@ -374,7 +374,7 @@ static void read_section(reader *r, const char *word) {
     }
 }
 
-rg_mesh *rg_vtk_read(const char *path, double scale) {
+rg_mesh *rg_vtk_read(const char *path, const rg_import_how *how) {
     reader r = {.path = path, .grid = {.path = path}};
     char word[WORD];
     load(&r);
@@ -386,5 +386,5 @@ rg_mesh *rg_vtk_read(const char *path, double scale) {
         rg_fatal(RG_USAGE, "%s: POINTS, CELLS or CELL_TYPES are not there", path);
     }
     rg_free(r.text);
-    return rg_vtk_mesh(&r.grid, scale);
+    return rg_vtk_mesh(&r.grid, how);
 }

@@ -2,13 +2,13 @@
 #ifndef RG_VTK_READ_H
 #define RG_VTK_READ_H
 
-#include "mesh/mesh.h"
+#include "mesh/import/import.h"
 
-/* Reads an unstructured grid of a legacy file (.vtk; text or binary, versions 1 to 5.1), with lengths times
- * `scale` in m; cells and sets as in rg_vtk_mesh. The caller frees it. */
-rg_mesh *rg_vtk_read(const char *path, double scale);
+/* Reads an unstructured grid of a legacy file (.vtk; text or binary, versions 1 to 5.1); cells and sets as in
+ * rg_vtk_mesh. The caller frees it. */
+rg_mesh *rg_vtk_read(const char *path, const rg_import_how *how);
 
 /* The same of an XML file (.vtu) of one piece: text, base64 or appended, compressed by zlib or not. */
-rg_mesh *rg_vtu_read(const char *path, double scale);
+rg_mesh *rg_vtu_read(const char *path, const rg_import_how *how);
 
 #endif

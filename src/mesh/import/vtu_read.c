@@ -386,7 +386,7 @@ static void read_tag(reader *r, const tag *t) {
     }
 }
 
-rg_mesh *rg_vtu_read(const char *path, double scale) {
+rg_mesh *rg_vtu_read(const char *path, const rg_import_how *how) {
     reader r = {.path = path, .grid = {.path = path}};
     tag t;
     load(&r);
@@ -401,5 +401,5 @@ rg_mesh *rg_vtu_read(const char *path, double scale) {
         refuse(&r, "points, connectivity, offsets or types of cells are not there", "");
     }
     rg_free(r.text);
-    return rg_vtk_mesh(&r.grid, scale);
+    return rg_vtk_mesh(&r.grid, how);
 }

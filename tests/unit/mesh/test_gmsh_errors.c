@@ -79,7 +79,7 @@ void __wrap_gmshLoggerGet(char ***line, size_t *lines, int *error) {
 /* ---- tests ---- */
 
 static void read_it(void) {
-    rg_mesh_free(rg_gmsh_read(path, 1));
+    rg_mesh_free(rg_gmsh_read(path, &(rg_import_how){.scale = 1}, &(rg_gmsh_size){.at = NULL}));
 }
 
 static void expect(int status, const char *words) {
@@ -138,7 +138,7 @@ static char other[sizeof path + 8]; /* the same file with another ending */
 
 static void read_other(void) {
     assert_non_null(freopen("/dev/null", "w", stdout)); /* where OpenCASCADE complains */
-    rg_mesh_free(rg_gmsh_read(other, 1));
+    rg_mesh_free(rg_gmsh_read(other, &(rg_import_how){.scale = 1}, &(rg_gmsh_size){.at = NULL}));
 }
 
 /* Files that say their unit are asked for metres, whatever the case of their endings; others have none. */

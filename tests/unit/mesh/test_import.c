@@ -1,4 +1,5 @@
 /* Import, whatever the format: numbers that are far apart, middles of edges, names of faces. */
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdbool.h>
@@ -13,6 +14,8 @@
 #include "base/error.h"
 #include "base/mem.h"
 #include "mesh/import/import.h"
+#include "mesh/import/merge.h"
+#include "support/dice.h"
 #include "support/mesh_text.h"
 
 static void add_nodes(rg_import *m) {
@@ -24,7 +27,7 @@ static void add_nodes(rg_import *m) {
 
 /* Two tetrahedra on either side of nodes 20 30 40. */
 static rg_import make_pair(void) {
-    rg_import m = {.path = "pair", .scale = 1};
+    rg_import m = {.path = "pair", .how.scale = 1};
     add_nodes(&m);
     rg_import_element(&m, 1, 4, (const size_t[]){10, 20, 30, 40});
     rg_import_element(&m, 2, 4, (const size_t[]){20, 30, 40, 50});
@@ -62,12 +65,12 @@ static void test_turns(void **state) {
 }
 
 static void no_nodes(void) {
-    rg_import m = {.path = "pair", .scale = 1};
+    rg_import m = {.path = "pair", .how.scale = 1};
     rg_import_element(&m, 8, 4, (const size_t[]){10, 20, 30, 40});
 }
 
 static void no_elements(void) {
-    rg_import m = {.path = "pair", .scale = 1};
+    rg_import m = {.path = "pair", .how.scale = 1};
     add_nodes(&m);
     end(&m);
 }
@@ -83,7 +86,7 @@ static double off[6];
 
 static void add_quadratic(void) {
     static const int ends[6][2] = {{0, 1}, {1, 2}, {2, 0}, {3, 0}, {2, 3}, {1, 3}};
-    rg_import m = {.path = "pair", .scale = 0.25};
+    rg_import m = {.path = "pair", .how.scale = 0.25};
     size_t node[10] = {10, 20, 30, 40};
     add_nodes(&m);
     for (int k = 0; k < 6; k++) {
@@ -187,6 +190,56 @@ static void test_faces(void **state) {
                  LEFT WARNING
                  "1 " BETWEEN X5
                  "e 1: 0 1 2 3, top and side at 0\ne 2: 1 2 3 4, top and side at 3\ninner 1 2 3\n");
+}
+
+/* ---- nodes that coincide ---- */
+
+/* Points on a grid of twelve places along each axis, the outer ones far away, some off by a little more or
+ * less than is within reach: against all pairs. */
+static void test_merge(void **state) {
+    (void)state;
+    enum { ROWS = 300 };
+    const double reach = 0.25;
+    int64_t joined = 0;
+    for (uint64_t seed = 1; seed < 40; seed++) {
+        double x[3 * ROWS], farthest = 0;
+        size_t twin[ROWS], low[ROWS];
+        dice d = {.seed = seed};
+        for (size_t k = 0; k < 3 * ROWS; k++) {
+            double aside[] = {0, 0, 0.125, 0.25, 0.26, 0.5};
+            x[k] =
+                floor(3 * dice_unit(&d)) + aside[(size_t)(6 * dice_unit(&d))] + (k % 3 == seed % 3 ? 1e3 : 0);
+        }
+        for (size_t n = 0; n < ROWS; n++) { /* every tenth stands for another one already */
+            twin[n] = n % 10 == 9 ? n - 9 : n;
+            low[n] = n;
+        }
+        for (bool again = true; again;) {
+            again = false;
+            for (size_t a = 0; a < ROWS; a++) {
+                for (size_t b = 0; b < a; b++) {
+                    double apart = sqrt(pow(x[3 * a] - x[3 * b], 2) + pow(x[3 * a + 1] - x[3 * b + 1], 2) +
+                                        pow(x[3 * a + 2] - x[3 * b + 2], 2));
+                    if (a % 10 != 9 && b % 10 != 9 && apart <= reach) {
+                        again = again || low[a] != low[b];
+                        low[a] = low[b] = low[a] < low[b] ? low[a] : low[b];
+                        farthest = fmax(farthest, apart);
+                    }
+                }
+            }
+        }
+        rg_merged found = rg_merge(ROWS, x, reach, twin);
+        int64_t count = 0;
+        size_t first = ROWS;
+        for (size_t n = 0; n < ROWS; n++) {
+            assert_int_equal(twin[n], n % 10 == 9 ? low[n - 9] : low[n]);
+            first = n % 10 != 9 && low[n] != n && n < first ? n : first;
+            count += n % 10 != 9 && low[n] != n;
+        }
+        assert_true(found.count == count && found.first == first && found.farthest == farthest);
+        joined += count;
+    }
+    assert_true(joined > 1000);
 }
 
 /* Sets of nodes: faces of the surface all of whose corners are in one. */
@@ -301,9 +354,10 @@ static void test_memory(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_turns), cmocka_unit_test(test_nothing), cmocka_unit_test(test_middles),
-        cmocka_unit_test(test_faces), cmocka_unit_test(test_points),  cmocka_unit_test(test_many_points),
-        cmocka_unit_test(test_skins), cmocka_unit_test(test_volumes), cmocka_unit_test(test_memory),
+        cmocka_unit_test(test_turns),       cmocka_unit_test(test_nothing), cmocka_unit_test(test_middles),
+        cmocka_unit_test(test_faces),       cmocka_unit_test(test_points),  cmocka_unit_test(test_merge),
+        cmocka_unit_test(test_many_points), cmocka_unit_test(test_skins),   cmocka_unit_test(test_volumes),
+        cmocka_unit_test(test_memory),
     };
     int failed = cmocka_run_group_tests_name("import", tests, NULL, NULL);
     return failed + (rg_alloc_blocks() > 0); /* all is given back */

@@ -13,7 +13,7 @@
 #include <cmocka.h>
 
 #include "base/tet.h"
-#include "mesh/import/inp_split.h"
+#include "mesh/import/solid.h"
 #include "support/inp_text.h"
 
 /* Abaqus's own corners: the unit cube; half of it; a pyramid on it. */
@@ -43,8 +43,8 @@ static void normal_of(const double *a, const double *b, const double *c, double 
     }
 }
 
-static uint32_t sorted(const uint32_t v[3]) {
-    uint32_t low = 99, high = 0;
+static size_t sorted(const size_t v[3]) {
+    size_t low = 99, high = 0;
     for (int i = 0; i < 3; i++) {
         low = v[i] < low ? v[i] : low;
         high = v[i] > high ? v[i] : high;
@@ -53,13 +53,13 @@ static uint32_t sorted(const uint32_t v[3]) {
 }
 
 /* Some of the 40,320 numberings: place[corner] is its number. */
-static void number(int corners, unsigned seed, uint32_t node[8], int corner_of[9]) {
+static void number(int corners, unsigned seed, size_t node[8], int corner_of[9]) {
     for (int i = 0; i < corners; i++) {
-        node[i] = (uint32_t)i + 1;
+        node[i] = (size_t)i + 1;
     }
     for (int i = corners - 1; i > 0; i--) {
         int k = (int)(seed % (unsigned)(i + 1));
-        uint32_t swap = node[i];
+        size_t swap = node[i];
         seed = seed * 1664525U / 7 + 12345U;
         node[i] = node[k];
         node[k] = swap;
@@ -73,10 +73,10 @@ static void test_split(void **state) {
     (void)state;
     for (size_t s = 0; s < sizeof shapes / sizeof *shapes; s++) {
         for (unsigned seed = 0; seed < 500; seed++) {
-            uint32_t node[8], tets[RG_INP_TETS][4], triangle[2][3], outer[12];
+            size_t node[8], tets[RG_SOLID_TETS][4], triangle[2][3], outer[12];
             int corner_of[9], outers = 0, sides = 0;
             number(shapes[s].corners, seed * 2654435761U, node, corner_of);
-            int count = rg_inp_split(shapes[s].corners, node, tets);
+            int count = rg_solid_split(shapes[s].corners, node, tets);
             double volume = 0;
             for (int t = 0; t < count; t++) {
                 const double *x[4];
@@ -88,8 +88,8 @@ static void test_split(void **state) {
                 volume += v;
             }
             assert_true(fabs(volume - shapes[s].volume) < 1e-15);
-            for (int f = 0; f < RG_INP_FACES; f++) {
-                int triangles = rg_inp_face(shapes[s].corners, f, node, triangle);
+            for (int f = 0; f < RG_SOLID_FACES; f++) {
+                int triangles = rg_solid_face(shapes[s].corners, f, node, triangle);
                 double sum[3] = {0, 0, 0};
                 for (int t = 0; t < triangles; t++) {
                     double n[3];
@@ -110,7 +110,7 @@ static void test_split(void **state) {
             }
             /* the sides of the tetrahedra are these, and others twice */
             for (int a = 0; a < 4 * count; a++) {
-                uint32_t side[3];
+                size_t side[3];
                 int same = 0, outside = 0;
                 for (int i = 0, k = 0; i < 4; i++) {
                     if (i != a % 4) {
@@ -121,7 +121,7 @@ static void test_split(void **state) {
                     outside += outer[i] == sorted(side);
                 }
                 for (int b = 0; b < 4 * count; b++) {
-                    uint32_t other[3];
+                    size_t other[3];
                     for (int i = 0, k = 0; i < 4; i++) {
                         if (i != b % 4) {
                             other[k++] = tets[b / 4][i];
@@ -140,11 +140,11 @@ static void test_split(void **state) {
 /* Corners that are the same: a wedge in the guise of a hexahedron, and one without volume. */
 static void test_collapsed(void **state) {
     (void)state;
-    uint32_t tets[RG_INP_TETS][4], triangle[2][3];
-    assert_int_equal(rg_inp_split(8, (const uint32_t[]){1, 2, 3, 3, 4, 5, 6, 6}, tets), 3);
-    assert_int_equal(rg_inp_face(8, 0, (const uint32_t[]){1, 2, 3, 3, 4, 5, 6, 6}, triangle), 1);
-    assert_int_equal(rg_inp_face(8, 4, (const uint32_t[]){1, 2, 3, 3, 4, 5, 6, 6}, triangle), 0);
-    assert_int_equal(rg_inp_split(8, (const uint32_t[]){1, 1, 1, 1, 1, 1, 1, 1}, tets), 0);
+    size_t tets[RG_SOLID_TETS][4], triangle[2][3];
+    assert_int_equal(rg_solid_split(8, (const size_t[]){1, 2, 3, 3, 4, 5, 6, 6}, tets), 3);
+    assert_int_equal(rg_solid_face(8, 0, (const size_t[]){1, 2, 3, 3, 4, 5, 6, 6}, triangle), 1);
+    assert_int_equal(rg_solid_face(8, 4, (const size_t[]){1, 2, 3, 3, 4, 5, 6, 6}, triangle), 0);
+    assert_int_equal(rg_solid_split(8, (const size_t[]){1, 1, 1, 1, 1, 1, 1, 1}, tets), 0);
 }
 
 #define BLOCK                                                                                                \

@@ -261,7 +261,7 @@ static void test_same_place(void **state) {
     (void)state;
     const char *at =
         "rhegma: chain: elements %d and 74 have different vertices at the same place (%s) m: the mesh is "
-        "open there; merge its duplicate nodes\n";
+        "open there; merge its duplicate nodes (rhegma mesh --merge)\n";
     char one[300], all[1000];
     snprintf(one, sizeof one, at, 71, "1, 2.5, 9");
     copies = 1;
@@ -315,7 +315,7 @@ static void test_three_at_one_place(void **state) {
     (void)state;
     const char *at =
         "rhegma: three: elements 0 and %d have different vertices at the same place (%s) m: the mesh is open "
-        "there; merge its duplicate nodes\n";
+        "there; merge its duplicate nodes (rhegma mesh --merge)\n";
     char said[600];
     int used = snprintf(said, sizeof said, at, 1, "-0, -0, -0");
     snprintf(said + used, sizeof said - (size_t)used, at, 2, "-0, -0, -0");

@@ -18,14 +18,14 @@
 #include "mesh/import/vtk_read.h"
 #include "support/mesh_text.h"
 
-static double scale = 1;
+static rg_import_how how = {.scale = 1};
 
 static void read_legacy(void) {
-    print_mesh(rg_vtk_read("a.vtk", scale), stderr);
+    print_mesh(rg_vtk_read("a.vtk", &how), stderr);
 }
 
 static void read_xml(void) {
-    print_mesh(rg_vtu_read("a.vtu", scale), stderr);
+    print_mesh(rg_vtu_read("a.vtu", &how), stderr);
 }
 
 static void write_bytes(const char *path, const void *data, size_t size) {
@@ -93,11 +93,11 @@ static void test_legacy(void **state) {
     for (size_t i = 0; i < sizeof regions / sizeof *regions; i++) {
         expect_legacy(regions[i], RG_OK, IN_SETS);
     }
-    scale = 0.5;
+    how.scale = 0.5;
     expect_legacy(
         HEAD("1.0") "POINTS 4 int\n0 0 0 2 0 0 0 2 0 0 0 6\nCELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n10\n", RG_OK,
         "x 0: 0 0 0\nx 1: 1 0 0\nx 2: 0 1 0\nx 3: 0 0 3\ne 0: 0 1 2 3\n");
-    scale = 1;
+    how.scale = 1;
 }
 
 static void test_regions(void **state) {
@@ -131,7 +131,7 @@ static void test_regions(void **state) {
         assert_int_equal(strstr(found, "name no sets") != NULL, cells < 22);
         assert_int_equal(strstr(found, "in n.0") != NULL, cells == 22);
         if (cells == 22) {
-            rg_mesh *m = rg_vtk_read("a.vtk", 1);
+            rg_mesh *m = rg_vtk_read("a.vtk", &how);
             assert_int_equal(m->volume.count, 11);
             rg_mesh_free(m);
         }
@@ -160,7 +160,8 @@ static void test_cells(void **state) {
             sprintf(said,
                     "rhegma: a.vtk: 1 cells are neither tetrahedra nor flat, the first of them cell 0 of "
                     "type %d; only "
-                    "tetrahedra of first and second order are possible\n",
+                    "tetrahedra of first and second order are possible; --split cuts hexahedra, wedges and "
+                    "pyramids\n",
                     types[i].type);
         }
         expect_legacy(words, types[i].status, said);
@@ -172,6 +173,56 @@ static void test_cells(void **state) {
                     "CELL_DATA 2\nSCALARS r int\n1 2\n";
     expect_legacy(quadratic, RG_OK,
                   "x 0: 0 0 0\nx 1: 2 0 0\nx 2: 0 2 0\nx 3: 0 0 2\ne 0: 0 1 2 3 in r.1, r.2 at 3\n");
+}
+
+#define BOX                                                                                                  \
+    "e 0: 0 4 6 7 in r.3, r.7 at 0\ne 0: 0 4 5 7 in r.3, r.7 at 0\ne 0: 0 1 5 7 in r.3\ne 0: 0 1 3 7 in "    \
+    "r.3\ne 0: 0 2 3 7 in r.3\ne 0: 0 2 6 7 in r.3\n"
+#define WEDGE                                                                                                \
+    "x 0: 0 0 0\nx 1: 2 0 0\nx 2: 0 2 0\nx 3: 0 0 2\nx 4: 2 0 2\nx 5: 0 2 2\nx 6: 3 3 1\ne 0: 0 3 4 5\n"
+#define PYRAMID "e 1: 1 2 5 6\ne 1: 1 4 5 6\n"
+
+/* A box of 1 x 2 x 3 as one cell of each shape, with a side in a set; cut from its lowest corner, and the
+ * side with it. */
+static void test_split(void **state) {
+    (void)state;
+    static const struct {
+        int solid, flat, nodes, side;
+        const char *corners, *sides;
+    } cells[] = {
+        {12, 9, 8, 4, "0 1 3 2 4 5 7 6", "4 6 7 5"},
+        {11, 8, 8, 4, "0 1 2 3 4 5 6 7", "4 6 5 7"},
+        {25, 23, 20, 8, "0 1 3 2 4 5 7 6 8 8 8 8 8 8 8 8 8 8 8 8", "4 6 7 5 8 8 8 8"},
+        {29, 28, 27, 9, "0 1 3 2 4 5 7 6 8 8 8 8 8 8 8 8 8 8 8 8 8 8 8 8 8 8 8", "4 6 7 5 8 8 8 8 8"},
+        {33, 30, 24, 6, "0 1 3 2 4 5 7 6 8 8 8 8 8 8 8 8 8 8 8 8 8 8 8 8", "4 6 7 5 8 8"}};
+    for (size_t i = 0; i < sizeof cells / sizeof *cells; i++) {
+        char input[1500];
+        sprintf(
+            input,
+            HEAD("4.2") "POINTS 9 int\n0 0 0 1 0 0 0 2 0 1 2 0 0 0 3 1 0 3 0 2 3 1 2 3 5 5 5\nCELLS 2 %d\n"
+                        "%d %s\n%d %s\nCELL_TYPES 2\n%d\n%d\nCELL_DATA 2\nSCALARS r int\n3 7\n",
+            cells[i].nodes + cells[i].side + 2, cells[i].nodes, cells[i].corners, cells[i].side,
+            cells[i].sides, cells[i].solid, cells[i].flat);
+        how.split = true;
+        expect_legacy(
+            input, RG_OK,
+            WARNING "1 nodes belong to no tetrahedron and are left out; the first is node 8 at (5, 5, 5) m\n"
+                    "x 0: 0 0 0\nx 1: 1 0 0\nx 2: 0 2 0\nx 3: 1 2 0\nx 4: 0 0 3\nx 5: 1 0 3\nx 6: 0 2 3\n"
+                    "x 7: 1 2 3\n" BOX);
+    }
+    /* a wedge, either way round, and a pyramid, side by side */
+    for (int way = 0; way < 2; way++) {
+        char input[1000];
+        sprintf(input,
+                HEAD("4.2") "POINTS 7 int\n0 0 0 2 0 0 0 2 0 0 0 2 2 0 2 0 2 2 3 3 1\nCELLS 2 13\n6 %s\n5 1 "
+                            "2 5 4 6\n"
+                            "CELL_TYPES 2\n13\n14\n",
+                way == 0 ? "0 1 2 3 4 5" : "0 2 1 3 5 4");
+        expect_legacy(input, RG_OK,
+                      way == 0 ? WEDGE "e 0: 0 1 4 5\ne 0: 0 1 2 5\n" PYRAMID
+                               : WEDGE "e 0: 0 1 2 5\ne 0: 0 1 4 5\n" PYRAMID);
+    }
+    how.split = false;
 }
 
 static void test_legacy_mistakes(void **state) {
@@ -571,9 +622,9 @@ static int tear_down(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_legacy),          cmocka_unit_test(test_regions), cmocka_unit_test(test_cells),
-        cmocka_unit_test(test_legacy_mistakes), cmocka_unit_test(test_binary),  cmocka_unit_test(test_xml),
-        cmocka_unit_test(test_stored),
+        cmocka_unit_test(test_legacy), cmocka_unit_test(test_regions),         cmocka_unit_test(test_cells),
+        cmocka_unit_test(test_split),  cmocka_unit_test(test_legacy_mistakes), cmocka_unit_test(test_binary),
+        cmocka_unit_test(test_xml),    cmocka_unit_test(test_stored),
     };
     int failed = cmocka_run_group_tests_name("vtk", tests, set_up, tear_down);
     return failed + (rg_alloc_blocks() > 0); /* all is given back */
