@@ -109,7 +109,8 @@ void rg_face_set_rule(rg_check *ck, const rg_node *list, int i, const char *path
     }
     const rg_face_set *set = &ck->c->interface.set[i];
     const rg_node *between = rg_node_find(item, "between", strlen("between"));
-    if (between == NULL && given(item, "where") == NULL && given(item, "set") == NULL) {
+    rg_entry e = {ck, item, path};
+    if (between == NULL && rg_entry_given(&e, "where") == NULL && rg_entry_given(&e, "set") == NULL) {
         rg_subject subject = {.key = path, .allowed = "set, where, between, or several of them"};
         rg_problem_add(ck->problems, item->at, &subject, "missing set, where or between");
     } else if (between != NULL && good) {

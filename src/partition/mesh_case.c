@@ -89,18 +89,6 @@ static int64_t count_shared(const rg_part *part, int32_t a, int32_t b, MPI_Comm 
     return count;
 }
 
-/* A set may have faces between elements alone. */
-static void refuse_inner_sets(const rg_case *c, const rg_part *part, MPI_Comm comm) {
-    for (int b = 0; b < c->boundaries && c->mesh.file != NULL; b++) {
-        int32_t set = rg_sets_find(&part->surface, c->boundary[b].set);
-        if (count_shared(part, set, set, comm) == 0) {
-            rg_speak(comm);
-            rg_fatal(RG_USAGE, "%s: boundary[%d].set: %s: no face of the surface is in it", c->path, b,
-                     c->boundary[b].set);
-        }
-    }
-}
-
 /* Sets may overlap; what they prescribe to one face must not contradict. */
 static void refuse_contradictions(const rg_case *c, const rg_part *part, MPI_Comm comm) {
     for (int b = 0; b < c->boundaries && part->surface.combinations > 0; b++) {
@@ -128,7 +116,6 @@ rg_part *rg_part_of_case(const rg_case *c, double *cost, MPI_Comm comm) {
     MPI_Bcast(&known, 1, MPI_INT, 0, comm);
     rg_part *part = c->mesh.file != NULL ? part_of_file(c, cost, known, rank, comm)
                                          : part_of_box(c, cost, known, rank, comm);
-    refuse_inner_sets(c, part, comm);
     refuse_contradictions(c, part, comm);
     rg_materials_assign(c, part, comm);
     return part;

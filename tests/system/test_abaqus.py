@@ -331,7 +331,7 @@ def test_a_surface_inside(run, meshes):
     said = launch("mesh", "--info", meshes[1]).stdout
     assert "middle: 0 faces, and 8 between elements\n" in said and "mixed: 8 faces, and 8 between elements\n" in said
     said = launch("check", case(meshes[1], "held inside", boundary=[{"set": "middle", "component": "z", "velocity": 1}]))
-    assert said.returncode == 2 and said.stderr.endswith("boundary[0].set: middle: no face of the surface is in it\n")
+    assert said.returncode == 2 and said.stderr.endswith("boundary[0]: no face of the surface is in it, set: middle\n")
     said = launch("check", case(meshes[1], "unknown", interface={**law, "sets": [{"set": "midle", "open": True}]}))
     assert said.returncode == 2 and "interface.sets[0].set: midle: " in said.stderr and said.stderr.endswith("did you mean 'middle'?\n")
 

@@ -109,7 +109,7 @@ def test_size(tmp_path):
         assert 0.9 * size < length.mean() / 1e-2 < 1.25 * size
     middle, length = edges("box.geo", "--size", "x < 2 ? 0.2 : 0.5")
     low, high = (length[(middle[:, 0] > a) & (middle[:, 0] < b)].mean() / 1e-2 for a, b in ((0, 0.015), (0.03, 0.04)))
-    assert 0.15 < low < 0.22 and 0.35 < high < 0.55
+    assert 0.18 < low < 0.28 and 0.4 < high < 0.65
     coarse, fine = (len(edges("ball.geo", "--curvature", n)[1]) for n in (6, 24))
     assert fine > 10 * coarse
     process = launch("mesh", tmp_path / "box.geo", "-o", tmp_path / "bad.h5", "--size", "x - 1")

@@ -205,8 +205,8 @@ static void test_numbers(void **state) {
     const char *const jitter[] = {"mesh.jitter=0.15", "mesh.jitter=0"};
     const double rounding = sizeof(rg_real) == sizeof(double) ? 1e-14 : 1.2e-7;
     for (int regular = 0; regular < 2; regular++) {
-        const char *all[] = {"mesh.cells=[4, 4, 8]", set[0], set[1], jitter[regular]};
-        rg_case *c = rg_case_read(RG_SOURCE_ROOT "/bench/examples/spall/spall.yaml", 4, all, stderr);
+        const char *all[] = {"mesh.cells=[4, 4, 8]", set[0], set[1], jitter[regular], "boundary=[]"};
+        rg_case *c = rg_case_read(RG_SOURCE_ROOT "/bench/examples/spall/spall.yaml", 5, all, stderr);
         assert_non_null(c);
         size_t count, others;
         face *f = faces_in(c, AS_IT_IS, &count);
