@@ -201,6 +201,7 @@ static face *faces_in(const rg_case *c, int numbers, size_t *count) {
  * where -0 is. Its area is rounded by that order, and what is kept is of the fields' precision. */
 static void test_numbers(void **state) {
     (void)state;
+    /* the sides have lost their names */
     const char *const set[] = {"interface.weibull={modulus: 8, area: 2e-9}", "mesh.origin=[0, 0, 0]"};
     const char *const jitter[] = {"mesh.jitter=0.15", "mesh.jitter=0"};
     const double rounding = sizeof(rg_real) == sizeof(double) ? 1e-14 : 1.2e-7;
