@@ -38,6 +38,7 @@ EVERYWHERE = {  # changes of fragments.yaml that must not change the bits, on an
                            {"set": "y+", "direction": [1, 0, 2], "velocity": 3, "from": 1.4e-7},
                            {"name": "catch", "set": "y+", "component": "x", "displacement": "5*t", "from": 3e-8, "until": 1.3e-7}]},
     "loads, continuous": {"interface.form": "continuous", "interface.faces": "nz*nz > 0.5",
+                          "initial.sets": [{"where": "z > 2e-4", "rotation": {"speed": 1e3, "axis": [1, 0, 2]}, "velocity": {"z": "30*sin(3e3*z)"}}],
                           "boundary": [{"set": "x+", "absorbing": True}, {"set": "z-", "absorbing": True}, {"where": "nx < -0.5", "normal": 0},
                                        {"set": "y+", "direction": [1, 0, 2], "velocity": "1e7*t", "from": 3e-8}],
                           "loads": [{"name": "pull", "set": "z+", "traction": {"z": "3e8 + 1e12*x"}}]},

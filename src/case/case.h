@@ -120,6 +120,20 @@ typedef struct {
     int64_t seed;         /* 0: the interface's */
 } rg_face_set;
 
+/* A state at the start. */
+typedef struct {
+    rg_expr *displacement[3], *velocity[3]; /* m, m/s; NULL: zero */
+    double spin, axis[3], at[3]; /* rad/s about an axis of any length through a point (m): on top */
+} rg_initial;
+
+/* Elements with a state of their own at the start: of one of these. */
+typedef struct {
+    char *set;      /* volume set of the mesh file */
+    char *material; /* by name */
+    rg_expr *where; /* at whose centroid this is not 0 */
+    rg_initial is;
+} rg_initial_set;
+
 typedef struct {
     char *name;   /* column prefix in history.csv */
     double at[3]; /* reference position (m) */
@@ -186,9 +200,9 @@ typedef struct {
     struct {
         double linear, quadratic; /* b1, b2 */
     } viscosity;
-    struct {
-        rg_expr *displacement[3], *velocity[3]; /* NULL: zero */
-    } initial;
+    rg_initial initial;
+    int initial_sets;
+    rg_initial_set *initial_set; /* the last one that has an element counts */
     int boundaries;
     rg_boundary *boundary;
     int loads;

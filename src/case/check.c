@@ -1,7 +1,7 @@
 /* Walks the tree: finds each key of a table, reports unknown, missing and repeated ones, reads the others. */
-#include "case/check.h"
-
 #include <string.h>
+
+#include "case/entry.h"
 
 #include "base/mem.h"
 
@@ -155,6 +155,8 @@ static void check_entry(rg_check *ck, const rg_key *key, const rg_node *list, co
         rg_probe_rule(ck, list, i, item, good);
     } else if (key->entry == &rg_material_table) {
         rg_material_rule(ck, list, i, item);
+    } else if (key->entry == &rg_initial_set_table) {
+        rg_initial_set_rule(ck, list, i, item, good);
     } else if (key->entry == &rg_face_set_table) {
         rg_face_set_rule(ck, list, i, item, good);
     }
@@ -334,7 +336,11 @@ void rg_case_check(rg_check *ck, const rg_node *root) {
     ck->box = ck->models = true;
     ck->material = (rg_material_check){.path = "material.", .of = &ck->c->material, .flaws = true};
     if (root->kind == RG_NODE_MAPPING) {
+        int before = ck->problems->count;
         check_table(ck, &rg_case_table, root, "", ck->c);
+        if (ck->problems->count == before) {
+            rg_rotation_rule(&(rg_entry){ck, root, NULL}, "initial.", &ck->c->initial);
+        }
     } else if (root->kind != RG_NODE_BAD) {
         char value[64];
         rg_subject subject = {.value = rg_node_line(root, value, sizeof value)};

@@ -97,6 +97,7 @@ void rg_load_rule(rg_check *ck, const rg_node *list, int i, const char *path, bo
 void rg_body_rule(rg_check *ck, const rg_node *list, int i, const char *path, bool good);
 void rg_probe_rule(rg_check *ck, const rg_node *list, int i, const char *path, bool good);
 void rg_material_rule(rg_check *ck, const rg_node *list, int i, const char *path);
+void rg_initial_set_rule(rg_check *ck, const rg_node *list, int i, const char *path, bool good);
 void rg_face_set_rule(rg_check *ck, const rg_node *list, int i, const char *path, bool good); /* face_set.c */
 
 /* Letters, digits, _ and - alone. */

@@ -7,7 +7,7 @@
 typedef struct {
     rg_check *ck;
     const rg_node *item;
-    const char *path; /* "loads[2]" */
+    const char *path; /* "loads[2]"; NULL: it is the case itself */
 } rg_entry;
 
 /* The key as it stands in the entry, or in a section of it ("weibull.seed"); NULL: it does not. */
@@ -15,5 +15,9 @@ const rg_node *rg_entry_given(const rg_entry *e, const char *key);
 
 /* Reports what is wrong with a key of the entry (NULL: with the entry), with what `subject` says besides. */
 void rg_entry_wrong(const rg_entry *e, const char *key, rg_place at, rg_subject subject, const char *what);
+
+/* The angular velocity of a state at the start has an axis; its keys begin with `prefix` in the entry
+ * (case/initial.c). */
+void rg_rotation_rule(const rg_entry *e, const char *prefix, const rg_initial *is);
 
 #endif

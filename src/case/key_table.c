@@ -130,8 +130,21 @@ static const char *const fragments[] = {"each", "last", "none", NULL};
 static const char *const fragments_meaning[] = {
     "for each output", "for the end of the run", "no file"};
 
-#define INITIAL(name_, unit_, member, words)                                                                 \
-    { .name = (name_), .unit = (unit_), .type = RG_KEY_EXPR, ELSE("0"), .no_time = true, CASE(initial.member), MEANS(words) }
+#define INITIAL(name_, unit_, at_, words)                                                                    \
+    {.name = (name_), .unit = (unit_), .type = RG_KEY_EXPR, ELSE("0"), .no_time = true, .offset = (at_), MEANS(words)},
+/* Of `initial`, and of each of its sets. */
+#define INITIAL_KEYS(path, at_)                                                                              \
+    INITIAL(path "displacement.x", "m", (at_) + offsetof(rg_initial, displacement[0]), "displacement along x at the start") \
+    INITIAL(path "displacement.y", "m", (at_) + offsetof(rg_initial, displacement[1]), "along y")            \
+    INITIAL(path "displacement.z", "m", (at_) + offsetof(rg_initial, displacement[2]), "along z")            \
+    INITIAL(path "velocity.x", "m/s", (at_) + offsetof(rg_initial, velocity[0]), "velocity along x at the start") \
+    INITIAL(path "velocity.y", "m/s", (at_) + offsetof(rg_initial, velocity[1]), "along y")                  \
+    INITIAL(path "velocity.z", "m/s", (at_) + offsetof(rg_initial, velocity[2]), "along z")                  \
+    {.name = path "rotation.speed", .unit = "rad/s", REAL, ANY, ELSE("0"), .offset = (at_) + offsetof(rg_initial, spin),  \
+     MEANS("angular velocity about an axis, of the displaced body, on top of that velocity")},               \
+    {.name = path "rotation.axis", REAL3, ANY, ELSE("required with a speed"), .offset = (at_) + offsetof(rg_initial, axis), \
+     MEANS("about which it turns, by the right hand: of any length")},                                       \
+    {.name = path "rotation.at", .unit = "m", REAL3, ANY, ELSE("0, 0, 0"), .offset = (at_) + offsetof(rg_initial, at), MEANS("a point of the axis")},
 
 static const rg_key case_keys[] = {
     {.name = "defaults", INTEGER, FROM_TO(0, RG_DEFAULTS), DEFAULT(0), MAY_CHANGE, CASE(defaults),
@@ -222,12 +235,9 @@ static const rg_key case_keys[] = {
 
     {.name = "mass", EXPLAINED(masses), DEFAULT(RG_MASS_CONSISTENT), CASE(mass), MEANS("mass matrix")},
 
-    INITIAL("initial.displacement.x", "m", displacement[0], "displacement along x at the start"),
-    INITIAL("initial.displacement.y", "m", displacement[1], "along y"),
-    INITIAL("initial.displacement.z", "m", displacement[2], "along z"),
-    INITIAL("initial.velocity.x", "m/s", velocity[0], "velocity along x at the start"),
-    INITIAL("initial.velocity.y", "m/s", velocity[1], "along y"),
-    INITIAL("initial.velocity.z", "m/s", velocity[2], "along z"),
+    INITIAL_KEYS("initial.", offsetof(rg_case, initial))
+    {.name = "initial.sets", .type = RG_KEY_LIST, ELSE("none"), CASE(initial_set), .entry = &rg_initial_set_table,
+     .offset_count = offsetof(rg_case, initial_sets), MEANS("elements with values of their own in place of those of `initial`; the last one that has an element counts")},
 
     {.name = "boundary", .type = RG_KEY_LIST, ELSE("none: a free body"), CASE(boundary), .entry = &rg_boundary_table,
      .offset_count = offsetof(rg_case, boundaries), MEANS("prescribed motion of the surface; what is not named is free")},
@@ -400,6 +410,15 @@ static const rg_key body_keys[] = {
      MEANS("contact stiffness in (lambda + 2 mu)/h, h the height of an element over its face")},
 };
 
+#define PART(member) .offset = offsetof(rg_initial_set, member)
+static const rg_key initial_set_keys[] = {
+    {.name = "set", .type = RG_KEY_TEXT, ELSE("where"), ONE_OF, PART(set), MEANS("a volume set of the mesh file")},
+    {.name = "material", .type = RG_KEY_TEXT, ELSE("where"), ONE_OF, PART(material), MEANS("name of a material")},
+    {.name = "where", .type = RG_KEY_EXPR, ELSE("set"), ONE_OF, .no_time = true, PART(where),
+     MEANS("elements at whose centroid it is not 0")},
+    INITIAL_KEYS("", offsetof(rg_initial_set, is))
+};
+
 static const rg_key probe_keys[] = {
     {.name = "name", .type = RG_KEY_TEXT, REQUIRED, .offset = offsetof(rg_probe, name),
      MEANS("column prefix in history.csv: letters, digits, _ and -")},
@@ -416,6 +435,7 @@ const rg_key_table rg_face_set_table = TABLE(face_set_keys, rg_face_set);
 const rg_key_table rg_boundary_table = TABLE(boundary_keys, rg_boundary);
 const rg_key_table rg_load_table = TABLE(load_keys, rg_load_input);
 const rg_key_table rg_body_table = TABLE(body_keys, rg_body_input);
+const rg_key_table rg_initial_set_table = TABLE(initial_set_keys, rg_initial_set);
 const rg_key_table rg_probe_table = TABLE(probe_keys, rg_probe);
 
 _Static_assert(sizeof(case_keys) / sizeof(case_keys[0]) <= RG_MAX_KEYS, "RG_MAX_KEYS is too small");

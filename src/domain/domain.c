@@ -34,6 +34,7 @@ static void set_element(rg_domain *d, size_t slot, size_t at, const rg_element *
     d->id[slot] = e->id;
     memcpy(d->corner + 12 * slot, e->x, sizeof e->x);
     memcpy(d->set + 4 * slot, e->set, sizeof e->set);
+    d->region[slot] = e->region;
     for (int f = 0; f < RG_FACES; f++) { /* until interfaces are known */
         d->neighbour[rg_link_index(slot, f)] = rg_neighbour_link(at, f);
         d->interface[rg_link_index(slot, f)] = RG_NO_INTERFACE;
@@ -42,8 +43,11 @@ static void set_element(rg_domain *d, size_t slot, size_t at, const rg_element *
 
 /* A harmless element of unit size at rest. */
 static void set_padding(rg_domain *d, size_t slot, size_t at) {
-    static const rg_element unit = {
-        .id = -1, .x = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, 0}}, .volume = 1, .set = {-1, -1, -1, -1}};
+    static const rg_element unit = {.id = -1,
+                                    .x = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, 0}},
+                                    .volume = 1,
+                                    .set = {-1, -1, -1, -1},
+                                    .region = -1};
     set_element(d, slot, at, &unit);
 }
 
@@ -52,6 +56,7 @@ static void allocate_elements(rg_domain *d) {
     d->id = RG_NEW(rg_gid, slots);
     d->corner = RG_NEW(double, 12 * slots);
     d->set = RG_NEW(int32_t, 4 * slots);
+    d->region = RG_NEW(int32_t, slots);
     d->material = RG_NEW(uint8_t, d->blocks + 1);
     d->geom = RG_NEW(rg_real, d->blocks * RG_GEOM_BLOCK);
     d->neighbour = RG_NEW(int32_t, d->blocks * RG_LINK_BLOCK);
@@ -179,9 +184,9 @@ void rg_domain_free(rg_domain *d) {
     if (d == NULL) {
         return;
     }
-    void *blocks[] = {d->id,        d->corner,   d->set,   d->geom,    d->neighbour,
-                      d->interface, d->material, d->place, d->beside,  d->tile,
-                      d->side[0],   d->side[1],  d->igeom, d->counted, d->shared_face};
+    void *blocks[] = {d->region,    d->id,       d->corner,  d->set,        d->geom, d->neighbour,
+                      d->interface, d->material, d->place,   d->beside,     d->tile, d->side[0],
+                      d->side[1],   d->igeom,    d->counted, d->shared_face};
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) {
         rg_free(blocks[i]);
     }

@@ -37,6 +37,7 @@ typedef struct {
     rg_gid *id;           /* [slots]: global element number; -1 in padding */
     double *corner;       /* [slots][4][3]: m */
     int32_t *set;         /* [slots][4]: group of surface sets, -1 for none */
+    int32_t *region;      /* [slots]: group of volume sets, -1 for none */
     uint8_t *material;    /* [blocks]: number of its material */
     uint16_t *place;      /* [tiles][tile_elements]: slot in its tile, by number in it; NULL: the number */
     rg_real *geom;        /* kernels/layout.h */

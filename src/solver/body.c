@@ -9,6 +9,7 @@
 #include "base/mem.h"
 #include "base/first_bad.h"
 #include "base/vector.h"
+#include "solver/initial.h"
 #include "domain/element.h"
 #include "quadrature.h"
 
@@ -227,17 +228,19 @@ typedef struct {
     int rank; /* as MPI_DOUBLE_INT wants them */
 } overlap;
 
-static void start_position(const rg_case *c, const rg_domain *d, const rg_contact_face *f, int a,
-                           double x[3]) {
+static void start_position(const rg_case *c, const rg_domain *d, const rg_sets *volume,
+                           const rg_contact_face *f, int a, double x[3]) {
     double reference[3];
+    int set;
+    const rg_initial *is = rg_initial_of(c, d, volume, (size_t)f->slot, &set);
     rg_node_position(d->corner + 12 * (size_t)f->slot, rg_face_node[f->face][a], reference);
     for (int k = 0; k < 3; k++) {
-        const rg_expr *e = c->initial.displacement[k];
+        const rg_expr *e = is->displacement[k];
         x[k] = reference[k] + (e == NULL ? 0 : rg_expr_value(e, reference, 0));
     }
 }
 
-static void refuse_overlap(const rg_bodies *b, const rg_case *c) {
+static void refuse_overlap(const rg_bodies *b, const rg_case *c, const rg_sets *volume) {
     double worst[3] = {0, 0, 0};
     const rg_contact_face *in = NULL;
     overlap here = {0}, all;
@@ -246,7 +249,7 @@ static void refuse_overlap(const rg_bodies *b, const rg_case *c) {
         const rg_contact_face *f = &b->face[i];
         for (int a = 0; a < RG_FNODES; a++) {
             double x[3], normal[3];
-            start_position(c, b->surface.domain, f, a, x);
+            start_position(c, b->surface.domain, volume, f, a, x);
             double depth = rg_body_depth(&b->body[f->body], x, normal);
             if (depth >
                 fmax(here.depth, TOUCH * rg_surface_height(b->surface.domain, (size_t)f->slot, f->face))) {
@@ -289,7 +292,7 @@ rg_bodies *rg_bodies_make(const rg_case *c, const rg_domain *d, const rg_part *p
     b->sum = RG_NEW(rg_exact_sum, (size_t)(3 * b->count * threads));
     b->total = RG_NEW(rg_exact_sum, (size_t)(3 * b->count));
     find_faces(b, c, part);
-    refuse_overlap(b, c);
+    refuse_overlap(b, c, &part->volume);
     b->omega2 = contact_omega2(b);
     return b;
 }

@@ -4,11 +4,9 @@
 #include <omp.h>
 #include <string.h>
 
-#include "base/error.h"
-#include "base/first_bad.h"
 #include "base/interrupt.h"
-#include "domain/element.h"
 #include "partition/material.h"
+#include "solver/initial.h"
 #include "solver/law.h"
 #include "solver/step_limiter.h"
 #include "solver/stepper.h"
@@ -364,57 +362,6 @@ void rg_solver_impulse(rg_solver *s, rg_real *velocity, double dt) {
 
 /* ---- Time ---- */
 
-/* Value of an initial expression, 0 where there is none. */
-static double initial_value(const rg_expr *e, int which, const double x[3], rg_first_bad *bad) {
-    double value = e == NULL ? 0 : rg_expr_value(e, x, 0);
-    if (!isfinite(value)) {
-#pragma omp critical
-        rg_first_bad_note(bad, which, x, value);
-    }
-    return value;
-}
-
-static void refuse_initial(const rg_solver *s, rg_first_bad *bad) {
-    if (rg_first_bad_lowest(bad, s->comm)) {
-        int k = (int)bad->which % 3;
-        bool moves = bad->which >= 3;
-        rg_speak(s->comm);
-        rg_fatal(RG_USAGE, "%s: initial.%s.%c: %s is not finite at (%g, %g, %g)", s->input->path,
-                 moves ? "velocity" : "displacement", "xyz"[k],
-                 rg_expr_text((moves ? s->input->initial.velocity : s->input->initial.displacement)[k]),
-                 bad -> x[0], bad -> x[1], bad -> x[2]);
-    }
-}
-
-static void set_initial(rg_solver *s) {
-    rg_first_bad bad = {.which = RG_NOWHERE};
-#pragma omp parallel
-    {
-        rg_expr *u[3], *velocity[3]; /* this thread's own */
-        for (int k = 0; k < 3; k++) {
-            u[k] = rg_expr_copy(s->input->initial.displacement[k]);
-            velocity[k] = rg_expr_copy(s->input->initial.velocity[k]);
-        }
-#pragma omp for schedule(static)
-        for (size_t slot = 0; slot < s->domain->blocks * RG_LANES; slot++) {
-            for (int n = 0; s->domain->id[slot] >= 0 && n < RG_NODES; n++) {
-                double x[3];
-                rg_node_position(s->domain->corner + 12 * slot, n, x);
-                for (int k = 0; k < 3; k++) {
-                    s->u[rg_node_index(slot, n, k)] = (rg_real)initial_value(u[k], k, x, &bad);
-                    s->velocity[rg_node_index(slot, n, k)] =
-                        (rg_real)initial_value(velocity[k], 3 + k, x, &bad);
-                }
-            }
-        }
-        for (int k = 0; k < 3; k++) {
-            rg_expr_free(u[k]);
-            rg_expr_free(velocity[k]);
-        }
-    }
-    refuse_initial(s, &bad);
-}
-
 /* The stiffening of the initial state, with faces that cannot break yet. */
 static void measure(rg_solver *s) {
     bool hold = s->model->law.form != RG_FORM_INTRINSIC;
@@ -425,7 +372,7 @@ static void measure(rg_solver *s) {
 }
 
 void rg_solver_start(rg_solver *s) {
-    set_initial(s);
+    rg_initial_fill(s);
     rg_constraints_start(s->constraints, s->u, s->velocity, s->comm);
     measure(s);
 }

@@ -157,3 +157,76 @@ def test_check_lists_what_supports_select(tmp_path):
                                    "{set: y+, direction: [1, 0, 2], displacement: 0}, {set: y-, angle: t, axis: [0, 1, 0]}, {set: x-, absorbing: true}"))
     told = [line.split(None, 1)[1] for line in launch("check", case).stdout.splitlines() if line.startswith("boundary ")]
     assert told == ["a: normal on 1 m2", "velocity along x on 1 m2", "displacement along (1, 0, 2) on 1 m2", "angle on 1 m2", "absorbing on 1 m2"]
+
+
+# ---- A body that turns ----
+
+SPIN = """
+defaults: 0
+mesh: {cells: [1, 1, 8], size: [0.25e-3, 0.25e-3, 2e-3], origin: [-0.125e-3, -0.125e-3, 0]}
+material: {model: neo-hookean, young: 200e9, poisson: 0, density: 8000}
+interface: {law: none, beta_s: 2, penalty: isotropic}
+initial: {rotation: {speed: 2e4, axis: [0, 3, 0], at: [0, 0, 1e-3]}, velocity: {z: 3}}
+time: {end: 1, safety: 0.9, steps: 1000}
+output: {fields: [], interval: 50, probes: [{name: end, at: [0.01e-3, 0.02e-3, 2e-3]}]}
+"""
+
+
+@pytest.fixture(scope="module")
+def spin_case(scratch):
+    path = scratch / "spin.yaml"
+    path.write_text(SPIN)
+    return path
+
+
+def test_a_spinning_rod_keeps_its_angular_momentum(run, figure, spin_case):
+    energy = run(spin_case).energy
+    mass = 8000 * 0.25e-3**2 * 2e-3
+    theory = mass * (0.25e-3**2 + (2e-3) ** 2) / 12 * 2e4
+    figure("spinning rod: angular momentum at the start", energy["angular_y"][0], theory=theory, bound=rounding(1e-14, 1e-6), relative=True, why=ROUNDING)
+    spin = np.stack([energy[f"angular_{axis}"] for axis in "xyz"], axis=1)
+    figure("spinning rod: change of angular momentum over 1000 steps", np.abs(spin - spin[0]).max() / theory, bound=rounding(1e-14, 1e-5), why=ROUNDING)
+    assert energy["momentum_z"][-1] == pytest.approx(3 * mass, rel=1e-6)
+
+
+def test_a_rod_spins_about_a_hub(run, figure, spin_case):
+    """Its end under w^2 z, applied at once: u = sum of the rod's modes. Coriolis' and the change of the load are of the
+    order of w over the first frequency, 5e-3 here, squared."""
+    speed, length, rate = np.sqrt(200e9 / 8000), 2e-3, 2e4
+    sets = {"initial": {"rotation": {"speed": rate, "axis": [0, 1, 0]}}, "time.steps": 300,
+            "boundary": [{"name": "hub", "set": "z-", "angle": f"{rate}*t", "axis": [0, 2, 0]}]}
+    history = run(spin_case, sets=sets).history
+    time, turned = history["time"], rate * history["time"]
+    assert turned[-1] > 0.02
+    stretch = np.sin(turned) * (0.01e-3 + history["end_ux"]) + np.cos(turned) * (length + history["end_uz"]) - length
+    theory = sum(2 * rate**2 / (length * q**4 * speed**2) * (1 - np.cos(q * speed * time)) for q in (np.arange(60) + 0.5) * np.pi / length)
+    figure("rod about a hub: displacement of its end, of the largest", np.abs(stretch - theory).max() / np.abs(theory).max(), bound=8e-4)
+
+
+def test_parts_with_states_of_their_own(run, spin_case):
+    """By place, by material and by default; the last set that has an element counts."""
+    steel = {"name": "steel", "where": "z > 1.5e-3", "model": "neo-hookean", "young": 200e9, "poisson": 0, "density": 4000}
+    sets = [{"where": "z < 1e-3", "velocity": {"y": "7 + 0*x"}}, {"material": "steel", "velocity": {"x": 5}, "displacement": {"y": 1e-9}},
+            {"where": "z < 0.5e-3", "rotation": {"speed": 1e3, "axis": [0, 0, 1]}}]
+    energy = run(spin_case, sets={"materials": [steel], "initial": {"velocity": {"z": 2}, "sets": sets}, "time.steps": 1}).energy
+    part = 8000 * 0.25e-3**2 * 0.5e-3
+    for name, theory in (("momentum_x", 5 * part / 2), ("momentum_y", 7 * part), ("momentum_z", 2 * part),
+                         ("kinetic", part / 2 * (25 / 2 + 49 + 4 + 1e6 * 0.25e-3**2 / 6))):
+        assert energy[name][0] == pytest.approx(theory, rel=rounding(1e-12, 1e-5)), name
+
+
+@pytest.mark.parametrize("initial, message", [
+    ("{rotation: {speed: 1}}", "initial.rotation.axis: missing: a body turns about it; allowed: 3 numbers"),
+    ("{rotation: {axis: [0, 0, 1]}}", "initial.rotation.axis: not used without rotation.speed"),
+    ("{sets: [{where: 1, rotation: {speed: 1, axis: [0, 0, 0]}}]}", "initial.sets[0].rotation.axis: [0, 0, 0]: has no direction"),
+    ("{sets: [{velocity: {x: 1}}]}", "initial.sets[0]: missing set, material or where; allowed: exactly one of set, material, where"),
+    ("{sets: [{set: a, where: 1}]}", "initial.sets[0]: more than one given; allowed: exactly one of set, material, where"),
+    ("{sets: [{set: a}]}", "initial.sets[0].set: a: a mesh file has volume sets, the built-in box has none; say where"),
+    ("{sets: [{material: tin}]}", "initial.sets[0].material: tin: no such material"),
+    ("{sets: [{where: z > 2}]}", "initial.sets[0]: no element is in it, or later sets have them all"),
+    ("{sets: [{where: 1, velocity: {x: 1/z}}]}", "initial.sets[0].velocity.x: 1/z is not finite at (0, 0, 0)")])
+def test_starts_that_are_refused(tmp_path, initial, message):
+    case = tmp_path / "refused.yaml"
+    case.write_text(REFUSED.format(boundary="", law="law: none") + f"initial: {initial}\n")
+    told = launch("check", case)
+    assert told.returncode == 2 and told.stderr.endswith(f"{message}\n"), told.stderr

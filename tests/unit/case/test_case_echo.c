@@ -44,6 +44,8 @@ static const char defaults[] =
     "  linear: 0\n"
     "  quadratic: 0\n"
     "mass: consistent\n"
+    "initial:\n"
+    "  sets: []\n"
     "boundary: []\n"
     "loads: []\n"
     "bodies: []\n"
@@ -249,6 +251,7 @@ static void test_everything(void **state) {
                 "  velocity:\n"
                 "    x: 1.5e3 # m/s\n"
                 "    z: \"-y\" # m/s\n"
+                "  sets: []\n"
                 "boundary:\n"
                 "  - set: \"x-\"\n"
                 "    component: y\n"
@@ -378,7 +381,7 @@ static void test_forms_and_laws(void **state) {
     for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
         expect_part(known[i][0], "  form:", "viscosity", known[i][1]);
     }
-    expect_part("interface={law: none, form: continuous}", "mass", "boundary", "mass: lumped\n");
+    expect_part("interface={law: none, form: continuous}", "mass", "initial", "mass: lumped\n");
 }
 
 static void test_interval_of_a_long_run(void **state) {

@@ -508,7 +508,7 @@ static const mistake materials[] = {
      "nx, ny, nz (Pa)\n"
      ":19:34: interface.sets[5].between: lead: no such material; allowed: names of two materials, or one "
      "twice: material, tin, zinc\n"
-     ":20:7: interface.sets[6]: 8: not a mapping of keys; allowed: list of {where, between, law, open, "
+     ":20:7: interface.sets[6]: 8: not a mapping of keys; allowed: list of {set, where, between, law, open, "
      "strength, energy, beta, friction, weibull}\n"},
     {"output:\n",
      "output:\n"

@@ -158,8 +158,9 @@ static void test_nearest_key(void **state) {
         {&rg_body_table, "velocity", "velocity"},
         {&rg_body_table, "velocity.w", NULL},
         {&rg_body_table, "a", "at"},
-        {&rg_case_table, "initial.stress", NULL},
-        {&rg_case_table, "initial.speed", NULL}, /* of a law: deeper down than the name is */
+        {&rg_case_table, "initial.tension", NULL},
+        {&rg_case_table, "initial.speed", "initial.rotation.speed"},
+        {&rg_case_table, "initial.sped", NULL}, /* deeper down than the name is */
         {&rg_case_table, "interface.ascent", "interface.bilinear.ascent"},
         {&rg_case_table, "material.strength", "interface.strength"},
         {&rg_case_table, "output.mass", "mass"},
@@ -206,9 +207,9 @@ static void test_sections(void **state) {
 /* What is not given is the first word of a choice. */
 static void test_default_words(void **state) {
     (void)state;
-    const rg_key_table *const tables[] = {&rg_case_table,    &rg_material_table, &rg_boundary_table,
-                                          &rg_load_table,    &rg_body_table,     &rg_probe_table,
-                                          &rg_face_set_table};
+    const rg_key_table *const tables[] = {&rg_case_table,     &rg_material_table,   &rg_boundary_table,
+                                          &rg_load_table,     &rg_body_table,       &rg_probe_table,
+                                          &rg_face_set_table, &rg_initial_set_table};
     for (size_t t = 0; t < sizeof tables / sizeof *tables; t++) {
         for (const rg_key *key = tables[t]->key; key < tables[t]->key + tables[t]->keys; key++) {
             assert_true(key->type != RG_KEY_CHOICE || key->fallback == 0);

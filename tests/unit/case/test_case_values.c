@@ -214,7 +214,7 @@ static const mistake keys[] = {
      "mesh:\n",
      ":2:13: initial.velocity: 3: not a mapping of keys\n"
      ":3:17: initial.displacement: [1, 2]: not a mapping of keys\n"
-     ":4:3: initial.speed: unknown key; allowed: displacement, velocity\n"},
+     ":4:3: initial.speed: unknown key; did you mean 'initial.rotation.speed'?\n"},
     {"mesh:\n",
      ": 3\n"
      "? {a: 1}\n"

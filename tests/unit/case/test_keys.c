@@ -16,9 +16,9 @@ static int print(int (*write)(FILE *, const char *), const char *prefix, char **
     return keys;
 }
 
-static const rg_key_table *const tables[] = {&rg_case_table,    &rg_material_table, &rg_boundary_table,
-                                             &rg_load_table,    &rg_body_table,     &rg_probe_table,
-                                             &rg_face_set_table};
+static const rg_key_table *const tables[] = {&rg_case_table,     &rg_material_table,   &rg_boundary_table,
+                                             &rg_load_table,     &rg_body_table,       &rg_probe_table,
+                                             &rg_face_set_table, &rg_initial_set_table};
 enum { TABLES = sizeof tables / sizeof *tables };
 
 /* Without what Markdown's tables and JSON's texts would have to escape. */

@@ -1,0 +1,56 @@
+/* Rules for the state at the start: where its sets are, and an axis with every angular velocity. */
+#include <string.h>
+
+#include "base/mem.h"
+#include "case/entry.h"
+
+void rg_rotation_rule(const rg_entry *e, const char *prefix, const rg_initial *is) {
+    char *name[2] = {rg_text_format("%srotation.speed", prefix), rg_text_format("%srotation.axis", prefix)};
+    const rg_node *speed = rg_entry_given(e, name[0]), *axis = rg_entry_given(e, name[1]);
+    if (speed != NULL && axis == NULL) {
+        rg_entry_wrong(e, name[1], speed->key_at, (rg_subject){.allowed = "3 numbers"},
+                       "missing: a body turns about it");
+    } else if (axis != NULL && speed == NULL) {
+        rg_entry_wrong(e, name[1], axis->key_at, (rg_subject){0}, "not used without rotation.speed");
+    } else if (axis != NULL && is->axis[0] == 0 && is->axis[1] == 0 && is->axis[2] == 0) {
+        char value[64];
+        rg_entry_wrong(e, name[1], axis->at, (rg_subject){.value = rg_node_line(axis, value, sizeof value)},
+                       "has no direction");
+    }
+    rg_free(name[0]);
+    rg_free(name[1]);
+}
+
+static void check_place(const rg_entry *e) {
+    static const char *const keys[] = {"set", "material", "where"};
+    const rg_node *first = NULL;
+    for (int i = 0; i < 3; i++) {
+        const rg_node *node = rg_entry_given(e, keys[i]);
+        if (node != NULL && first != NULL) {
+            rg_entry_wrong(e, NULL, node->key_at,
+                           (rg_subject){.allowed = "exactly one of set, material, where"},
+                           "more than one given");
+        }
+        first = node != NULL ? node : first;
+    }
+    const rg_node *set = rg_entry_given(e, "set"), *material = rg_entry_given(e, "material");
+    if (first == NULL) {
+        rg_entry_wrong(e, NULL, e->item->at, (rg_subject){.allowed = "exactly one of set, material, where"},
+                       "missing set, material or where");
+    } else if (set != NULL && e->ck->usage[RG_GROUP_BOX] != RG_UNUSED) {
+        rg_entry_wrong(e, "set", set->at, (rg_subject){.value = set->text},
+                       "a mesh file has volume sets, the built-in box has none; say where");
+    } else if (material != NULL && material->kind == RG_NODE_SCALAR &&
+               rg_case_find_material(e->ck->c, material->text) < 0) {
+        rg_entry_wrong(e, "material", material->at, (rg_subject){.value = material->text},
+                       "no such material");
+    }
+}
+
+void rg_initial_set_rule(rg_check *ck, const rg_node *list, int i, const char *path, bool good) {
+    rg_entry e = {ck, &list->child[i], path};
+    if (e.item->kind == RG_NODE_MAPPING && good) {
+        check_place(&e);
+        rg_rotation_rule(&e, "", &ck->c->initial_set[i].is);
+    }
+}

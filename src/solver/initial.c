@@ -1,0 +1,170 @@
+#include "solver/initial.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <string.h>
+
+#include "base/error.h"
+#include "base/first_bad.h"
+#include "base/mem.h"
+#include "base/vector.h"
+#include "case/problem.h"
+#include "domain/element.h"
+
+/* ---- Which values ---- */
+
+static bool has_element(const rg_case *c, const rg_initial_set *set, const rg_domain *d,
+                        const rg_sets *volume, size_t slot) {
+    if (set->material != NULL) {
+        return d->material[slot / RG_LANES] == rg_case_find_material(c, set->material);
+    }
+    if (set->set != NULL) {
+        return rg_sets_hold(volume, d->region[slot], rg_sets_find(volume, set->set));
+    }
+    double x[3];
+    for (int k = 0; k < 3; k++) {
+        const double *corner = d->corner + 12 * slot + k;
+        x[k] = 0.25 * (corner[0] + corner[3] + corner[6] + corner[9]);
+    }
+    double here = rg_expr_value(set->where, x, 0);
+    return !isfinite(here) || here != 0; /* what is not finite is told with the values of the set */
+}
+
+const rg_initial *rg_initial_of(const rg_case *c, const rg_domain *d, const rg_sets *volume, size_t slot,
+                                int *number) {
+    *number = c->initial_sets - 1;
+    while (*number >= 0 && !has_element(c, &c->initial_set[*number], d, volume, slot)) {
+        --*number;
+    }
+    return *number < 0 ? &c->initial : &c->initial_set[*number].is;
+}
+
+static void refuse_set(const rg_solver *s, int i, int64_t elements) {
+    const rg_initial_set *set = &s->input->initial_set[i];
+    const rg_sets *volume = &s->part->volume;
+    if (set->set != NULL && rg_sets_find(volume, set->set) < 0) {
+        const char **names = RG_NEW(const char *, (size_t)volume->count + 1);
+        char all[1024];
+        memcpy(names, volume->name, (size_t)volume->count * sizeof *names);
+        rg_speak(s->comm);
+        rg_fatal(RG_USAGE, "%s: initial.sets[%d].set: %s: %s has no such volume set; allowed: %s",
+                 s->input->path, i, set->set, s->input->mesh.file,
+                 rg_choices(set->set, names, all, sizeof all));
+    }
+    if (elements == 0) {
+        rg_speak(s->comm);
+        rg_fatal(RG_USAGE, "%s: initial.sets[%d]: no element is in it, or later sets have them all",
+                 s->input->path, i);
+    }
+}
+
+/* Number of the set of each element: [slots]; -1: of none. */
+static int16_t *choose_sets(const rg_solver *s) {
+    size_t slots = s->domain->blocks * RG_LANES;
+    int sets = s->input->initial_sets;
+    int16_t *of = RG_NEW(int16_t, slots + 1);
+    int64_t *count = RG_NEW(int64_t, (size_t)sets + 1);
+    for (int i = 0; i < sets; i++) { /* unknown ones first: they have no elements either */
+        refuse_set(s, i, 1);
+    }
+    for (size_t slot = 0; slot < slots; slot++) {
+        int number = -1;
+        if (s->domain->id[slot] >= 0) {
+            rg_initial_of(s->input, s->domain, &s->part->volume, slot, &number);
+            count[number + 1]++;
+        }
+        of[slot] = (int16_t)number;
+    }
+    MPI_Allreduce(MPI_IN_PLACE, count, sets + 1, MPI_INT64_T, MPI_SUM, s->comm);
+    for (int i = 0; i < sets; i++) {
+        refuse_set(s, i, count[i + 1]);
+    }
+    rg_free(count);
+    return of;
+}
+
+/* ---- Values ---- */
+
+/* Expressions of one thread: displacement, then velocity; of `initial`, then of each set. */
+typedef rg_expr *values[6];
+
+static values *copy_values(const rg_case *c) {
+    values *own = rg_alloc((size_t)c->initial_sets + 1, sizeof *own);
+    for (int i = -1; i < c->initial_sets; i++) {
+        const rg_initial *of = i < 0 ? &c->initial : &c->initial_set[i].is;
+        for (int k = 0; k < 3; k++) {
+            own[i + 1][k] = rg_expr_copy(of->displacement[k]);
+            own[i + 1][3 + k] = rg_expr_copy(of->velocity[k]);
+        }
+    }
+    return own;
+}
+
+static void free_values(const rg_case *c, values *own) {
+    for (int i = 0; i < 6 * (c->initial_sets + 1); i++) {
+        rg_expr_free(own[i / 6][i % 6]);
+    }
+    rg_free(own);
+}
+
+static void fill_node(rg_solver *s, int set, rg_expr *const own[6], size_t slot, int n, rg_first_bad *bad) {
+    const rg_initial *is = set < 0 ? &s->input->initial : &s->input->initial_set[set].is;
+    double x[3], value[6], arm[3], turn[3], axis[3];
+    double length = sqrt(rg_vector_dot(is->axis, is->axis));
+    rg_node_position(s->domain->corner + 12 * slot, n, x);
+    for (int k = 0; k < 6; k++) {
+        value[k] = own[k] == NULL ? 0 : rg_expr_value(own[k], x, 0);
+        if (!isfinite(value[k])) {
+#pragma omp critical
+            rg_first_bad_note(bad, 6 * (set + 1) + k, x, value[k]);
+        }
+    }
+    for (int k = 0; k < 3; k++) {
+        arm[k] = x[k] + value[k] - is->at[k];
+        axis[k] = length > 0 ? is->axis[k] / length : 0;
+    }
+    rg_vector_cross(axis, arm, turn);
+    for (int k = 0; k < 3; k++) {
+        s->u[rg_node_index(slot, n, k)] = (rg_real)value[k];
+        s->velocity[rg_node_index(slot, n, k)] = (rg_real)(value[3 + k] + is->spin * turn[k]);
+    }
+}
+
+static void refuse_values(const rg_solver *s, rg_first_bad *bad) {
+    if (rg_first_bad_lowest(bad, s->comm)) {
+        int set = (int)(bad->which / 6) - 1, k = (int)(bad->which % 3);
+        bool moves = bad->which % 6 >= 3;
+        const rg_initial *is = set < 0 ? &s->input->initial : &s->input->initial_set[set].is;
+        char path[40] = "initial";
+        if (set >= 0) {
+            snprintf(path, sizeof path, "initial.sets[%d]", set);
+        }
+        rg_speak(s->comm);
+        rg_fatal(RG_USAGE, "%s: %s.%s.%c: %s is not finite at (%g, %g, %g)", s->input->path, path,
+                 moves ? "velocity" : "displacement", "xyz"[k],
+                 rg_expr_text((moves ? is->velocity : is->displacement)[k]), bad -> x[0], bad -> x[1],
+                 bad -> x[2]);
+    }
+}
+
+void rg_initial_fill(rg_solver *s) {
+    rg_first_bad bad = {.which = RG_NOWHERE};
+    int16_t *set = choose_sets(s);
+#pragma omp parallel
+    {
+        values *own = copy_values(s->input);
+#pragma omp for schedule(static)
+        for (size_t slot = 0; slot < s->domain->blocks * RG_LANES; slot++) {
+            for (int n = 0; s->domain->id[slot] >= 0 && n < RG_NODES; n++) {
+                fill_node(s, set[slot], own[set[slot] + 1], slot, n, &bad);
+            }
+        }
+        free_values(s->input, own);
+    }
+    rg_free(set);
+    refuse_values(s, &bad);
+    if (s->assembly != NULL && s->input->initial_sets > 0) {
+        rg_assembly_mean(s->assembly, s->u);
+        rg_assembly_mean(s->assembly, s->velocity);
+    }
+}
