@@ -110,8 +110,8 @@ def test_size(tmp_path):
     middle, length = edges("box.geo", "--size", "x < 2 ? 0.2 : 0.5")
     low, high = (length[(middle[:, 0] > a) & (middle[:, 0] < b)].mean() / 1e-2 for a, b in ((0, 0.015), (0.03, 0.04)))
     assert 0.18 < low < 0.28 and 0.4 < high < 0.65
-    coarse, fine = (len(edges("ball.geo", "--curvature", n)[1]) for n in (6, 24))
-    assert fine > 10 * coarse
+    coarse, fine = (len(edges("ball.geo", "--curvature", n)[1]) for n in (6, 36))
+    assert fine > 3 * coarse
     process = launch("mesh", tmp_path / "box.geo", "-o", tmp_path / "bad.h5", "--size", "x - 1")
     assert process.returncode == 2 and "box.geo: --size: x - 1 is -1 at (0, " in process.stderr
     process = launch("mesh", mesh(tmp_path / "a.msh", SOLIDS), "-o", tmp_path / "bad.h5", "--size", 1)
