@@ -404,6 +404,7 @@ static void prepare(run *r, double *cost, MPI_Comm comm) {
     if (!r->restart) {
         rg_solver_start(r->solver);
     }
+    rg_free(r->summary.estimate.of_material);
     r->summary.estimate = rg_estimate_run(r->solver);
     r->dt_reference = r->summary.estimate.dt;
     double before = r->solver->time - r->solver->dt; /* that state had all its outputs */
@@ -514,6 +515,7 @@ int rg_run(const rg_case *c, MPI_Comm comm, const rg_run_options *options) {
     rg_progress_end(&r->progress);
     int status = conclude(r);
     close_outputs(r);
+    rg_free(r->summary.estimate.of_material);
     rg_solver_free(r->solver);
     rg_free(r);
     return status;
@@ -531,6 +533,7 @@ int rg_run_check(const rg_case *c, MPI_Comm comm) {
         rg_estimate_print(s, &estimate, stdout);
     }
     rg_affinity_print(comm, stdout);
+    rg_free(estimate.of_material);
     rg_solver_free(s);
     return RG_OK;
 }

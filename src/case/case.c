@@ -27,6 +27,10 @@ bool rg_boundaries_meet(const rg_boundary *a, const rg_boundary *b) {
     return !ends_before(a, b) && !ends_before(b, a);
 }
 
+bool rg_face_set_is_any(const rg_face_set *set) {
+    return set->names == 1 && strcmp(set->between[0], "any") == 0;
+}
+
 const rg_material_input *rg_case_material(const rg_case *c, int i) {
     return i == 0 ? &c->material : &c->other[i - 1].is;
 }

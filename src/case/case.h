@@ -101,7 +101,7 @@ typedef struct {
 } rg_other_material;
 
 /* Most materials in a case, `material` included. */
-enum { RG_MAX_MATERIALS = 32 };
+enum { RG_MAX_MATERIALS = UINT16_MAX + 1 }; /* they have numbers of 16 bits */
 
 /* Faces with properties of their own: those that `set`, `where` and `between` (NULL: no such condition)
  * select. */
@@ -109,7 +109,8 @@ typedef struct {
     char *set;      /* named set of the mesh */
     rg_expr *where; /* not 0: by their middle x, y, z (m), unit normal nx, ny, nz */
     int names;
-    char **between; /* names of the materials on both sides */
+    char *
+        *between; /* names of the materials on both sides; or "any" alone: volume sets or materials differ */
     rg_breaking breaking;
     bool open; /* broken from the start */
     /* Numbers, or where the expression beside them is no number that: of these faces (Pa, J/m^2); without an
@@ -247,6 +248,9 @@ bool rg_boundary_is_placed(const rg_boundary *b);
 
 /* Whether two entries act at the same time. */
 bool rg_boundaries_meet(const rg_boundary *a, const rg_boundary *b);
+
+/* Whether a set selects the faces between any two volume sets or materials. */
+bool rg_face_set_is_any(const rg_face_set *set);
 
 /* Input of material i (0: `material`, then the others), and its name. */
 const rg_material_input *rg_case_material(const rg_case *c, int i);

@@ -6,7 +6,7 @@
 
 /* "alumina, steel" */
 static void list_names(const rg_case *c, char *text, size_t size) {
-    const char *join = "names of two materials, or one twice: ";
+    const char *join = "any, or names of two materials, or one twice: ";
     text[0] = '\0';
     for (int m = 0; m <= c->others; m++) {
         rg_text_add(text, size, "%s%s", join, rg_case_material_name(c, m));
@@ -22,7 +22,7 @@ static void check_between(rg_check *ck, const rg_node *node, const rg_face_set *
     }
     list_names(ck->c, allowed, sizeof allowed);
     rg_subject subject = {.key = key, .value = rg_node_line(node, value, sizeof value), .allowed = allowed};
-    if (set->names != 2) {
+    if (set->names != 2 && !rg_face_set_is_any(set)) {
         rg_problem_add(ck->problems, node->at, &subject, "wrong number of entries");
     }
     for (int k = 0; k < set->names && set->names == 2; k++) {

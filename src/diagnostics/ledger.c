@@ -34,8 +34,18 @@ enum { ROW = 27 }; /* values of a row, but for the parts of the materials */
 
 enum { PART_KINETIC, PART_BULK, PART_DISSIPATED, PART };
 
+/* Materials that have sums of their own: of very many there are none, but those of all together. */
+static int told_materials(const rg_solver *s) {
+    return s->model->materials <= RG_LEDGER_MATERIALS ? s->model->materials : 1;
+}
+
 static size_t sums(const rg_solver *s) {
-    return PARTS + (size_t)(PART * s->model->materials);
+    return PARTS + (size_t)(PART * told_materials(s));
+}
+
+/* The sums of a material. */
+static rg_exact_sum *parts_of(rg_exact_sum *sum, const rg_solver *s, int material) {
+    return &sum[PARTS + PART * (material < told_materials(s) ? material : 0)];
 }
 
 static void add_all(rg_exact_sum *sum, const double *x, size_t count) {
@@ -68,9 +78,8 @@ static void add_momentum(rg_exact_sum *sum, const rg_solver *s, size_t slot) {
     }
 }
 
-/* The sums of the material of a block. */
-static rg_exact_sum *parts_of(rg_exact_sum *sum, const rg_solver *s, size_t block) {
-    return &sum[PARTS + PART * s->domain->material[block]];
+static rg_exact_sum *parts_of_block(rg_exact_sum *sum, const rg_solver *s, size_t block) {
+    return parts_of(sum, s, s->domain->material[block]);
 }
 
 static void add_released(rg_exact_sum *sum, const rg_solver *s, size_t slot) {
@@ -78,7 +87,7 @@ static void add_released(rg_exact_sum *sum, const rg_solver *s, size_t slot) {
     for (size_t k = 0; history > 0 && k < RG_RELEASED; k++) {
         double released = rg_history_value(s, slot, (size_t)(RG_GAUSS * history) + k);
         rg_exact_add(&sum[RELEASED + k], released);
-        rg_exact_add(&parts_of(sum, s, slot / RG_LANES)[PART_DISSIPATED], released);
+        rg_exact_add(&parts_of_block(sum, s, slot / RG_LANES)[PART_DISSIPATED], released);
     }
 }
 
@@ -112,8 +121,8 @@ static void add_half_kick(rg_exact_sum *sum, const rg_solver *s, const rg_tile *
 static void add_elements(rg_exact_sum *sum, const rg_solver *s, const rg_tile *t, const double *energy,
                          int all, int part) {
     add_all(&sum[all], energy, rg_tile_eblocks(t) * RG_LANES);
-    for (size_t b = 0; s->model->materials > 1 && b < rg_tile_eblocks(t); b++) {
-        add_all(&parts_of(sum, s, t->begin + b)[part], energy + b * RG_LANES, RG_LANES);
+    for (size_t b = 0; told_materials(s) > 1 && b < rg_tile_eblocks(t); b++) {
+        add_all(&parts_of_block(sum, s, t->begin + b)[part], energy + b * RG_LANES, RG_LANES);
     }
 }
 
@@ -129,7 +138,7 @@ static void element_energies(rg_solver *s, const rg_tile *t, const rg_workspace 
             add_released(sum, s, slot);
             if (s->heat != NULL) {
                 rg_exact_add(&sum[VISCOUS], s->heat[slot]);
-                rg_exact_add(&parts_of(sum, s, slot / RG_LANES)[PART_DISSIPATED], s->heat[slot]);
+                rg_exact_add(&parts_of_block(sum, s, slot / RG_LANES)[PART_DISSIPATED], s->heat[slot]);
             }
             rg_exact_add(&sum[VOLUME], s->domain->geom[rg_geom_index(slot, RG_GEOM_VOLUME)]);
             add_momentum(sum, s, slot);
@@ -153,7 +162,7 @@ static void add_areas(rg_exact_sum *sum, const rg_solver *s, size_t i) {
 static void share_out(rg_exact_sum *sum, const rg_solver *s, size_t i, double dissipated) {
     for (int k = 0; k < 2; k++) {
         int m = s->domain->beside != NULL ? s->domain->beside[i][k] : 0;
-        rg_exact_add(&sum[PARTS + PART * m + PART_DISSIPATED], 0.5 * dissipated);
+        rg_exact_add(&parts_of(sum, s, m)[PART_DISSIPATED], 0.5 * dissipated);
     }
 }
 
@@ -288,7 +297,7 @@ const rg_energy *rg_ledger_take(rg_ledger *l, rg_solver *s) {
     if (!l->begun) {
         *l = (rg_ledger){.begun = true, .start = e->total, .last = *e};
     }
-    for (int m = 0; m < s->model->materials; m++) {
+    for (int m = 0; m < told_materials(s); m++) {
         const double *part = v + PARTS + PART * m;
         l->material[m] = (rg_energy_part){part[PART_KINETIC], part[PART_BULK], part[PART_DISSIPATED]};
     }
@@ -350,7 +359,7 @@ void rg_energy_header(rg_csv *t, const rg_solver *s) {
           "external_work,total,error_rel,error_dissipated,broken_area,failed_area,momentum_x,momentum_y,"
           "momentum_z,angular_x,angular_y,angular_z",
           f);
-    for (int m = 0; s->model->materials > 1 && m < s->model->materials; m++) {
+    for (int m = 0; told_materials(s) > 1 && m < told_materials(s); m++) {
         for (int k = 0; k < PART; k++) {
             fprintf(f, ",%s_%s", parts[k], rg_case_material_name(s->input, m));
         }
@@ -362,35 +371,35 @@ void rg_energy_header(rg_csv *t, const rg_solver *s) {
 
 void rg_energy_row(rg_csv *t, const rg_ledger *l, const rg_solver *s) {
     const rg_energy *e = &l->last;
-    double row[ROW + PART * RG_MAX_MATERIALS] = {e->time,
-                                                 e->kinetic,
-                                                 e->bodies,
-                                                 e->bulk,
-                                                 e->penalty,
-                                                 e->cohesive,
-                                                 e->contact,
-                                                 e->dissipated,
-                                                 e->plastic,
-                                                 e->damage,
-                                                 e->viscous,
-                                                 e->friction,
-                                                 e->unresolved,
-                                                 e->radiated,
-                                                 e->half_kick,
-                                                 e->external,
-                                                 e->total,
-                                                 e->error,
-                                                 e->share,
-                                                 e->broken_area,
-                                                 e->failed_area,
-                                                 e->momentum[0],
-                                                 e->momentum[1],
-                                                 e->momentum[2],
-                                                 e->angular_momentum[0],
-                                                 e->angular_momentum[1],
-                                                 e->angular_momentum[2]};
+    double row[ROW + PART * RG_LEDGER_MATERIALS] = {e->time,
+                                                    e->kinetic,
+                                                    e->bodies,
+                                                    e->bulk,
+                                                    e->penalty,
+                                                    e->cohesive,
+                                                    e->contact,
+                                                    e->dissipated,
+                                                    e->plastic,
+                                                    e->damage,
+                                                    e->viscous,
+                                                    e->friction,
+                                                    e->unresolved,
+                                                    e->radiated,
+                                                    e->half_kick,
+                                                    e->external,
+                                                    e->total,
+                                                    e->error,
+                                                    e->share,
+                                                    e->broken_area,
+                                                    e->failed_area,
+                                                    e->momentum[0],
+                                                    e->momentum[1],
+                                                    e->momentum[2],
+                                                    e->angular_momentum[0],
+                                                    e->angular_momentum[1],
+                                                    e->angular_momentum[2]};
     size_t values = ROW;
-    for (int m = 0; s->model->materials > 1 && m < s->model->materials; m++) {
+    for (int m = 0; told_materials(s) > 1 && m < told_materials(s); m++) {
         row[values++] = l->material[m].kinetic;
         row[values++] = l->material[m].bulk;
         row[values++] = l->material[m].dissipated;

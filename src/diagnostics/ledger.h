@@ -42,12 +42,14 @@ typedef struct {
     double kinetic, bulk, dissipated;
 } rg_energy_part;
 
+enum { RG_LEDGER_MATERIALS = 32 };
+
 typedef struct {
     bool begun;
     double start, largest; /* total at the start, largest energy so far (J) */
     double change;         /* largest |total - start| so far (J) */
     rg_energy last;
-    rg_energy_part material[RG_MAX_MATERIALS];
+    rg_energy_part material[RG_LEDGER_MATERIALS]; /* if there are no more */
 } rg_ledger;
 
 /* The largest change of the total so far over the largest energy so far; infinite where one was no number. */
@@ -69,7 +71,8 @@ const rg_energy *rg_ledger_take(rg_ledger *l, rg_solver *s);
  * Collective. */
 double rg_first_fracture(const rg_solver *s);
 
-/* Columns of energy.csv, and a row of it: of more than one material, also the parts of each. */
+/* Columns of energy.csv, and a row of it: of more than one material, but no more
+ * than RG_LEDGER_MATERIALS, also the parts of each. */
 void rg_energy_header(rg_csv *t, const rg_solver *s);
 void rg_energy_row(rg_csv *t, const rg_ledger *l, const rg_solver *s);
 

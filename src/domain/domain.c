@@ -35,6 +35,7 @@ static void set_element(rg_domain *d, size_t slot, size_t at, const rg_element *
     memcpy(d->corner + 12 * slot, e->x, sizeof e->x);
     memcpy(d->set + 4 * slot, e->set, sizeof e->set);
     d->region[slot] = e->region;
+    d->across[slot] = e->across;
     for (int f = 0; f < RG_FACES; f++) { /* until interfaces are known */
         d->neighbour[rg_link_index(slot, f)] = rg_neighbour_link(at, f);
         d->interface[rg_link_index(slot, f)] = RG_NO_INTERFACE;
@@ -57,15 +58,16 @@ static void allocate_elements(rg_domain *d) {
     d->corner = RG_NEW(double, 12 * slots);
     d->set = RG_NEW(int32_t, 4 * slots);
     d->region = RG_NEW(int32_t, slots);
-    d->material = RG_NEW(uint8_t, d->blocks + 1);
+    d->across = RG_NEW(uint8_t, slots + 1);
+    d->material = RG_NEW(uint16_t, d->blocks + 1);
     d->geom = RG_NEW(rg_real, d->blocks * RG_GEOM_BLOCK);
     d->neighbour = RG_NEW(int32_t, d->blocks * RG_LINK_BLOCK);
     d->interface = RG_NEW(int32_t, d->blocks * RG_LINK_BLOCK);
 }
 
-/* Elements of each material among `count`. */
-static void count_materials(const rg_element *element, size_t count, size_t of[RG_MAX_MATERIALS]) {
-    memset(of, 0, RG_MAX_MATERIALS * sizeof *of);
+/* Elements of each of so many materials among `count`. */
+static void count_materials(const rg_element *element, size_t count, int materials, size_t *of) {
+    memset(of, 0, (size_t)materials * sizeof *of);
     for (size_t i = 0; i < count; i++) {
         of[element[i].material]++;
     }
@@ -76,20 +78,22 @@ static size_t whole_blocks(size_t n) {
 }
 
 /* Every tile but the mesh's last one has the same number of elements. */
-static void make_tiles(rg_domain *d, const rg_part *part, const rg_element *const element[]) {
+static void make_tiles(rg_domain *d, const rg_part *part, const rg_element *const element[], int materials) {
+    size_t *of = RG_NEW(size_t, (size_t)materials);
     d->tile_elements = part->tile;
     d->tiles = (size_t)part->tiles;
     d->boundary_tiles = (size_t)part->boundary;
     d->tile = RG_NEW(rg_tile, d->tiles);
     for (size_t t = 0; t < d->tiles; t++) {
-        size_t of[RG_MAX_MATERIALS], begin = d->blocks;
-        count_materials(element[t], (size_t)(element[t + 1] - element[t]), of);
-        for (int m = 0; m < RG_MAX_MATERIALS; m++) {
+        size_t begin = d->blocks;
+        count_materials(element[t], (size_t)(element[t + 1] - element[t]), materials, of);
+        for (int m = 0; m < materials; m++) {
             d->blocks += whole_blocks(of[m]);
         }
         d->tile[t] = (rg_tile){.first = part->tile_id[t] * part->tile, .begin = begin, .end = d->blocks};
         d->tile_blocks = d->blocks - begin > d->tile_blocks ? d->blocks - begin : d->tile_blocks;
     }
+    rg_free(of);
 }
 
 static void mark_joined(rg_domain *d, size_t slot, uint8_t joined) {
@@ -101,27 +105,30 @@ static void mark_joined(rg_domain *d, size_t slot, uint8_t joined) {
 }
 
 /* Gives the blocks of tile t their materials, and its elements their places. */
-static void place_materials(rg_domain *d, const rg_tile *t, const rg_element *element, size_t count) {
-    size_t next[RG_MAX_MATERIALS], block = 0;
-    count_materials(element, count, next);
-    for (int m = 0; m < RG_MAX_MATERIALS; m++) {
-        size_t blocks = whole_blocks(next[m]);
-        memset(d->material + t->begin + block, m, blocks);
+static void place_materials(rg_domain *d, const rg_tile *t, const rg_element *element, size_t count,
+                            int materials) {
+    size_t *next = RG_NEW(size_t, (size_t)materials), block = 0;
+    count_materials(element, count, materials, next);
+    for (int m = 0; m < materials; m++) {
+        size_t end = block + whole_blocks(next[m]);
         next[m] = block * RG_LANES;
-        block += blocks;
+        for (; block < end; block++) {
+            d->material[t->begin + block] = (uint16_t)m;
+        }
     }
     for (size_t i = 0; d->place != NULL && i < count; i++) {
         d->place[(size_t)(t - d->tile) * (size_t)d->tile_elements + i] =
             (uint16_t)next[element[i].material]++;
     }
+    rg_free(next);
 }
 
 static void fill_tile(rg_domain *d, const rg_part *part, const rg_element *element, const uint8_t *joined,
-                      size_t t) {
+                      int materials, size_t t) {
     const rg_tile *tile = &d->tile[t];
     size_t first = tile->begin * RG_LANES, count = (size_t)rg_tile_size(part, part->tile_id[t]);
     size_t slots = (tile->end - tile->begin) * RG_LANES;
-    place_materials(d, tile, element, count);
+    place_materials(d, tile, element, count, materials);
     for (size_t at = 0; at < slots; at++) {
         d->id[first + at] = -1;
     }
@@ -146,12 +153,12 @@ rg_domain *rg_domain_build(const rg_part *part, const uint8_t *joined, int rank,
     for (rg_lid t = 0; t < part->tiles; t++) {
         element[t + 1] = element[t] + rg_tile_size(part, part->tile_id[t]);
     }
-    make_tiles(d, part, element);
+    make_tiles(d, part, element, m->materials);
     allocate_elements(d);
     d->place = m->materials > 1 ? RG_NEW(uint16_t, d->tiles * (size_t)part->tile) : NULL;
 #pragma omp parallel for schedule(static)
     for (size_t t = 0; t < d->tiles; t++) {
-        fill_tile(d, part, element[t], joined, t);
+        fill_tile(d, part, element[t], joined, m->materials, t);
     }
     rg_interfaces_build(d, element, joined, rank, m);
     rg_free(element);
@@ -184,9 +191,9 @@ void rg_domain_free(rg_domain *d) {
     if (d == NULL) {
         return;
     }
-    void *blocks[] = {d->region,    d->id,       d->corner,  d->set,        d->geom, d->neighbour,
-                      d->interface, d->material, d->place,   d->beside,     d->tile, d->side[0],
-                      d->side[1],   d->igeom,    d->counted, d->shared_face};
+    void *blocks[] = {d->region,    d->across,    d->id,       d->corner,  d->set,        d->geom,
+                      d->neighbour, d->interface, d->material, d->place,   d->beside,     d->tile,
+                      d->side[0],   d->side[1],   d->igeom,    d->counted, d->shared_face};
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) {
         rg_free(blocks[i]);
     }

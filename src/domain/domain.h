@@ -38,7 +38,8 @@ typedef struct {
     double *corner;       /* [slots][4][3]: m */
     int32_t *set;         /* [slots][4]: group of surface sets, -1 for none */
     int32_t *region;      /* [slots]: group of volume sets, -1 for none */
-    uint8_t *material;    /* [blocks]: number of its material */
+    uint8_t *across;      /* [slots]: bits of faces beyond which volume sets or the material differ */
+    uint16_t *material;   /* [blocks]: number of its material */
     uint16_t *place;      /* [tiles][tile_elements]: slot in its tile, by number in it; NULL: the number */
     rg_real *geom;        /* kernels/layout.h */
     int32_t *neighbour;   /* links */
@@ -51,7 +52,7 @@ typedef struct {
 
     int32_t *side[2]; /* links of the interfaces */
     rg_real *igeom;
-    uint8_t (*beside)[2]; /* [interface]: materials of both sides, the lower first; NULL: there is but one */
+    uint16_t (*beside)[2]; /* [interface]: materials of both sides, the lower first; NULL: there is but one */
     uint8_t *counted; /* [interface]: 1 where this copy speaks for the face (owns the lower-numbered side) */
     size_t own_rows;  /* of the tile-boundary faces, padding included; `shared` more come behind */
     size_t shared;
@@ -84,7 +85,7 @@ static inline size_t rg_slot_in(const rg_domain *d, const rg_tile *t, rg_gid id)
 /* Where the blocks of tile t that are of one material with its block `begin` end; both count from the tile's
  * first block. */
 static inline size_t rg_run_end(const rg_domain *d, const rg_tile *t, size_t begin) {
-    const uint8_t *of = d->material + t->begin;
+    const uint16_t *of = d->material + t->begin;
     size_t end = begin + 1;
     while (end < t->end - t->begin && of[end] == of[begin]) {
         end++;

@@ -73,8 +73,9 @@ typedef struct {
     int8_t face[4];         /* the neighbour's local face; -1 on the surface */
     int32_t set[4];         /* group of surface sets, -1 for none */
     int32_t region;         /* group of volume sets, -1 for none */
-    uint8_t material;       /* which of the case's, once rg_materials_assign has run; until then 0 */
-    uint8_t beside[4];      /* the neighbour's; its own on the surface */
+    uint16_t material;      /* which of the case's, once rg_materials_assign has run; until then 0 */
+    uint16_t beside[4];     /* the neighbour's; its own on the surface */
+    uint8_t across; /* bits of faces beyond which it is of other volume sets or another material, likewise */
 } rg_element;
 
 /* How good a partition is. */

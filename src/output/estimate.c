@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "base/mem.h"
+#include "diagnostics/ledger.h"
 #include "base/first_bad.h"
 #include "cohesive/facts.h"
 #include "mesh/info.h"
@@ -88,7 +89,7 @@ static void find_worst_zone(const rg_solver *s, rg_estimate *e) {
     e->zone_edge = zone[1];
 }
 
-enum { DAY = 86400 };
+enum { DAY = 86400, MOST_TOLD = 32 /* materials */ };
 
 /* Seconds in the unit that a person would take. */
 static void print_seconds(double seconds, FILE *out) {
@@ -121,11 +122,14 @@ static void count_all(const rg_solver *s, int64_t count[2]) {
     MPI_Allreduce(MPI_IN_PLACE, count, 2, MPI_INT64_T, MPI_SUM, s->comm);
 }
 
-static void count_materials(const rg_solver *s, int64_t of[RG_MAX_MATERIALS]) {
+/* Elements of each; the caller frees them. */
+static int64_t *count_materials(const rg_solver *s) {
+    int64_t *of = RG_NEW(int64_t, (size_t)s->model->materials);
     for (size_t slot = 0; slot < s->domain->blocks * RG_LANES; slot++) {
         of[s->domain->material[slot / RG_LANES]] += s->domain->id[slot] >= 0;
     }
-    MPI_Allreduce(MPI_IN_PLACE, of, RG_MAX_MATERIALS, MPI_INT64_T, MPI_SUM, s->comm);
+    MPI_Allreduce(MPI_IN_PLACE, of, s->model->materials, MPI_INT64_T, MPI_SUM, s->comm);
+    return of;
 }
 
 /* Of field output, in so many steps. */
@@ -150,7 +154,6 @@ rg_estimate rg_estimate_run(const rg_solver *s) {
                      .interfaces = count[0],
                      .dofs = 3 * count[1],
                      .dt_critical = 2 / sqrt(s->omega2) * (sqrt(1 + xi * xi) - xi)};
-    count_materials(s, e.of_material);
     e.dt = c->time.safety * e.dt_critical;
     double steps = ceil(c->time.end / e.dt * (1 - 1e-12));
     if (c->time.steps > 0) {
@@ -168,6 +171,7 @@ rg_estimate rg_estimate_run(const rg_solver *s) {
     e.frame_bytes = rg_snapshots_frame_bytes(c) * (double)e.elements;
     e.seconds = 1.3 * s->pass_seconds * (double)e.steps; /* a step is a pass, the update and some output */
     find_worst_zone(s, &e);
+    e.of_material = count_materials(s); /* now that the memory has been counted */
     return e;
 }
 
@@ -203,6 +207,20 @@ static void print_material(const rg_solver *s, const rg_estimate *e, int i, FILE
     }
 }
 
+/* What is there beside the first few of very many materials. */
+static void print_others(const rg_solver *s, FILE *out) {
+    double least = INFINITY, most = 0;
+    for (int i = MOST_TOLD; i < s->model->materials; i++) {
+        double speed = rg_material_dilatational(&s->model->material[i]);
+        least = fmin(least, speed);
+        most = fmax(most, speed);
+    }
+    fprintf(out, "materials      %d others, with dilatational waves of %.1f to %.1f m/s%s\n",
+            s->model->materials - MOST_TOLD, least, most,
+            s->model->materials > RG_LEDGER_MATERIALS ? "; energy.csv has no columns for each of so many"
+                                                      : "");
+}
+
 void rg_estimate_print(const rg_solver *s, const rg_estimate *e, FILE *out) {
     const rg_case *c = s->input;
     fprintf(out, "elements       %" PRId64 " (%" PRId64 " degrees of freedom), %" PRId64 " interfaces\n",
@@ -214,8 +232,11 @@ void rg_estimate_print(const rg_solver *s, const rg_estimate *e, FILE *out) {
         fprintf(out, "partition      ");
         rg_quality_print(&s->part->quality, s->part->interfaces, out);
     }
-    for (int i = 0; i < s->model->materials; i++) {
+    for (int i = 0; i < s->model->materials && i < MOST_TOLD; i++) {
         print_material(s, e, i, out);
+    }
+    if (s->model->materials > MOST_TOLD) {
+        print_others(s, out);
     }
     for (int i = 0; i < c->boundaries; i++) {
         char words[160];

@@ -9,8 +9,8 @@
 
 typedef struct {
     int64_t elements, interfaces, dofs;
-    int64_t of_material[RG_MAX_MATERIALS]; /* elements */
-    double dt_critical, dt;                /* 2/omega, and times safety (s) */
+    int64_t *of_material;   /* [materials] elements; the caller frees it */
+    double dt_critical, dt; /* 2/omega, and times safety (s) */
     int64_t steps;
     double bytes_per_element, peak_bytes_per_element; /* fields; and with output and cracks everywhere */
     double frames, frame_bytes; /* of field output; on disk, without compression and cracks */

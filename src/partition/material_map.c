@@ -17,8 +17,9 @@ typedef struct {
     rg_part *part;
     MPI_Comm comm;
     int rank;
-    int region[RG_MAX_MATERIALS];      /* volume set of entry i; -1: it has an expression */
-    int64_t claimed[RG_MAX_MATERIALS]; /* elements that entry i claims */
+    int *region;      /* [others]: volume set of entry i; -1: it has an expression */
+    int *last;        /* [groups of volume sets]: the last entry whose set holds it, from 1 on; 0: none */
+    int64_t *claimed; /* [others]: elements that entry i claims */
 } map;
 
 /* ---- Who claims what ---- */
@@ -31,6 +32,25 @@ static _Noreturn void refuse_set(const map *m, int i) {
     rg_speak(m->comm);
     rg_fatal(RG_USAGE, "%s: materials[%d].set: %s: %s has no such volume set; allowed: %s", m->c->path, i,
              m->c->other[i].set, m->c->mesh.file, rg_choices(m->c->other[i].set, names, all, sizeof all));
+}
+
+/* Which entry has an element by its sets alone: no element asks them all. */
+static void find_last(map *m) {
+    const rg_sets *sets = &m->part->volume;
+    int *entry = RG_NEW(int, (size_t)sets->count + 1);
+    for (int i = 0; i < m->c->others; i++) {
+        if (m->region[i] >= 0) {
+            entry[m->region[i]] = i + 1;
+        }
+    }
+    for (int32_t g = 0; g < rg_sets_groups(sets); g++) {
+        int32_t count;
+        const int32_t *set = rg_sets_of(sets, &g, &count);
+        for (int32_t k = 0; k < count; k++) {
+            m->last[g] = m->last[g] > entry[set[k]] ? m->last[g] : entry[set[k]];
+        }
+    }
+    rg_free(entry);
 }
 
 static void find_regions(map *m) {
@@ -49,22 +69,69 @@ static void find_centroid(const rg_element *e, double x[3]) {
     }
 }
 
-/* Asks all entries for element k; where[i] are a thread's own expressions. */
-static void claim(map *m, rg_lid k, rg_expr *const where[], int64_t claimed[], rg_first_bad *bad) {
+/* Expressions of a thread's own, with the entries that they are of. */
+typedef struct {
+    int count, *entry;
+    rg_expr **where;
+    int64_t *claimed; /* [others] */
+} asking;
+
+static asking ask(const rg_case *c) {
+    size_t room = (size_t)c->others + 1;
+    asking a = {0, RG_NEW(int, room), RG_NEW(rg_expr *, room), RG_NEW(int64_t, room)};
+    for (int i = 0; i < c->others; i++) {
+        if (c->other[i].where != NULL) {
+            a.entry[a.count] = i;
+            a.where[a.count++] = rg_expr_copy(c->other[i].where);
+        }
+    }
+    return a;
+}
+
+static void ask_no_more(asking *a) {
+    for (int k = 0; k < a->count; k++) {
+        rg_expr_free(a->where[k]);
+    }
+    rg_free(a->entry);
+    rg_free(a->where);
+    rg_free(a->claimed);
+}
+
+/* The last entry that claims element k has it. */
+static void claim(map *m, rg_lid k, asking *a, rg_first_bad *bad) {
     rg_element *e = &m->part->element[k];
+    int last = e->region >= 0 ? m->last[e->region] : 0;
     double x[3];
     find_centroid(e, x);
-    for (int i = 0; i < m->c->others; i++) {
-        double here = where[i] != NULL ? rg_expr_value(where[i], x, 0)
-                                       : rg_sets_hold(&m->part->volume, e->region, m->region[i]);
+    for (int j = 0; j < a->count; j++) {
+        int i = a->entry[j];
+        double here = rg_expr_value(a->where[j], x, 0);
         if (!isfinite(here)) {
 #pragma omp critical
             rg_first_bad_note(bad, i, x, here);
         } else if (here != 0) {
-            e->material = (uint8_t)(i + 1);
-            claimed[i]++;
+            last = last > i + 1 ? last : i + 1;
+            a->claimed[i]++;
         }
     }
+    e->material = (uint16_t)last;
+}
+
+/* Elements of the sets that entries name. */
+static void count_sets(map *m) {
+    const rg_sets *sets = &m->part->volume;
+    int64_t *of = RG_NEW(int64_t, (size_t)sets->count + 1);
+    for (rg_lid k = 0; k < m->part->elements; k++) {
+        int32_t count;
+        const int32_t *set = rg_sets_of(sets, &m->part->element[k].region, &count);
+        for (int32_t j = 0; j < count; j++) {
+            of[set[j]]++;
+        }
+    }
+    for (int i = 0; i < m->c->others; i++) {
+        m->claimed[i] = m->region[i] >= 0 ? of[m->region[i]] : 0;
+    }
+    rg_free(of);
 }
 
 /* Of all entries and ranks the lowest place is told. */
@@ -79,31 +146,27 @@ static void refuse_values(const map *m, rg_first_bad *bad) {
 
 static void claim_all(map *m) {
     rg_first_bad bad = {.which = RG_NOWHERE};
+    find_last(m);
+    count_sets(m);
 #pragma omp parallel
     {
-        rg_expr *where[RG_MAX_MATERIALS];
-        int64_t claimed[RG_MAX_MATERIALS] = {0};
-        for (int i = 0; i < m->c->others; i++) {
-            where[i] = rg_expr_copy(m->c->other[i].where);
-        }
+        asking a = ask(m->c);
 #pragma omp for schedule(static)
         for (rg_lid k = 0; k < m->part->elements; k++) {
-            claim(m, k, where, claimed, &bad);
+            claim(m, k, &a, &bad);
         }
 #pragma omp critical
-        for (int i = 0; i < m->c->others; i++) {
-            m->claimed[i] += claimed[i];
+        for (int j = 0; j < a.count; j++) {
+            m->claimed[a.entry[j]] += a.claimed[a.entry[j]];
         }
-        for (int i = 0; i < m->c->others; i++) {
-            rg_expr_free(where[i]);
-        }
+        ask_no_more(&a);
     }
     refuse_values(m, &bad);
 }
 
 static void check_claims(map *m) {
     const rg_case *c = m->c;
-    MPI_Allreduce(MPI_IN_PLACE, m->claimed, RG_MAX_MATERIALS, MPI_INT64_T, MPI_SUM, m->comm);
+    MPI_Allreduce(MPI_IN_PLACE, m->claimed, c->others, MPI_INT64_T, MPI_SUM, m->comm);
     for (int i = 0; i < c->others; i++) {
         if (m->claimed[i] == 0) {
             const rg_other_material *o = &c->other[i];
@@ -120,8 +183,16 @@ static void check_claims(map *m) {
 typedef struct {
     rg_gid element; /* to whom */
     int8_t face;    /* ... at which of its faces */
-    uint8_t material;
+    uint16_t material;
+    int32_t region;
 } message;
+
+/* What is beyond face f of an element. */
+static void hear(rg_element *e, int f, uint16_t material, int32_t region) {
+    bool differ = material != e->material || region != e->region;
+    e->beside[f] = material;
+    e->across |= (uint8_t)(differ ? 1u << f : 0);
+}
 
 /* Element `id` of the own part; start: where its tiles begin. */
 static rg_element *element_at(const map *m, const rg_gid_map *start, rg_gid id) {
@@ -136,13 +207,13 @@ static size_t tell_own(const map *m, const rg_gid_map *start, message *out, int 
         for (int f = 0; f < 4; f++) {
             if (e->owner[f] >= 0 && e->owner[f] != m->rank) {
                 if (out != NULL) {
-                    out[count] = (message){e->neighbour[f], e->face[f], e->material};
+                    out[count] = (message){e->neighbour[f], e->face[f], e->material, e->region};
                     to[count] = e->owner[f];
                 }
                 count++;
             } else {
-                e->beside[f] =
-                    e->neighbour[f] < 0 ? e->material : element_at(m, start, e->neighbour[f])->material;
+                const rg_element *other = e->neighbour[f] < 0 ? e : element_at(m, start, e->neighbour[f]);
+                hear(e, f, other->material, other->region);
             }
         }
     }
@@ -163,7 +234,7 @@ static void tell_neighbours(const map *m) {
     message *in = RG_NEW(message, x->arriving + 1);
     rg_exchange_send(x, sizeof *out, out, in);
     for (size_t i = 0; i < x->arriving; i++) {
-        element_at(m, &start, in[i].element)->beside[in[i].face] = in[i].material;
+        hear(element_at(m, &start, in[i].element), in[i].face, in[i].material, in[i].region);
     }
     rg_exchange_free(x);
     rg_free(in);
@@ -172,14 +243,30 @@ static void tell_neighbours(const map *m) {
     rg_gid_map_free(&start);
 }
 
+static bool wants_neighbours(const rg_case *c) {
+    bool any = c->others > 0;
+    for (int i = 0; i < c->interface.sets; i++) {
+        any = any || rg_face_set_is_any(&c->interface.set[i]);
+    }
+    return any;
+}
+
 void rg_materials_assign(const rg_case *c, rg_part *part, MPI_Comm comm) {
-    if (c->others == 0) {
+    if (!wants_neighbours(c)) {
         return;
     }
-    map m = {.c = c, .part = part, .comm = comm};
+    map m = {.c = c,
+             .part = part,
+             .comm = comm,
+             .region = RG_NEW(int, (size_t)c->others + 1),
+             .last = RG_NEW(int, (size_t)rg_sets_groups(&part->volume) + 1),
+             .claimed = RG_NEW(int64_t, (size_t)c->others + 1)};
     MPI_Comm_rank(comm, &m.rank);
     find_regions(&m);
     claim_all(&m);
     check_claims(&m);
     tell_neighbours(&m);
+    rg_free(m.region);
+    rg_free(m.last);
+    rg_free(m.claimed);
 }

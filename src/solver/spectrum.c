@@ -319,8 +319,8 @@ static void set_faces(rg_solver *s, state which) {
 }
 
 /* Smallest height of the elements of each material. */
-static void smallest_heights(const rg_solver *s, double h[RG_MAX_MATERIALS]) {
-    for (int m = 0; m < RG_MAX_MATERIALS; m++) {
+static void smallest_heights(const rg_solver *s, double *h) {
+    for (int m = 0; m < s->model->materials; m++) {
         h[m] = INFINITY;
     }
     for (size_t slot = 0; slot < s->domain->blocks * RG_LANES; slot++) {
@@ -336,13 +336,13 @@ static void smallest_heights(const rg_solver *s, double h[RG_MAX_MATERIALS]) {
             *least = fmin(*least, 1 / sqrt(square));
         }
     }
-    MPI_Allreduce(MPI_IN_PLACE, h, RG_MAX_MATERIALS, MPI_DOUBLE, MPI_MIN, s->comm);
+    MPI_Allreduce(MPI_IN_PLACE, h, s->model->materials, MPI_DOUBLE, MPI_MIN, s->comm);
 }
 
 /* In units of the smallest time in which a dilatational wave crosses an element. */
 static linear_operator make_operator(rg_solver *s) {
     linear_operator op = {.s = s};
-    double h[RG_MAX_MATERIALS], shortest = INFINITY;
+    double *h = RG_NEW(double, (size_t)s->model->materials), shortest = INFINITY;
     smallest_heights(s, h);
     for (int i = 0; i < s->model->materials; i++) {
         const rg_material *m = &s->model->material[i];
@@ -354,6 +354,7 @@ static linear_operator make_operator(rg_solver *s) {
             op.scale = (m->lambda + 2 * m->mu) / m->density / (h[i] * h[i]);
         }
     }
+    rg_free(h);
     return op;
 }
 
@@ -382,7 +383,7 @@ static limit find(const rg_solver *s, double stiffest) {
     bool intrinsic = s->model->law.form == RG_FORM_INTRINSIC;
     bool closes = s->input->interface.law != RG_LAW_NONE && s->input->interface.contact != RG_CONTACT_FLUX;
     state first = intrinsic ? COHESIVE : INTACT, last = intrinsic ? COHESIVE : closes ? CLOSED : INTACT;
-    rg_material material[RG_MAX_MATERIALS];
+    rg_material *material = RG_NEW(rg_material, (size_t)s->model->materials);
     rg_model model[STATES];
     for (state which = INTACT; which < STATES; which++) {
         model[which] = linear_model(s->model, stiffest, which, material);
@@ -408,6 +409,7 @@ static limit find(const rg_solver *s, double stiffest) {
     set_faces(l, found.state);
     found.limiting = limiting_element(&op, &run[found.state], worst);
     rg_solver_free(l);
+    rg_free(material);
     return found;
 }
 

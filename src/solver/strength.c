@@ -23,13 +23,15 @@ typedef struct {
 } factors;
 
 /* Expressions of the interface and of each set, by whose number the first bad one is found. */
+enum { ANY = -1 };
+
 enum { WHERE, STRENGTH, ENERGY, BETA, FRICTION, EXPRESSIONS };
 
 /* Looks at the faces, one after the other. */
 typedef struct {
     const rg_solver *s;
     double work;       /* of separation, over strength times opening */
-    int (*between)[2]; /* [sets]: materials that a set names, the lower first; of others nothing */
+    int (*between)[2]; /* [sets]: materials that a set names, the lower first, or ANY; of others nothing */
     bool **groups;     /* [sets]: groups of faces that are in its set of the mesh; NULL: it names none */
     int64_t *claimed;  /* [sets]: faces that each has */
     rg_first_bad bad;  /* where an expression is not what it must be; which: that of `bad_number` */
@@ -65,7 +67,9 @@ static double face_uniform(int64_t seed, const double *x[RG_FCORNERS]) {
 static void find_materials(search *f) {
     const rg_case *c = f->s->input;
     for (int i = 0; i < c->interface.sets; i++) {
-        if (c->interface.set[i].between != NULL) {
+        if (rg_face_set_is_any(&c->interface.set[i])) {
+            f->between[i][0] = ANY;
+        } else if (c->interface.set[i].between != NULL) {
             int a = rg_case_find_material(c, c->interface.set[i].between[0]);
             int b = rg_case_find_material(c, c->interface.set[i].between[1]);
             f->between[i][0] = a < b ? a : b;
@@ -89,17 +93,30 @@ static void find_groups(search *f) {
     }
 }
 
+/* The element and the face that interface i of tile t has on its first side; what the mesh says of the face
+ * is the same on both. */
+static size_t first_side(const search *f, const rg_tile *t, size_t i, size_t *face) {
+    size_t link = (size_t)f->s->domain->side[0][i];
+    *face = link % RG_FACES;
+    return t->begin * RG_LANES + link / RG_FACES;
+}
+
 static bool is_in_groups(const search *f, const bool *groups, const rg_tile *t, size_t i) {
-    int32_t link = f->s->domain->side[0][i]; /* both sides have the same */
-    int32_t group =
-        f->s->domain->set[4 * (t->begin * RG_LANES + (size_t)link / RG_FACES) + (size_t)link % RG_FACES];
+    size_t face, slot = first_side(f, t, i, &face);
+    int32_t group = f->s->domain->set[4 * slot + face];
     return group >= 0 && groups[group];
 }
 
-/* Whether the materials on both sides of interface i are the two that set `number` names. */
-static bool lies_between(const search *f, int number, size_t i) {
-    static const uint8_t alone[2] = {0, 0};
-    const uint8_t *beside = f->s->domain->beside != NULL ? f->s->domain->beside[i] : alone;
+/* Whether the materials on both sides of interface i are the two that set `number` names, or anything
+ * differs.
+ */
+static bool lies_between(const search *f, int number, const rg_tile *t, size_t i) {
+    static const uint16_t alone[2] = {0, 0};
+    if (f->between[number][0] == ANY) {
+        size_t face, slot = first_side(f, t, i, &face);
+        return (f->s->domain->across[slot] >> face & 1) != 0;
+    }
+    const uint16_t *beside = f->s->domain->beside != NULL ? f->s->domain->beside[i] : alone;
     return f->between[number][0] == beside[0] && f->between[number][1] == beside[1];
 }
 
@@ -114,7 +131,7 @@ static bool has(search *f, int number, const rg_tile *t, size_t i, const double 
     if (!isfinite(here)) {
         rg_first_bad_note(&f->bad, bad_number(number, WHERE), middle, here);
     }
-    return here != 0 && (set->between == NULL || lies_between(f, number, i));
+    return here != 0 && (set->between == NULL || lies_between(f, number, t, i));
 }
 
 /* Value of an expression at a face, or the number. */
@@ -245,9 +262,10 @@ static void refuse_empty_sets(const search *look) {
             rg_speak(look->s->comm);
             const char *named = set->set == NULL || set->where != NULL ? "" : set->set;
             rg_fatal(RG_USAGE, "%s: interface.sets[%d]: no face is in it%s%s", c->path, i,
-                     set->where != NULL ? ", where: "
-                     : set->set != NULL ? " that lies between elements, set: "
-                                        : " between its materials",
+                     set->where != NULL        ? ", where: "
+                     : set->set != NULL        ? " that lies between elements, set: "
+                     : rg_face_set_is_any(set) ? " between volume sets or materials"
+                                               : " between its materials",
                      set->where != NULL ? rg_expr_text(set->where) : named);
         }
     }

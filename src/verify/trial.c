@@ -26,7 +26,9 @@ rg_trial *rg_trial_begin(const char *text, const rg_verify_change *change, MPI_C
     t->input = read(text, change->count, change->set);
     t->solver = rg_solver_make(t->input, comm);
     rg_spectrum(t->solver);
-    t->dt = rg_estimate_run(t->solver).dt;
+    rg_estimate e = rg_estimate_run(t->solver);
+    rg_free(e.of_material);
+    t->dt = e.dt;
     rg_solver_start(t->solver);
     return t;
 }

@@ -1,5 +1,6 @@
 """Mesh files: imports in every format that Gmsh here writes, the meshes of bench/examples, runs from a file."""
 
+import json
 import re
 import shutil
 import subprocess
@@ -93,6 +94,61 @@ def face_areas(c):
     """[elements][4]: area of the face opposite each corner."""
     p, q, r = ([c[:, face[i]] for face in ([1, 2, 3], [0, 2, 3], [0, 1, 3], [0, 1, 2])] for i in range(3))
     return np.stack([np.linalg.norm(np.cross(b - a, d - a), axis=1) / 2 for a, b, d in zip(p, q, r)], axis=1)
+
+
+# ---- Polycrystals ----
+
+
+def polycrystal(path, grains, cells):
+    """A cube of 1 mm of cells^3 cubes, whose tetrahedra belong to the nearest of so many random points; as VTK."""
+    random = np.random.default_rng(grains)
+    index = np.arange((cells + 1) ** 3).reshape((cells + 1,) * 3)
+    corner = index[:-1, :-1, :-1].ravel()
+    step = [(cells + 1) ** 2, cells + 1, 1]
+    paths = [np.cumsum([0, *(step[k] for k in order)]) for order in ((0, 1, 2), (0, 2, 1), (1, 0, 2), (1, 2, 0), (2, 0, 1), (2, 1, 0))]
+    tets = np.concatenate([corner[:, None] + p for p in paths])
+    x = np.stack(np.unravel_index(index.ravel(), index.shape), axis=1) / cells
+    seeds = random.random((grains, 3))
+    middle = x[tets].mean(axis=1)
+    grain = np.argmin(((middle[:, None] - seeds) ** 2).sum(axis=2), axis=1)
+    with open(path, "w") as file:
+        file.write(f"# vtk DataFile Version 4.2\ngrains\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS {len(x)} double\n")
+        np.savetxt(file, x, "%.17g")
+        file.write(f"CELLS {len(tets)} {5 * len(tets)}\n")
+        np.savetxt(file, np.column_stack([np.full(len(tets), 4), tets]), "%d")
+        file.write(f"CELL_TYPES {len(tets)}\n" + "10\n" * len(tets) + f"CELL_DATA {len(tets)}\nSCALARS grain int\n")
+        np.savetxt(file, grain, "%d")
+    return tets, grain
+
+
+@pytest.mark.parametrize("grains, cells", [(20, 4), (1000, 9)])
+def test_polycrystal(run, tmp_path_factory, grains, cells):
+    """A material for each grain, and boundaries of grains that are weaker: the same bits on any ranks."""
+    folder = tmp_path_factory.mktemp("grains")
+    tets, grain = polycrystal(folder / "grains.vtk", grains, cells)
+    names_of = sorted(set(grain))
+    file, _ = convert(folder / "grains.vtk", folder / "grains.h5", "--unit", "mm")
+    assert names(file, "volume") == [f"grain.{g}" for g in names_of] and len(names_of) > 0.8 * grains
+    glass = {"model": "neo-hookean", "poisson": 0.2, "density": 2500}
+    boundary = [{"set": "none"}][:0]
+    case = folder / "grains.yaml"
+    case.write_text(json.dumps({
+        "mesh": {"file": "grains.h5"}, "material": {**glass, "young": 70e9},
+        "materials": [{**glass, "name": f"g{g}", "set": f"grain.{g}", "young": 70e9 * (1 + g / grains)} for g in names_of],
+        "interface": {"law": "linear", "strength": 1e9, "energy": 10, "sets": [{"between": ["any"], "strength": 1e6}]},
+        "initial": {"velocity": {"x": "1e4*x"}}, "boundary": boundary, "time": {"end": 1, "steps": 30}, "output": {"fields": ["material", "crack"]}}))
+    one, two = run(case), run(case, ranks=2, threads=2)
+    assert one.summary["state_hash"] == two.summary["state_hash"]
+    assert [m["elements"] for m in one.summary["materials"]] == [0, *np.bincount(grain)[names_of]]
+    assert ("bulk_g3" in one.energy.dtype.names) == (grains == 20)
+    faces = np.sort(tets[:, [[0, 1, 2], [0, 1, 3], [0, 2, 3], [1, 2, 3]]].reshape(-1, 3), axis=1)
+    of = np.repeat(grain, 4)
+    order = np.lexsort(faces.T)
+    twice = (faces[order][1:] == faces[order][:-1]).all(axis=1)
+    between = (twice & (of[order][1:] != of[order][:-1])).sum()
+    assert 0 < one.summary["broken_faces"] <= between if "broken_faces" in one.summary else one.energy["broken_area"][-1] > 0
+    told = launch("check", case).stdout
+    assert ("others, with dilatational waves of" in told) == (grains == 1000)
 
 
 # ---- Formats ----

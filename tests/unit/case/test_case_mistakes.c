@@ -21,7 +21,7 @@
 #define CERAMIC        ": not used, because material.model is neo-hookean; it belongs to deshpande-evans\n"
 #define NAMES          "allowed: letters, digits, _ and -; unique in history.csv\n"
 #define MATERIAL_NAMES "allowed: letters, digits, _ and -; unique among materials\n"
-#define PAIR           "allowed: names of two materials, or one twice: material, steel"
+#define PAIR           "allowed: any, or names of two materials, or one twice: material, steel"
 #define UNUSED         ": not used, because interface.law is none\n"
 #define BY_FORM        ": not used, because interface.form is intrinsic\n"
 #define JOINED         ": not used, because interface.form is continuous, without interface.faces\n"

@@ -23,7 +23,7 @@ static const double origin[3] = {-1e-3, 0, 2e-3}, size[3] = {4e-3, 6e-3, 2e-3};
 static const int tile_sizes[] = {1, 5, 8, 24, 64, 100, 256, 360, 1000};
 enum { TILE_SIZES = sizeof tile_sizes / sizeof tile_sizes[0] };
 
-enum { LAST = RG_MAX_MATERIALS - 1 };
+enum { MANY = 300, LAST = MANY - 1 };
 static const rg_material matter[] = {[0] = {.lambda = 1.2e11, .mu = 0.8e11},
                                      [1] = {.lambda = 0.3e11, .mu = 0.1e11},
                                      [LAST] = {.lambda = 2e11, .mu = 3e11}};
@@ -31,7 +31,7 @@ static const rg_material matter[] = {[0] = {.lambda = 1.2e11, .mu = 0.8e11},
 /* One material; three, the last of all among them, in turn among the elements, the second one rarely. */
 static const rg_interface_material materials[] = {{1, matter, 4, RG_PENALTY_ELASTIC},
                                                   {1, matter, 4, RG_PENALTY_ISOTROPIC},
-                                                  {RG_MAX_MATERIALS, matter, 4, RG_PENALTY_ELASTIC}};
+                                                  {MANY, matter, 4, RG_PENALTY_ELASTIC}};
 enum { MATERIALS = sizeof materials / sizeof *materials };
 
 static int material_of(const rg_interface_material *m, rg_gid e) {
@@ -51,9 +51,9 @@ static setup setup_make(int tile, const rg_interface_material *material) {
     s.part = rg_part_distribute(s.mesh, tile, MPI_COMM_SELF);
     for (rg_lid i = 0; i < s.part->elements; i++) {
         rg_element *e = &s.part->element[i];
-        e->material = (uint8_t)material_of(material, e->id);
+        e->material = (uint16_t)material_of(material, e->id);
         for (int f = 0; f < RG_FACES; f++) {
-            e->beside[f] = (uint8_t)material_of(material, e->neighbour[f]);
+            e->beside[f] = (uint16_t)material_of(material, e->neighbour[f]);
         }
     }
     s.domain = rg_domain_build(s.part, NULL, 0, material);
@@ -164,7 +164,7 @@ static void check_runs(const setup *s) {
         size_t end = 0, blocks = d->tile[t].end - d->tile[t].begin;
         for (size_t begin = 0; begin < blocks; begin = end) {
             end = rg_run_end(d, &d->tile[t], begin);
-            const uint8_t *of = d->material + d->tile[t].begin;
+            const uint16_t *of = d->material + d->tile[t].begin;
             const rg_gid *id = d->id + d->tile[t].begin * RG_LANES;
             assert_true(end > begin && end <= blocks && (begin == 0 || of[begin - 1] < of[begin]));
             for (size_t at = begin * RG_LANES; at < end * RG_LANES; at++) {

@@ -137,9 +137,8 @@ static void check_counts(void) {
         }
     }
     report(e.elements == 144 && e.dofs == 30 * 144 && e.interfaces == faces, "estimate", "counts");
-    report(e.of_material[0] == 144 - steel && e.of_material[1] == steel && steel > 20 &&
-               e.of_material[2] == 0,
-           "estimate", "elements of each material");
+    report(e.of_material[0] == 144 - steel && e.of_material[1] == steel && steel > 20, "estimate",
+           "elements of each material");
     double all[3] = {sum[0], sum[1], output};
     MPI_Allreduce(MPI_IN_PLACE, all, 3, MPI_DOUBLE, MPI_SUM, MPI_COMM_WORLD);
     report(near(e.bytes_per_element, (all[0] - all[1]) / 144) &&
@@ -248,7 +247,7 @@ static void check_too_many(void) {
 static const rg_estimate plain = {.elements = 1234,
                                   .interfaces = 2345,
                                   .dofs = 37020,
-                                  .of_material = {1000, 234},
+                                  .of_material = (int64_t[]){1000, 234},
                                   .dt_critical = 2e-9,
                                   .dt = 1e-9,
                                   .steps = 1001,
@@ -473,7 +472,7 @@ static bool check_claims(void) {
     rg_other_material other[2] = {{.is = {.name = (char[]){"steel"}}}, {.is = {.name = (char[]){"glue"}}}};
     rg_case c = {.path = (char[]){"a.yaml"}, .others = 2, .other = other};
     c.material.name = (char[]){"glass"};
-    rg_estimate e = {.of_material = {3, 2, 1}};
+    rg_estimate e = {.of_material = (int64_t[]){3, 2, 1}};
     warnings = 0;
     rg_estimate_warn(&c, &e);
     bool good = warnings == 0;

@@ -129,10 +129,11 @@ static int fresh(void **state) {
                                   .failed_area = 1.25,
                                   .momentum = {21, 22, 23},
                                   .angular_momentum = {31, 32, 33}}};
+    static int64_t of_material[] = {900, 100};
     summary = (rg_summary){.estimate = {.elements = 1000,
                                         .interfaces = 2000,
                                         .dofs = 30000,
-                                        .of_material = {900, 100},
+                                        .of_material = of_material,
                                         .dt_critical = 4e-9,
                                         .bytes_per_element = 3456},
                            .first_step = 20,

@@ -59,7 +59,7 @@ static void check_claims(const rg_mesh *m, int tile) {
                                   {.where = expression("z > 4.1 && y < 0.7")}};
     rg_case c = {.path = (char[]){"a.yaml"}, .others = 3, .other = other};
     rg_part *part = rg_part_distribute(rank == 0 ? m : NULL, tile, MPI_COMM_WORLD);
-    bool own = true, beside = true;
+    bool own = true, beside = true, across = true;
     int seen[4] = {0};
     rg_materials_assign(&c, part, MPI_COMM_WORLD);
     for (rg_lid i = 0; i < part->elements; i++) {
@@ -69,11 +69,15 @@ static void check_claims(const rg_mesh *m, int tile) {
         for (int f = 0; f < 4; f++) {
             rg_gid other_id = m->neighbour[4 * e->id + f];
             beside = beside && e->beside[f] == expected_material(m, other_id < 0 ? e->id : other_id);
+            bool differ = other_id >= 0 && (expected_material(m, other_id) != expected_material(m, e->id) ||
+                                            m->region[other_id] != m->region[e->id]);
+            across = across && (e->across >> f & 1) == differ;
         }
     }
     MPI_Allreduce(MPI_IN_PLACE, seen, 4, MPI_INT, MPI_SUM, MPI_COMM_WORLD);
     report(own && seen[0] > 0 && seen[1] > 0 && seen[2] > 0 && seen[3] > 0, "box", "materials");
     report(beside, "box", "materials of neighbours");
+    report(across, "box", "where sets or materials differ");
     report(rg_sets_find(&part->volume, "core") == 0 && rg_sets_find(&part->volume, "shell") == 1 &&
                rg_sets_find(&part->volume, "cor") == -1 && rg_sets_find(&part->surface, "x-") == 0 &&
                rg_sets_find(&part->surface, "z+") == 5 && rg_sets_find(&part->surface, "core") == -1,
@@ -95,6 +99,47 @@ static void check_claims(const rg_mesh *m, int tile) {
     rg_part_free(part);
     rg_expr_free(other[0].where);
     rg_expr_free(other[2].where);
+}
+
+/* More grains than a byte counts, each a set with a material of its own; without materials the boundaries of
+ * grains are known where an entry of interface.sets asks for them. */
+static void check_grains(void) {
+    enum { GRAINS = 300 };
+    rg_mesh *m = rg_mesh_box(cells, origin, size, 0.1, 3);
+    m->region = RG_NEW(int32_t, (size_t)m->elements);
+    rg_other_material other[GRAINS] = {{.set = NULL}};
+    for (int g = 0; g < GRAINS; g++) {
+        char name[16];
+        snprintf(name, sizeof name, "grain.%d", g);
+        rg_sets_add(&m->volume, name);
+        other[g].set = m->volume.name[g];
+    }
+    for (rg_gid e = 0; e < m->elements; e++) {
+        m->region[e] = (int32_t)(e * 7 / 11 % GRAINS);
+    }
+    char *any[] = {(char[]){"any"}};
+    rg_face_set set = {.names = 1, .between = any};
+    for (int own = 0; own < 2; own++) {
+        rg_case c = {.path = (char[]){"a.yaml"}, .others = own ? GRAINS : 0, .other = other};
+        c.interface.sets = own ? 0 : 1;
+        c.interface.set = &set;
+        rg_part *part = rg_part_distribute(rank == 0 ? m : NULL, 25, MPI_COMM_WORLD);
+        rg_materials_assign(&c, part, MPI_COMM_WORLD);
+        bool right = true, across = true;
+        for (rg_lid i = 0; i < part->elements; i++) {
+            const rg_element *e = &part->element[i];
+            right = right && e->material == (own ? m->region[e->id] + 1 : 0);
+            for (int f = 0; f < 4; f++) {
+                rg_gid other_id = m->neighbour[4 * e->id + f];
+                bool differ = other_id >= 0 && m->region[other_id] != m->region[e->id];
+                across = across && (e->across >> f & 1) == differ;
+            }
+        }
+        report(right, "grains", own ? "a material each" : "one material");
+        report(across, "grains", "their boundaries");
+        rg_part_free(part);
+    }
+    rg_mesh_free(m);
 }
 
 /* Whether rank 0 ends the run with these words; the others wait for it, which rank 0 lets them do no longer
@@ -167,6 +212,7 @@ int main(int argc, char **argv) {
     check_claims(m, 25);
     rg_mesh_free(m);
     report(rg_alloc_blocks() == 0, "memory", "all blocks are given back");
+    check_grains();
     check_refusals();
     return finish();
 }

@@ -13,6 +13,8 @@
 #include "base/hash.h"
 #include "case/case.h"
 #include "case/read.h"
+#include "base/mem.h"
+#include "partition/material_map.h"
 #include "partition/mesh_case.h"
 #include "solver/setup.h"
 #include "solver/tile.h"
@@ -403,6 +405,45 @@ static void test_named(void **state) {
     rg_case_free(c);
 }
 
+/* Between any two grains. */
+static void test_grains(void **state) {
+    (void)state;
+    const char *const set[] = {
+        "interface.sets=[{between: [any], strength: 200e6}, {between: [any], where: z > 0, "
+        "strength: 100e6}]"};
+    rg_case *c = read_case(1, set);
+    rg_mesh *mesh = rg_mesh_of_case(c);
+    mesh->region = rg_alloc((size_t)mesh->elements, sizeof *mesh->region);
+    rg_sets_add(&mesh->volume, "a");
+    rg_sets_add(&mesh->volume, "b");
+    for (rg_gid e = 0; e < mesh->elements; e++) {
+        mesh->region[e] = (int32_t)(e / 7 % 3) - 1;
+    }
+    rg_part *part = rg_part_distribute(mesh, 96, MPI_COMM_SELF);
+    rg_materials_assign(c, part, MPI_COMM_SELF);
+    rg_solver *s = rg_solver_make_from_part(c, part, MPI_COMM_SELF);
+    size_t seen[3] = {0};
+    for (size_t t = 0; t < s->domain->tiles; t++) {
+        const rg_tile *tile = &s->domain->tile[t];
+        for (size_t i = tile->ibegin * RG_LANES; i < tile->iend * RG_LANES; i++) {
+            int32_t link = s->domain->side[0][i];
+            face f = face_of(s, tile, i);
+            if (f.area > 0) {
+                rg_gid a = s->domain->id[tile->begin * RG_LANES + (size_t)link / RG_FACES];
+                rg_gid b = mesh->neighbour[4 * a + link % RG_FACES];
+                int which = a / 7 % 3 == b / 7 % 3 ? 0 : f.middle[2] > 0 ? 2 : 1;
+                static const double strength[] = {1, 0.5, 0.25};
+                assert_true(fabs(f.strength - strength[which]) < 1e-6);
+                seen[which]++;
+            }
+        }
+    }
+    assert_true(seen[0] > 0 && seen[1] > 0 && seen[2] > 0);
+    rg_solver_free(s);
+    rg_mesh_free(mesh);
+    rg_case_free(c);
+}
+
 /* ---- Sets that are none ---- */
 
 static const char *asked;
@@ -454,6 +495,8 @@ static void test_empty(void **state) {
         const char *sets, *words;
     } wrong[] = {
         {"interface.sets=[{where: z > 1, energy: 1}]", "interface.sets[0]: no face is in it, where: z > 1\n"},
+        {"interface.sets=[{between: [any], energy: 1}]",
+         "interface.sets[0]: no face is in it between volume sets or materials\n"},
         {"interface.sets=[{set: x-, energy: 1}]",
          "interface.sets[0]: no face is in it that lies between elements, set: x-\n"},
         {"interface.sets=[{where: 1, energy: 1}, {set: weak, energy: 1}]",
@@ -484,12 +527,19 @@ static void test_uniform(void **state) {
 
 int main(int argc, char **argv) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_weibull),           cmocka_unit_test(test_seed_and_keep),
-        cmocka_unit_test(test_numbers),           cmocka_unit_test(test_formula),
-        cmocka_unit_test(test_without_softening), cmocka_unit_test(test_sets),
-        cmocka_unit_test(test_properties),        cmocka_unit_test(test_named),
-        cmocka_unit_test(test_expressions),       cmocka_unit_test(test_empty),
-        cmocka_unit_test(test_uniform),           cmocka_unit_test(test_not_finite),
+        cmocka_unit_test(test_weibull),
+        cmocka_unit_test(test_seed_and_keep),
+        cmocka_unit_test(test_numbers),
+        cmocka_unit_test(test_formula),
+        cmocka_unit_test(test_without_softening),
+        cmocka_unit_test(test_sets),
+        cmocka_unit_test(test_properties),
+        cmocka_unit_test(test_named),
+        cmocka_unit_test(test_grains),
+        cmocka_unit_test(test_expressions),
+        cmocka_unit_test(test_empty),
+        cmocka_unit_test(test_uniform),
+        cmocka_unit_test(test_not_finite),
     };
     omp_set_num_threads(1); /* a child has none of its parent's threads */
     MPI_Init(&argc, &argv);

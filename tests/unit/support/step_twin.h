@@ -9,6 +9,8 @@
 #include "mesh/mesh.h"
 
 /* A rigid body: in the middle of a step, and as it is seen at the time of the forces. */
+enum { TWIN_MATERIALS = 8 }; /* at most */
+
 typedef struct {
     double mass, direction[3];
     double x[3], v[3], x_now[3], v_now[3], force[3];
@@ -28,8 +30,8 @@ typedef struct {
     rg_gradient gradient;
     bool joined;                     /* joined: elements share nodes */
     double mass[RG_NODES][RG_NODES]; /* mass matrix of an element over its mass */
-    rg_material material[RG_MAX_MATERIALS];
-    size_t begin[RG_MAX_MATERIALS + 1]; /* blocks of each material */
+    rg_material material[TWIN_MATERIALS];
+    size_t begin[TWIN_MATERIALS + 1]; /* blocks of each material */
     size_t elements, blocks, interfaces, iblocks;
     int *of;       /* [elements]: material */
     size_t *slot;  /* [elements]: where it lies, its number in the mesh being the index */
