@@ -29,6 +29,9 @@ static const char usage[] =
     "         --unit U        lengths of IN are in m, cm, mm, um, nm, in or ft; or\n"
     "         --scale S       S: m per unit of IN; STEP and IGES say their own unit\n"
     "         --merge D       nodes as near as D (in the unit of IN) to one another become one\n"
+    "         --extrude T[,N] a flat mesh of triangles becomes a plate of thickness T (in the unit of IN), "
+    "in\n"
+    "                         N layers; its edges are faces then, and there are sets bottom and top\n"
     "         --split         cuts hexahedra, wedges and pyramids into tetrahedra\n"
     "         --size D        elements of a geometry: their size, a number or an expression in x, y, z (in\n"
     "                         the unit of IN); --curvature N: N elements at least around a full turn\n"
@@ -68,6 +71,24 @@ static double read_unit(const char *text) {
     complain("--unit is one of m, cm, mm, um, nm, in and ft, not", text);
 }
 
+/* THICKNESS[,LAYERS] */
+static void read_extrusion(rg_mesh_arguments *a, const char *text) {
+    char *end;
+    double thickness = strtod(text, &end);
+    bool good = end != text && thickness > 0 && isfinite(thickness);
+    long layers = 1;
+    if (good && *end == ',') {
+        const char *number = end + 1;
+        layers = strtol(number, &end, 10);
+        good = end != number;
+    }
+    if (!good || *end != '\0' || layers < 1 || layers > 100000) {
+        complain("--extrude: a thickness > 0, and perhaps a comma and a number of layers, not", text);
+    }
+    a->how.thickness = thickness;
+    a->how.layers = (int)layers;
+}
+
 static rg_expr *read_size(const char *text) {
     char *why = NULL;
     rg_expr *size = rg_expr_new(text, &why);
@@ -95,6 +116,8 @@ static void read_option(rg_mesh_arguments *a, const char *option, const char *va
         a->unit = value;
     } else if (strcmp(option, "--merge") == 0) {
         a->how.merge = read_number(option, value);
+    } else if (strcmp(option, "--extrude") == 0) {
+        read_extrusion(a, value);
     } else if (strcmp(option, "--size") == 0) {
         a->size = read_size(value);
     } else if (strcmp(option, "--curvature") == 0) {
@@ -132,14 +155,15 @@ static bool is_text(const char *path) {
 
 /* An option that says something of an import; NULL: none is given. */
 static const char *import_option(const rg_mesh_arguments *a) {
-    return a->improve         ? "--improve"
-           : a->how.split     ? "--split"
-           : a->how.merge > 0 ? "--merge"
-           : a->unit != NULL  ? "--unit"
-           : a->how.scale > 0 ? "--scale"
-           : a->size != NULL  ? "--size"
-           : a->curvature > 0 ? "--curvature"
-                              : NULL;
+    return a->improve             ? "--improve"
+           : a->how.split         ? "--split"
+           : a->how.thickness > 0 ? "--extrude"
+           : a->how.merge > 0     ? "--merge"
+           : a->unit != NULL      ? "--unit"
+           : a->how.scale > 0     ? "--scale"
+           : a->size != NULL      ? "--size"
+           : a->curvature > 0     ? "--curvature"
+                                  : NULL;
 }
 
 static void check_together(const rg_mesh_arguments *a) {
@@ -197,6 +221,7 @@ rg_mesh_arguments rg_mesh_arguments_read(int argc, char **argv, int first) {
     check_together(&a);
     a.how.scale = a.unit != NULL ? read_unit(a.unit) : a.how.scale > 0 ? a.how.scale : 1;
     a.how.merge *= a.how.scale;
+    a.how.thickness *= a.how.scale;
     return a;
 }
 

@@ -10,11 +10,11 @@ _rhegma() {
         ;;
     -o | --restart) COMPREPLY=($(compgen -d -- "$word")) && return ;;
     --unit) COMPREPLY=($(compgen -W "m cm mm um nm in ft" -- "$word")) && return ;;
-    --walltime | --scale | --merge | --size | --curvature) return ;;
+    --walltime | --scale | --merge | --extrude | --size | --curvature) return ;;
     esac
     case $command in
     run) options+=" --restart --overwrite --walltime" ;;
-    mesh) options="-o --unit --scale --merge --split --size --curvature --improve --set --info --case --partition --help" ;;
+    mesh) options="-o --unit --scale --merge --extrude --split --size --curvature --improve --set --info --case --partition --help" ;;
     keys) options="--markdown --schema --help" ;;
     verify) options="--help" ;;
     esac

@@ -10,7 +10,11 @@ static void body(const uint8_t *data, size_t size) {
     const char *path = rg_fuzz_scratch();
     FILE *f = fopen(path, "wb");
     rg_fuzz_require(f != NULL && fwrite(data, 1, size, f) == size && fclose(f) == 0, "the scratch file");
-    const rg_import_how how = {.scale = 1e-3, .split = size % 2 == 0, .merge = size % 3 == 0 ? 1e-3 : 0};
+    const rg_import_how how = {.scale = 1e-3,
+                               .split = size % 2 == 0,
+                               .merge = size % 3 == 0 ? 1e-3 : 0,
+                               .thickness = size % 5 == 0 ? 1 : 0,
+                               .layers = 2};
     rg_mesh *mesh = size > 0 && data[0] == '<' ? rg_vtu_read(path, &how) : rg_vtk_read(path, &how);
     rg_mesh_check_elements(mesh, path);
     rg_mesh_sort(mesh);

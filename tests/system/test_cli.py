@@ -110,7 +110,7 @@ HELP = {"": "run check keys mesh verify --version --help",
         "check": "--set mpirun OMP_NUM_THREADS RHEGMA_ISA",
         "verify": "theory mpirun",
         "keys": "PREFIX --markdown --schema yaml-language-server expressions",
-        "mesh": "-o --scale --unit --merge --split --size --curvature --improve --info --case --partition --set"}
+        "mesh": "-o --scale --unit --merge --extrude --split --size --curvature --improve --info --case --partition --set"}
 
 
 @pytest.mark.parametrize("arguments", [["--help"], ["-h"], ["run", "--help"], ["check", "a.yaml", "-h"], ["verify", "--help"],

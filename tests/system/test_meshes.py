@@ -96,6 +96,47 @@ def face_areas(c):
     return np.stack([np.linalg.norm(np.cross(b - a, d - a), axis=1) / 2 for a, b, d in zip(p, q, r)], axis=1)
 
 
+# ---- Plates ----
+
+SHEET = """
+SetFactory("OpenCASCADE");
+Mesh.MeshSizeMax = 0.3;
+Rectangle(1) = {0, 0, 0, 2, 1};
+Rectangle(2) = {2, 0, 0, 1, 1};
+BooleanFragments{ Surface{1}; Delete; }{ Surface{2}; Delete; }
+Physical Surface("steel") = {1};
+Physical Surface("brass") = {2};
+left[] = Curve In BoundingBox{-0.1, -0.1, -0.1, 0.1, 1.1, 0.1};
+weld[] = Curve In BoundingBox{1.9, -0.1, -0.1, 2.1, 1.1, 0.1};
+Physical Curve("left") = left[];
+Physical Curve("weld") = weld[];
+"""
+SHEETS = [(".geo", [], ["steel", "brass", "left", "weld"]), (".msh", [], ["steel", "brass", "left", "weld"]),
+          (".inp", [], ["steel", "brass", "left", "weld"]), (".unv", [], ["steel", "brass", "left", "weld"]),
+          (".vtk", ["-bin"], [f"CellEntityIds.{n}" for n in (1, 2, 3, 4)])]
+
+
+@needs_gmsh
+@pytest.mark.parametrize("suffix, options, sets", SHEETS, ids=lambda v: v if type(v) is str else "")
+def test_extrude(tmp_path, suffix, options, sets):
+    """A flat mesh of two materials becomes a plate of three layers, whatever the format."""
+    source = tmp_path / f"sheet{suffix}"
+    geo = tmp_path / "sheet.geo"
+    geo.write_text(SHEET)
+    if suffix != ".geo":
+        subprocess.run([GMSH, "-2", geo, *options, "-o", source], capture_output=True, check=True, timeout=300)
+    file, said = convert(source, tmp_path / "plate.h5", "--extrude", "0.6,3", "--unit", "cm")
+    assert "faces of surface sets lie between elements" in said
+    c = corners(file)
+    for name, volume in zip(sets[:2], (1.2e-6, 0.6e-6)):
+        assert volumes(c)[in_set(file, "volume", name)].sum() == pytest.approx(volume, rel=1e-9)
+    areas, outside = face_areas(c), file["neighbour"][:] < 0
+    for name, area, inside in ((sets[2], 0.6e-4, False), (sets[3], 2 * 0.6e-4, True), ("bottom", 3e-4, False), ("top", 3e-4, False)):
+        here = in_set(file, "surface", name)
+        assert areas[here].sum() == pytest.approx(area, rel=1e-9) and outside[here].any() != inside
+    assert len(set(np.round(positions(file)[:, 2], 9))) == 4
+
+
 # ---- Polycrystals ----
 
 
@@ -223,7 +264,7 @@ def test_scale(tmp_path):
 def test_no_names_become_numbers(tmp_path):
     file, _ = convert(gmsh(TWO, tmp_path / "two.msh"), tmp_path / "two.h5")
     assert len(names(file, "surface")) == 11 and names(file, "volume") == ["1", "2"]
-    inner = [i for i in range(11) if (file["set"][:] == i).sum() == 0]
+    inner = [i for i in range(11) if (file["neighbour"][:][file["set"][:] == i] >= 0).all()]
     assert len(inner) == 1  # the surface between the two volumes is inside
 
 
@@ -283,7 +324,7 @@ def test_missing_and_foreign_inputs(tmp_path):
     (["--info", "a.h5", "-o", "b.h5"], "--info writes nothing"),
     (["--info", "a.h5", "--improve"], "not understood with it: --info"),
     (["--partition", "2", "a.h5", "--improve"], "not understood with it: --partition"),
-    (["a.yaml", "-o", "b.h5", "--improve"], "--improve is for imports"), (["a.h5", "-o", "b.h5"], "a mesh file already"), (["a.msh", "--frob", "1"], "unknown option: --frob"),
+    (["a.yaml", "-o", "b.h5", "--improve"], "--improve is for a mesh on its way in"), (["a.h5", "-o", "b.h5"], "a mesh file already"), (["a.msh", "--frob", "1"], "unknown option: --frob"),
 ])
 def test_wrong_arguments(tmp_path, arguments, message):
     process = launch("mesh", *arguments, cwd=tmp_path)

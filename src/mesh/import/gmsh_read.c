@@ -61,9 +61,9 @@ static void count_block(void *context, const rg_gmsh_block *b) {
     *(size_t *)context += b->count;
 }
 
-static bool has_volume_elements(const char *path) {
+static bool has_elements(const char *path, int dimension) {
     size_t count = 0;
-    rg_gmsh_sets all = rg_gmsh_entities(path, 3);
+    rg_gmsh_sets all = rg_gmsh_entities(path, dimension);
     rg_gmsh_each(path, &all, count_block, &count);
     rg_gmsh_sets_free(&all);
     return count > 0;
@@ -99,7 +99,7 @@ static double size_at(int dim, int tag, double x, double y, double z, void *cont
     return size;
 }
 
-static void make_mesh(const char *path, const rg_gmsh_size *size) {
+static void make_mesh(const char *path, const rg_gmsh_size *size, int dimension) {
     int error;
     struct asking asked = {path, size->at};
     if (size->at != NULL && rg_expr_is_number(size->at)) { /* points of the geometry may ask for less */
@@ -112,11 +112,11 @@ static void make_mesh(const char *path, const rg_gmsh_size *size) {
     if (size->curvature > 0) {
         gmshOptionSetNumber("Mesh.MeshSizeFromCurvature", size->curvature, &error);
     }
-    gmshModelMeshGenerate(3, &error);
+    gmshModelMeshGenerate(dimension, &error);
     rg_gmsh_require(path, error);
 }
 
-static void open_model(const char *path, const rg_gmsh_size *size) {
+static void open_model(const char *path, const rg_gmsh_size *size, int dimension) {
     int error;
     FILE *f = rg_open_input(path);
     if (f == NULL) {
@@ -132,8 +132,8 @@ static void open_model(const char *path, const rg_gmsh_size *size) {
     gmshLoggerStart(&error);
     gmshOpen(path, &error);
     rg_gmsh_require(path, error);
-    if (!has_volume_elements(path)) {
-        make_mesh(path, size);
+    if (!has_elements(path, dimension)) {
+        make_mesh(path, size, dimension);
     } else if (size->at != NULL || size->curvature > 0) {
         rg_fatal(RG_USAGE, "%s: it is a mesh already, so --size and --curvature say nothing", path);
     }
@@ -210,8 +210,13 @@ static void take_face(rg_import *m, const shape *is, const size_t *node, size_t 
 }
 
 static void take_faces(void *context, const rg_gmsh_block *b) {
-    rg_import *m = context;
-    const shape *is = shape_of(b->type, m->how.split);
+    struct taking *t = context;
+    rg_import *m = t->import;
+    const shape *is = shape_of(b->type, m->how.split || m->how.thickness > 0);
+    if (b->sets == 0 && t->named_only) {
+        t->left_out += (int64_t)b->count;
+        return;
+    }
     if (is == NULL && b->sets > 0) {
         refuse_type(m->path, b);
     }
@@ -226,6 +231,35 @@ static void take_faces(void *context, const rg_gmsh_block *b) {
     }
 }
 
+/* Of any order: the ends come first. */
+static void take_edges(void *context, const rg_gmsh_block *b) {
+    rg_import *m = context;
+    char *name = NULL;
+    int dimension, order, nodes, primary, error;
+    double *x = NULL;
+    size_t values;
+    gmshModelMeshGetElementProperties(b->type, &name, &dimension, &order, &nodes, &x, &values, &primary,
+                                      &error);
+    rg_gmsh_require(m->path, error);
+    for (size_t i = 0; i < b->count; i++) {
+        const size_t *node = b->node + (size_t)nodes * i;
+        for (int32_t s = 0; s < b->sets; s++) {
+            rg_import_add_edge(m, (rg_import_edge){{node[0], node[1]}, (rg_gid)b->tag[i], b->set[s]});
+        }
+    }
+    gmshFree(name);
+    gmshFree(x);
+}
+
+static void read_edges(rg_import *m) {
+    rg_gmsh_sets edges = rg_gmsh_sets_read(m->path, 1);
+    for (int32_t s = 0; s < edges.sets.count; s++) {
+        rg_sets_add(&m->edge_set, edges.sets.name[s]);
+    }
+    rg_gmsh_each(m->path, &edges, take_edges, m);
+    rg_gmsh_sets_free(&edges);
+}
+
 static void take_names(rg_sets *to, const rg_sets *from) {
     for (int32_t s = 0; s < from->count; s++) {
         rg_sets_add(to, from->name[s]);
@@ -234,20 +268,25 @@ static void take_names(rg_sets *to, const rg_sets *from) {
 
 rg_mesh *rg_gmsh_read(const char *path, const rg_import_how *how, const rg_gmsh_size *size) {
     rg_import m = {.path = path, .how = *how};
-    open_model(path, size);
+    bool flat = how->thickness > 0;
+    open_model(path, size, flat ? 2 : 3);
     if (has_unit(path) && how->scale != 1) {
         rg_warn("%s: the file says its unit, so its lengths are in m already; --scale multiplies them by %g",
                 path, how->scale);
     }
     read_nodes(&m);
     rg_gmsh_sets volumes = rg_gmsh_sets_read(path, 3), surfaces = rg_gmsh_sets_read(path, 2);
-    struct taking t = {&m, volumes.sets.count > 0, 0};
+    struct taking t = {&m, volumes.sets.count > 0, 0}, f = {&m, flat && surfaces.sets.count > 0, 0};
     take_names(&m.volume, &volumes.sets);
     take_names(&m.surface, &surfaces.sets);
     rg_gmsh_each(path, &volumes, take_elements, &t);
-    rg_gmsh_each(path, &surfaces, take_faces, &m);
+    rg_gmsh_each(path, &surfaces, take_faces, &f);
+    flat ? read_edges(&m) : (void)0;
     if (t.left_out > 0) {
         rg_warn("%s: %" PRId64 " elements are in no physical volume and left out", path, t.left_out);
+    }
+    if (f.left_out > 0) {
+        rg_warn("%s: %" PRId64 " triangles are in no physical surface and left out", path, f.left_out);
     }
     rg_gmsh_sets_free(&volumes);
     rg_gmsh_sets_free(&surfaces);

@@ -11,6 +11,7 @@
 #include "base/mem.h"
 #include "base/tet.h"
 #include "layout.h"
+#include "mesh/import/extrude.h"
 #include "mesh/import/merge.h"
 #include "mesh/import/solid.h"
 
@@ -117,6 +118,11 @@ void rg_import_element(rg_import *m, rg_gid name, int nodes, const size_t *node)
     }
 }
 
+const double *rg_import_place(rg_import *m, size_t number) {
+    size_t row = row_of(m, number);
+    return row == SIZE_MAX ? NULL : m->x + 3 * row;
+}
+
 int rg_import_solid(rg_import *m, rg_gid name, int corners, const size_t *node) {
     size_t same[8], tet[RG_SOLID_TETS][4];
     for (int i = 0; i < corners; i++) {
@@ -158,6 +164,11 @@ void rg_import_add_quadrangle(rg_import *m, const size_t corner[4], rg_gid name,
     for (int t = 0; t < count; t++) {
         rg_import_add_face(m, (rg_import_face){{triangle[t][0], triangle[t][1], triangle[t][2]}, name, set});
     }
+}
+
+void rg_import_add_edge(rg_import *m, rg_import_edge edge) {
+    m->edge = rg_grow(m->edge, &m->edge_room, m->edges, sizeof *m->edge);
+    m->edge[m->edges++] = edge;
 }
 
 void rg_import_add_point(rg_import *m, size_t node, int32_t set) {
@@ -579,6 +590,7 @@ static void mark_faces(rg_import *m, const rg_gid *vertex, rg_mesh *mesh) {
 }
 
 rg_mesh *rg_import_finish(rg_import *m) {
+    m->how.thickness > 0 ? rg_extrude(m) : (void)0;
     if (m->elements == 0) {
         rg_fatal(RG_USAGE, "%s: no tetrahedra", m->path);
     }
@@ -604,6 +616,7 @@ rg_mesh *rg_import_finish(rg_import *m) {
     rg_free(m->name);
     rg_free(m->region);
     rg_free(m->face);
+    rg_free(m->edge);
     rg_free(m->point);
     rg_free(m->skin);
     rg_free(m->twin);

@@ -16,6 +16,13 @@ typedef struct {
     int32_t set; /* or RG_IMPORT_UNNAMED */
 } rg_import_face;
 
+/* An edge that the input names, of a mesh that is to become a plate. */
+typedef struct {
+    size_t node[2];
+    rg_gid name;
+    int32_t set; /* among `edge_set` */
+} rg_import_edge;
+
 /* A node of a set of nodes, which stands for the faces of the surface all of whose corners are in it. */
 typedef struct {
     size_t node;
@@ -27,9 +34,11 @@ enum { RG_IMPORT_UNNAMED = -1 };
 
 /* What is asked of an import. */
 typedef struct {
-    double scale; /* m per unit of the input */
-    double merge; /* nodes as near as this become one (m); 0: none */
-    bool split;   /* hexahedra, wedges and pyramids become tetrahedra */
+    double scale;     /* m per unit of the input */
+    double merge;     /* nodes as near as this become one (m); 0: none */
+    bool split;       /* hexahedra, wedges and pyramids become tetrahedra */
+    double thickness; /* flat meshes become plates of this thickness (m); 0: they do not */
+    int layers;       /* of elements in it */
 } rg_import_how;
 
 typedef struct {
@@ -55,10 +64,13 @@ typedef struct {
     double worst;                   /* how far, as a fraction of the edge */
     size_t faces;
     rg_import_face *face;
+    rg_sets edge_set; /* sets of edges by their names */
+    rg_import_edge *edge;
+    size_t edges;
     rg_sets node_set; /* sets of nodes by their names */
     rg_import_point *point;
     size_t points;
-    size_t x_room, number_room, corner_room, name_room, region_room, face_room, point_room;
+    size_t x_room, number_room, corner_room, name_room, region_room, face_room, edge_room, point_room;
 } rg_import;
 
 /* Adds a node with coordinates x in units of the input; a number given twice keeps the last. */
@@ -86,7 +98,11 @@ void rg_import_add_quadrangle(rg_import *m, const size_t corner[4], rg_gid name,
  */
 size_t rg_import_number(rg_import *m, size_t number);
 
+void rg_import_add_edge(rg_import *m, rg_import_edge edge);
 void rg_import_add_point(rg_import *m, size_t node, int32_t set);
+
+/* Position of a node (m), until the next one is added; NULL: there is none of that number. */
+const double *rg_import_place(rg_import *m, size_t number);
 
 /* The mesh, neither sorted nor connected, with `original`, `region` and sets; frees the rest. Sets of nodes
  * become surface sets; those without a face, or with the name of another set, are left out. Warns of what is

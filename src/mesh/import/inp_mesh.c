@@ -104,16 +104,20 @@ static void name_element_sets(building *b) {
         }
         rg_inp_members found = members_of(b, s);
         name_of(b, RG_INP_ELEMENTS, s->name, s->scope, name);
-        bool tets = false, triangles = false;
+        bool tets = false, triangles = false, lines = false;
         for (size_t k = 0; k < found.count; k++) {
             tets = tets || b->model->kind[found.row[k]] > 3;
             triangles = triangles || b->model->kind[found.row[k]] == 3;
+            lines = lines || b->model->kind[found.row[k]] == 2;
         }
         if (tets) {
             need_set(&b->import.volume, name);
         }
         if (triangles) {
             need_set(&b->import.surface, name);
+        }
+        if (lines) {
+            need_set(&b->import.edge_set, name);
         }
         rg_free(found.row);
     }
@@ -127,6 +131,13 @@ static void add_face(building *b, size_t element, const size_t node[3], int32_t 
 static void add_triangle(building *b, size_t element, int32_t set) {
     const uint32_t *node = b->model->node + b->model->start[element];
     add_face(b, element, (const size_t[]){node[0], node[1], node[2]}, set);
+}
+
+/* Of an element that is one or has some, by its nodes there. */
+static void add_edge(building *b, size_t element, int from, int to, int32_t set) {
+    const uint32_t *node = b->model->node + b->model->start[element];
+    rg_import_add_edge(&b->import,
+                       (rg_import_edge){{node[from], node[to]}, b->model->elements.number[element], set});
 }
 
 static void fill_element_sets(building *b) {
@@ -148,19 +159,43 @@ static void fill_element_sets(building *b) {
                 }
             } else if (b->model->kind[e] == 3) {
                 add_triangle(b, e, surface);
+            } else if (b->model->kind[e] == 2) {
+                add_edge(b, e, 0, 1, rg_sets_find(&b->import.edge_set, name));
             }
         }
         rg_free(found.row);
     }
 }
 
+/* Those that are to be extruded, also if they are in no set. */
+static void take_triangles(building *b) {
+    for (size_t e = 0; e < b->model->elements.count && b->import.how.thickness > 0; e++) {
+        if (b->model->kind[e] == 3) {
+            add_triangle(b, e, RG_IMPORT_UNNAMED);
+        }
+    }
+}
+
 /* ---- surfaces ---- */
+
+/* Of a triangle that is to be extruded: S1 to S3. */
+static void take_edge(building *b, const rg_inp_surface *s, const rg_inp_patch *p, int32_t set, size_t e) {
+    if (p->face < 0 || p->face > 2 || b->model->kind[e] != 3) {
+        rg_inp_refuse(p->of.at, "*SURFACE, NAME=%s: of a triangle that is extruded, S1 to S3 is expected",
+                      s->name);
+    }
+    add_edge(b, e, p->face, (p->face + 1) % 3, set);
+}
 
 static void take_face(building *b, const rg_inp_surface *s, const rg_inp_patch *p, int32_t set, size_t e) {
     int kind = b->model->kind[e], count = 0;
     size_t triangle[2][3], node[8];
     if (kind == 0) {
         return; /* of an element that is left out, and said to be: it has no nodes here */
+    }
+    if (kind < 4 && b->import.how.thickness > 0) {
+        take_edge(b, s, p, set, e);
+        return;
     }
     if (kind == 3 && (p->face == RG_INP_FREE || p->face == RG_INP_SIDE)) {
         add_triangle(b, e, set);
@@ -205,7 +240,10 @@ static size_t take_patch(building *b, const rg_inp_surface *s, const rg_inp_patc
 static int32_t need_surface(building *b, const rg_inp_surface *s) {
     char name[RG_SET_NAME];
     name_of(b, RG_INP_ELEMENTS, s->name, s->scope, name);
-    return need_set(s->of == RG_INP_NODES ? &b->import.node_set : &b->import.surface, name);
+    return need_set(s->of == RG_INP_NODES         ? &b->import.node_set
+                    : b->import.how.thickness > 0 ? &b->import.edge_set
+                                                  : &b->import.surface,
+                    name);
 }
 
 /* All names come before all faces: a set is put into combinations of those there are. */
@@ -262,6 +300,7 @@ rg_mesh *rg_inp_mesh(const char *path, const rg_import_how *how, rg_inp_model *m
     take_elements(&b);
     name_element_sets(&b);
     fill_element_sets(&b);
+    take_triangles(&b);
     take_surfaces(&b, RG_INP_ELEMENTS);
     take_surfaces(&b, RG_INP_NODES);
     take_node_sets(&b);

@@ -54,6 +54,7 @@ typedef struct {
     size_t surface;
 
     bool split; /* other solids too are read, to be split */
+    bool flat;  /* lines too are read, the edges of triangles */
     rg_inp_report report;
 } reader;
 
@@ -138,7 +139,8 @@ static void begin_elements(reader *r) {
     r->have = 0;
     r->goes_on = false;
     r->set = set_to_fill(r, RG_INP_ELEMENTS, "ELSET");
-    r->type.nodes = r->type.shape == RG_INP_SOLID && !r->split ? 0 : r->type.nodes;
+    bool idle = (r->type.shape == RG_INP_SOLID && !r->split) || (r->type.shape == RG_INP_LINE && !r->flat);
+    r->type.nodes = idle ? 0 : r->type.nodes;
     bool of_mesh = r->type.nodes > 0;
     if (of_mesh && is_outside(r, r->scope)) {
         rg_inp_refuse(r->lines->at, "*ELEMENT, TYPE=%s in the assembly, outside of its instances", type);
@@ -569,10 +571,10 @@ rg_mesh *rg_inp_read(const char *path, const rg_import_how *how, FILE *out) {
     reader r = {.lines = rg_inp_open(path),
                 .whole = rg_inp_model_make(),
                 .section = RG_INP_UNKNOWN,
-                .split = how->split};
+                .split = how->split, .flat = how->thickness > 0};
     leave_part(&r);
     read_lines(&r);
-    rg_inp_report_judge(&r.report, path);
+    rg_inp_report_judge(&r.report, path, how->thickness > 0);
     rg_mesh *mesh = rg_inp_mesh(path, how, choose_model(&r));
     rg_inp_report_print(&r.report, path, out);
     for (size_t i = 0; i < r.parts; i++) {

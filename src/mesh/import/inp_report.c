@@ -46,7 +46,7 @@ static const char *list_types(const rg_inp_report *r, bool solid, char *text, si
     return text;
 }
 
-void rg_inp_report_judge(const rg_inp_report *r, const char *path) {
+void rg_inp_report_judge(const rg_inp_report *r, const char *path, bool flat) {
     char list[300];
     for (size_t i = 0; i < r->types; i++) {
         if (r->type[i].solid && r->type[i].count > 0) {
@@ -57,7 +57,12 @@ void rg_inp_report_judge(const rg_inp_report *r, const char *path) {
                 r->type[i].name, list_types(r, true, list, sizeof list));
         }
     }
-    if (list_types(r, false, list, sizeof list)[0] != '\0') {
+    bool others = list_types(r, false, list, sizeof list)[0] != '\0';
+    if (others && flat) {
+        rg_fatal(RG_USAGE, "%s: --extrude takes triangles alone, but there are other elements: %s", path,
+                 list);
+    }
+    if (others) {
         rg_warn("%s: elements that are no solids are left out: %s", path, list);
     }
 }

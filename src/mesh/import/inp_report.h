@@ -26,8 +26,9 @@ void rg_inp_report_keyword(rg_inp_report *r, const char *name);
 /* The entry of an element type, a new one with a count of 0 if need be. */
 size_t rg_inp_report_type(rg_inp_report *r, const char *name, bool solid, rg_inp_place at);
 
-/* Ends the run if there are solids among the element types, warns of the others. */
-void rg_inp_report_judge(const rg_inp_report *r, const char *path);
+/* Ends the run if there are solids among the element types, warns of the others, or ends it for these
+ * too, where all must be `flat` triangles. */
+void rg_inp_report_judge(const rg_inp_report *r, const char *path, bool flat);
 
 /* Prints the keywords with their numbers, and frees the report. */
 void rg_inp_report_print(rg_inp_report *r, const char *path, FILE *out);

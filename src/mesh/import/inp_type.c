@@ -34,7 +34,15 @@ static const struct {
                 {"M3D3", 3}, {"M3D6", 6},  {"SFM3D3", 3}, {"SFM3D6", 6}, {"R3D3", 3},
                 {"DS3", 3},  {"DS6", 6},   {"DC2D3", 3},  {"DC2D6", 6}};
 
+/* As Gmsh writes the edges of flat meshes. */
+static const char *const line[] = {"T2D2", "T3D2", "B21", "B31"};
+
 rg_inp_type rg_inp_type_of(const char *name) {
+    for (size_t i = 0; i < sizeof line / sizeof *line; i++) {
+        if (is(name, line[i])) {
+            return (rg_inp_type){RG_INP_LINE, 2, 0};
+        }
+    }
     for (size_t i = 0; i < sizeof triangle / sizeof *triangle; i++) {
         if (is(name, triangle[i].begin)) {
             return (rg_inp_type){RG_INP_TRIANGLE, triangle[i].nodes, 0};

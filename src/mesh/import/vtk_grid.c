@@ -15,15 +15,14 @@
 
 /* VTK's numbers of cell types that are read; corners come first. */
 typedef struct {
-    int type, nodes, corners;
-    bool solid;
+    int type, nodes, corners, dimension;
 } shape;
 
-static const shape shapes[] = {{5, 3, 3, false},  {22, 6, 3, false}, {10, 4, 4, true},  {24, 10, 4, true},
-                               {8, 4, 4, false},  {9, 4, 4, false},  {23, 8, 4, false}, {28, 9, 4, false},
-                               {30, 6, 4, false}, {11, 8, 8, true},  {12, 8, 8, true},  {25, 20, 8, true},
-                               {29, 27, 8, true}, {33, 24, 8, true}, {13, 6, 6, true},  {26, 15, 6, true},
-                               {31, 12, 6, true}, {32, 18, 6, true}, {14, 5, 5, true},  {27, 13, 5, true}};
+static const shape shapes[] = {{5, 3, 3, 2},   {22, 6, 3, 2}, {10, 4, 4, 3},  {24, 10, 4, 3}, {3, 2, 2, 1},
+                               {21, 3, 2, 1},  {8, 4, 4, 2},  {9, 4, 4, 2},   {23, 8, 4, 2},  {28, 9, 4, 2},
+                               {30, 6, 4, 2},  {11, 8, 8, 3}, {12, 8, 8, 3},  {25, 20, 8, 3}, {29, 27, 8, 3},
+                               {33, 24, 8, 3}, {13, 6, 6, 3}, {26, 15, 6, 3}, {31, 12, 6, 3}, {32, 18, 6, 3},
+                               {14, 5, 5, 3},  {27, 13, 5, 3}};
 enum { WHOLE = 4, PIXEL = 8, VOXEL = 11, NODES = 27 }; /* the first ones are taken without a cut */
 
 /* Points, lines and other surfaces, which are left out. */
@@ -81,12 +80,15 @@ static int type_of(const rg_vtk_grid *g, size_t cell) {
     return type >= 0 && type < 256 ? (int)type : -1;
 }
 
-/* NULL: a cell of another type, or one that has to be cut where that was not asked for. */
+/* NULL: a cell of another type, or one that is cut, or extruded, where that was not asked for. */
 static const shape *shape_of(const building *b, size_t cell) {
     int type = type_of(b->grid, cell);
-    for (size_t i = 0; i < (b->import.how.split ? sizeof shapes / sizeof *shapes : WHOLE); i++) {
+    bool split = b->import.how.split, extrude = b->import.how.thickness > 0;
+    for (size_t i = 0; i < sizeof shapes / sizeof *shapes; i++) {
         if (shapes[i].type == type) {
-            return &shapes[i];
+            int dimension = shapes[i].dimension;
+            bool taken = i < WHOLE || (split && dimension > 1) || (extrude && dimension < 3);
+            return taken ? &shapes[i] : NULL;
         }
     }
     return NULL;
@@ -147,7 +149,7 @@ static void take_cells(building *b) {
     for (size_t cell = 0; cell < g->cells; cell++) {
         const shape *s = shape_of(b, cell);
         b->element[cell] = b->import.elements;
-        if (s != NULL && s->solid) {
+        if (s != NULL && s->dimension == 3) {
             take_solid(b, cell, s);
         } else if (s == NULL && is_flat(type_of(g, cell))) {
             b->left_out++;
@@ -175,14 +177,14 @@ static int ascending(const void *a, const void *b) {
 
 /* Adds the different values of the cells of a kind to `sets` as "array.number"; false: they are no numbers of
  * sets. */
-static bool name_sets(const building *b, const rg_vtk_array *a, bool faces, rg_sets *sets) {
+static bool name_sets(const building *b, const rg_vtk_array *a, int dimension, rg_sets *sets) {
     const rg_vtk_grid *g = b->grid;
     double *value = RG_NEW(double, g->cells + 1);
     size_t count = 0, kept = 0;
     bool whole = true;
     for (size_t cell = 0; cell < g->cells; cell++) {
         const shape *s = shape_of(b, cell);
-        if (s != NULL && s->solid != faces) {
+        if (s != NULL && s->dimension == dimension) {
             value[count++] = a->value[cell];
             whole = whole && fabs(a->value[cell]) < 1e9 && a->value[cell] == floor(a->value[cell]);
         }
@@ -211,48 +213,57 @@ static int32_t set_of(const rg_sets *sets, const rg_vtk_array *a, double value) 
     return rg_sets_find(sets, name);
 }
 
+/* A face, or an edge. */
 static void add_face(building *b, size_t cell, int32_t set) {
     size_t node[NODES];
     const shape *s = shape_of(b, cell);
     take_nodes(b->grid, cell, s, node);
-    if (s->corners == 4) {
+    if (s->dimension == 1) {
+        rg_import_add_edge(&b->import, (rg_import_edge){{node[0], node[1]}, (rg_gid)cell, set});
+    } else if (s->corners == 4) {
         rg_import_add_quadrangle(&b->import, node, (rg_gid)cell, set);
     } else {
         rg_import_add_face(&b->import, (rg_import_face){{node[0], node[1], node[2]}, (rg_gid)cell, set});
     }
 }
 
-/* `named`: whether the array names sets of volumes, of faces. */
-static void fill_sets(building *b, const rg_vtk_array *a, const bool named[2]) {
-    double last[2] = {NAN, NAN};
-    int32_t set[2] = {-1, -1};
+/* Sets of edges, faces and volumes. */
+static rg_sets *sets_of(building *b, int dimension) {
+    return dimension == 1 ? &b->import.edge_set : dimension == 2 ? &b->import.surface : &b->import.volume;
+}
+
+/* `named`: whether the array names sets of edges, of faces, of volumes. */
+static void fill_sets(building *b, const rg_vtk_array *a, const bool named[4]) {
+    double last[4] = {NAN, NAN, NAN, NAN};
+    int32_t set[4] = {-1, -1, -1, -1};
     for (size_t cell = 0; cell < b->grid->cells; cell++) {
         const shape *s = shape_of(b, cell);
-        bool face = s != NULL && !s->solid;
-        if (s == NULL || !named[face]) {
+        int d = s != NULL ? s->dimension : 0;
+        if (!named[d]) {
             continue;
         }
-        if (a->value[cell] != last[face]) { /* mostly it is that of the cell before */
-            last[face] = a->value[cell];
-            set[face] = set_of(face ? &b->import.surface : &b->import.volume, a, last[face]);
+        if (a->value[cell] != last[d]) { /* mostly it is that of the cell before */
+            last[d] = a->value[cell];
+            set[d] = set_of(sets_of(b, d), a, last[d]);
         }
-        if (face) {
-            add_face(b, cell, set[face]);
+        if (d < 3) {
+            add_face(b, cell, set[d]);
         }
         for (rg_gid e = b->element[cell]; e < b->element[cell + 1]; e++) {
-            rg_import_put(&b->import, e, set[face]);
+            rg_import_put(&b->import, e, set[d]);
         }
     }
 }
 
 static void take_sets(building *b) {
     const rg_vtk_grid *g = b->grid;
-    bool(*named)[2] = rg_alloc(g->arrays + 1, sizeof *named), any = false;
+    bool(*named)[4] = rg_alloc(g->arrays + 1, sizeof *named), any = false;
     for (size_t i = 0; i < g->arrays; i++) {
-        named[i][0] = name_sets(b, &g->array[i], false, &b->import.volume);
-        named[i][1] = name_sets(b, &g->array[i], true, &b->import.surface);
-        any = any || named[i][1];
-        if (!named[i][0]) {
+        for (int d = 3; d > 0; d--) {
+            named[i][d] = name_sets(b, &g->array[i], d, sets_of(b, d));
+        }
+        any = any || named[i][2];
+        if (!named[i][3]) {
             rg_warn("%s: cell data '%s' are not the numbers of regions: they name no sets", g->path,
                     g->array[i].name);
         }
@@ -262,7 +273,7 @@ static void take_sets(building *b) {
     }
     for (size_t cell = 0; cell < g->cells && !any; cell++) { /* places, though without a name */
         const shape *s = shape_of(b, cell);
-        if (s != NULL && !s->solid) {
+        if (s != NULL && s->dimension == 2) {
             add_face(b, cell, RG_IMPORT_UNNAMED);
         }
     }

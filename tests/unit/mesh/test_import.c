@@ -13,6 +13,10 @@
 
 #include "base/error.h"
 #include "base/mem.h"
+#include "base/tet.h"
+#include "base/vector.h"
+#include "layout.h"
+#include "mesh/check.h"
 #include "mesh/import/import.h"
 #include "mesh/import/merge.h"
 #include "support/dice.h"
@@ -242,6 +246,112 @@ static void test_merge(void **state) {
     assert_true(joined > 1000);
 }
 
+/* ---- plates ---- */
+
+/* Two triangles side by side, the second one left-handed and in two sets, with edges and nodes in sets; the
+ * square they fill is off the axes. A node is off the plane, or merged with another. */
+static rg_import_how plate_how;
+static double off_plane;
+static const char *edge_name;
+static bool with_solid, without_faces;
+
+static void add_plate(void) {
+    rg_import m = {.path = "plate", .how = plate_how};
+    static const double x[5][3] = {{1, 1, 3}, {3, 1, 3}, {3, 2, 3}, {1, 2, 3}, {3, 1, 3}};
+    static const size_t number[5] = {10, 20, 30, 40, 15};
+    for (size_t n = 0; n < 5; n++) {
+        rg_import_node(&m, number[n], (const double[]){x[n][0], x[n][1], x[n][2] + (n == 2 ? off_plane : 0)});
+    }
+    rg_sets_add(&m.surface, "a");
+    rg_sets_add(&m.surface, "b");
+    rg_sets_add(&m.edge_set, edge_name);
+    rg_sets_add(&m.edge_set, "cut");
+    rg_sets_add(&m.node_set, "side");
+    size_t second = plate_how.merge > 0 ? 15 : 20;
+    if (!without_faces) {
+        rg_import_add_face(&m, (rg_import_face){{10, 20, 40}, 7, 1});
+        rg_import_add_face(&m, (rg_import_face){{40, 30, second}, 6, 0});
+        rg_import_add_face(&m, (rg_import_face){{40, 30, second}, 6, 1});
+    }
+    rg_import_add_edge(&m, (rg_import_edge){{40, 10}, 1, 0});
+    rg_import_add_edge(&m, (rg_import_edge){{40, second}, 2, 1});
+    rg_import_add_point(&m, 30, 0);
+    rg_import_add_point(&m, second, 0);
+    if (with_solid) {
+        rg_import_element(&m, 9, 4, (const size_t[]){10, 20, 30, 40});
+    }
+    rg_mesh *mesh = rg_import_finish(&m);
+    rg_mesh_sort(mesh);
+    rg_mesh_connect(mesh);
+    rg_mesh_check(mesh, "plate");
+    double volume[4] = {0}, area[6] = {0}, inside = 0;
+    for (rg_gid slot = 0; slot < 4 * mesh->elements; slot++) {
+        const double *c[4], *p = mesh->x;
+        for (int k = 0; k < 4; k++) {
+            c[k] = p + 3 * mesh->corner[slot / 4 * 4 + k];
+        }
+        volume[mesh->region[slot / 4]] += fabs(rg_tet_volume(c[0], c[1], c[2], c[3])) / 4;
+        double u[3], v[3], n[3];
+        const int *f = rg_face_node[slot % 4];
+        rg_vector_subtract(c[f[1]], c[f[0]], u);
+        rg_vector_subtract(c[f[2]], c[f[0]], v);
+        rg_vector_cross(u, v, n);
+        double here = sqrt(rg_vector_dot(n, n)) / 2;
+        area[mesh->set[slot] >= 0 ? mesh->set[slot] : 5] += here;
+        inside += mesh->neighbour[slot] >= 0 && mesh->set[slot] >= 0 ? here : 0;
+    }
+    fprintf(stderr, "%d elements, %d vertices; volumes %g %g %g; areas", (int)mesh->elements,
+            (int)mesh->vertices, volume[0], volume[1], volume[2]);
+    for (int32_t s = 0; s < mesh->surface.count; s++) {
+        fprintf(stderr, " %s %g", mesh->surface.name[s], area[s]);
+    }
+    fprintf(stderr, ", inside %g\n", inside);
+}
+
+#define LONE                                                                                                 \
+    "rhegma: warning: plate: 1 nodes belong to no tetrahedron and are left out; the first is node 15 at "    \
+    "(6, 2, 6) m\n"
+
+static void test_extrude(void **state) {
+    (void)state;
+    for (int layers = 1; layers < 4; layers++) {
+        for (int merge = 0; merge < 2; merge++) {
+            char said[1000];
+            edge_name = "left";
+            plate_how = (rg_import_how){.scale = 2, .merge = merge, .thickness = 0.75, .layers = layers};
+            snprintf(said, sizeof said,
+                     LONE
+                     "rhegma: warning: plate: %d " BETWEEN
+                     "%d elements, %d vertices; volumes 0 3 3; areas left 1.5 cut %g bottom 8 top 8 side "
+                     "1.5, inside %g\n",
+                     2 * layers, 6 * layers, 4 * (layers + 1), 2 * sqrt(20) * 0.75, 2 * sqrt(20) * 0.75);
+            expect_said(add_plate, RG_OK, said);
+        }
+    }
+    plate_how.merge = 0;
+    edge_name = "top"; /* is that of an edge: the upper face has no name */
+    expect_said(
+        add_plate, RG_OK,
+        "rhegma: warning: plate: there is a set 'top' of edges: the faces that --extrude would call so "
+        "are in no set\n" LONE "rhegma: warning: plate: 6 " BETWEEN
+        "18 elements, 16 vertices; volumes 0 3 3; areas top 1.5 cut 6.7082 bottom 8 side 1.5, inside "
+        "6.7082\n");
+    off_plane = 0.001;
+    expect_said(
+        add_plate, RG_USAGE,
+        "rhegma: plate: --extrude takes a mesh that is flat in z, but its triangles are at z from 6 to "
+        "6.002 m\n");
+    off_plane = 0;
+    without_faces = true;
+    expect_said(
+        add_plate, RG_USAGE,
+        "rhegma: plate: --extrude takes a flat mesh of triangles and quadrangles, but there are none\n");
+    with_solid = true;
+    expect_said(add_plate, RG_USAGE,
+                "rhegma: plate: --extrude takes a flat mesh of triangles and quadrangles, but there are "
+                "solids\n");
+}
+
 /* Sets of nodes: faces of the surface all of whose corners are in one. */
 static void add_points(void) {
     static const struct {
@@ -354,10 +464,10 @@ static void test_memory(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_turns),       cmocka_unit_test(test_nothing), cmocka_unit_test(test_middles),
-        cmocka_unit_test(test_faces),       cmocka_unit_test(test_points),  cmocka_unit_test(test_merge),
-        cmocka_unit_test(test_many_points), cmocka_unit_test(test_skins),   cmocka_unit_test(test_volumes),
-        cmocka_unit_test(test_memory),
+        cmocka_unit_test(test_turns),   cmocka_unit_test(test_nothing),     cmocka_unit_test(test_middles),
+        cmocka_unit_test(test_faces),   cmocka_unit_test(test_points),      cmocka_unit_test(test_merge),
+        cmocka_unit_test(test_extrude), cmocka_unit_test(test_many_points), cmocka_unit_test(test_skins),
+        cmocka_unit_test(test_volumes), cmocka_unit_test(test_memory),
     };
     int failed = cmocka_run_group_tests_name("import", tests, NULL, NULL);
     return failed + (rg_alloc_blocks() > 0); /* all is given back */
