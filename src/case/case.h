@@ -93,9 +93,11 @@ typedef struct {
     char *name;                         /* NULL: "material", of the one without which no case is */
 } rg_material_input;
 
-/* A material besides `material`, and where it is: one of `set` and `where`. */
+/* A material besides `material`, and where it is: one of `set` and `where`; or, in the case file alone, a CSV
+ * file of such. */
 typedef struct {
     rg_material_input is;
+    char *file;
     char *set;      /* volume set of the mesh file */
     rg_expr *where; /* elements at whose centroid this is not 0 (m) */
 } rg_other_material;

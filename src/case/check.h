@@ -98,6 +98,9 @@ void rg_body_rule(rg_check *ck, const rg_node *list, int i, const char *path, bo
 void rg_probe_rule(rg_check *ck, const rg_node *list, int i, const char *path, bool good);
 void rg_material_rule(rg_check *ck, const rg_node *list, int i, const char *path);
 void rg_initial_set_rule(rg_check *ck, const rg_node *list, int i, const char *path, bool good);
+/* Puts the rows of CSV files in the place of the entries of `materials` that name them (material_table.c). */
+void rg_material_tables_expand(rg_check *ck, rg_node *root);
+
 void rg_face_set_rule(rg_check *ck, const rg_node *list, int i, const char *path, bool good); /* face_set.c */
 
 /* Letters, digits, _ and - alone. */

@@ -321,10 +321,12 @@ static const rg_key face_set_keys[] = {
 static const rg_key other_material_keys[] = {
     {.name = "name", .type = RG_KEY_TEXT, REQUIRED, .offset = offsetof(rg_other_material, is.name),
      MEANS("by which interface.sets calls it: letters, digits, _ and -")},
-    {.name = "set", .type = RG_KEY_TEXT, ELSE("where"), ONE_OF, .offset = offsetof(rg_other_material, set),
+    {.name = "set", .type = RG_KEY_TEXT, ELSE("where or file"), ONE_OF, .offset = offsetof(rg_other_material, set),
      MEANS("a volume set of the mesh file")},
-    {.name = "where", .type = RG_KEY_EXPR, ELSE("set"), ONE_OF, .no_time = true, .offset = offsetof(rg_other_material, where),
+    {.name = "where", .type = RG_KEY_EXPR, ELSE("set or file"), ONE_OF, .no_time = true, .offset = offsetof(rg_other_material, where),
      MEANS("elements at whose centroid this is not 0")},
+    {.name = "file", .type = RG_KEY_TEXT, ELSE("set or where"), ONE_OF, .offset = offsetof(rg_other_material, file),
+     MEANS("CSV file beside the case with a material in each row: its first line names the columns, set and any keys of a material; what it does not say is as here; the names are NAME-1, NAME-2, ... or those of a column name")},
 #define KEY(word) word
 #define INPUT     offsetof(rg_other_material, is)
 #include "case/material_keys.h"

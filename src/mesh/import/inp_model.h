@@ -80,8 +80,8 @@ typedef struct {
     double *x; /* [nodes][3], in units of the input */
     size_t x_room;
     rg_inp_rows elements;
-    int8_t
-        *kind; /* [elements] nodes: 4, 10: a tetrahedron; 3: a triangle; 2: a line; 5, 6, 8: to be split; 0: left out */
+    int8_t *kind;  /* [elements] nodes: 4, 10: a tetrahedron; 3: a triangle; 2: a line; 5, 6, 8: to be split;
+                      0: left out */
     size_t *start; /* [elements] where its nodes begin in: */
     uint32_t *node;
     size_t kind_room, start_room, node_room, node_count;

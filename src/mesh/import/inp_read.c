@@ -571,7 +571,8 @@ rg_mesh *rg_inp_read(const char *path, const rg_import_how *how, FILE *out) {
     reader r = {.lines = rg_inp_open(path),
                 .whole = rg_inp_model_make(),
                 .section = RG_INP_UNKNOWN,
-                .split = how->split, .flat = how->thickness > 0};
+                .split = how->split,
+                .flat = how->thickness > 0};
     leave_part(&r);
     read_lines(&r);
     rg_inp_report_judge(&r.report, path, how->thickness > 0);

@@ -6,8 +6,8 @@ typedef enum { RG_INP_TETRAHEDRON, RG_INP_TRIANGLE, RG_INP_LINE, RG_INP_SOLID, R
 
 typedef struct {
     rg_inp_shape shape; /* SOLID: of another shape; OTHER: no solid (a mass, a shell of quadrangles, ...) */
-    int nodes;          /* of a tetrahedron, triangle or line: 4 or 10, 3 or 6, 2; of a SOLID that can be split: */
-    int corners;        /* of such a one: 8, 6 or 5 (hexahedron, wedge, pyramid) */
+    int nodes;   /* of a tetrahedron, triangle or line: 4 or 10, 3 or 6, 2; of a SOLID that can be split: */
+    int corners; /* of such a one: 8, 6 or 5 (hexahedron, wedge, pyramid) */
 } rg_inp_type;
 
 /* Of a name in any case: C3D10MH, DC3D4, S3R, ... */

@@ -202,7 +202,8 @@ static const mistake mistakes[] = {
      ":14:5: materials[3].density: missing; allowed: number > 0 (kg/m3)\n"
      ":14:5: materials[3]: missing set or where; allowed: exactly one of set, where\n"
      ":14:62: materials[3].densty: unknown key; did you mean 'density'?\n"
-     ":15:5: materials[4]: 3: not a mapping of keys; allowed: list of {name, set, where, and the keys of "
+     ":15:5: materials[4]: 3: not a mapping of keys; allowed: list of {name, set, where, file, and the keys "
+     "of "
      "material}\n"},
     {"interface:\n",
      "materials: [{name: steel, where: 1, model: neo-hookean, young: 2e11, poisson: 0.3, density: 7800}]\n"

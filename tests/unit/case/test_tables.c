@@ -178,11 +178,85 @@ static void test_wrong_files(void **state) {
     }
 }
 
+/* ---- materials in the rows of a file ---- */
+
+static const char grains[] =
+    "mesh: {file: bar.yaml}\nmaterial: {model: neo-hookean, young: 1, poisson: 0, density: 1}\n"
+    "materials:\n  - {name: first, where: x, model: j2, young: 2, poisson: 0.1, density: 3, yield_stress: "
+    "4}\n"
+    "  - {name: g, file: pulse.csv, model: neo-hookean, density: 7}\n"
+    "  - {name: last, set: end, model: neo-hookean, young: 5, poisson: 0.3, density: 6}\n"
+    "interface: {law: none}\ntime: {end: 1}\n";
+
+static void test_materials(void **state) {
+    (void)state;
+    write_bytes(grains, strlen(grains));
+    for (int own = 0; own < 2; own++) {
+        write_csv(own ? "young,name,set,poisson\n\n1e9,steel,grain.1,0.25\n  # none\n2.5e9,iron,12,0.125"
+                      : " set , young,poisson\r\ngrain.1 ,\t1e9,0.25\r\n12,2.5e9,0.125\r\n");
+        rg_case *c = read_good(path, 0, NULL);
+        assert_int_equal(c->others, 4);
+        const struct {
+            const char *name, *set;
+            double young, poisson, density;
+        } row[] = {{"first", NULL, 2, 0.1, 3},
+                   {own ? "steel" : "g-1", "grain.1", 1e9, 0.25, 7},
+                   {own ? "iron" : "g-2", "12", 2.5e9, 0.125, 7},
+                   {"last", "end", 5, 0.3, 6}};
+        for (int k = 0; k < 4; k++) {
+            const rg_other_material *o = &c->other[k];
+            assert_string_equal(o->is.name, row[k].name);
+            assert_true(row[k].set == NULL ? o->set == NULL && o->where != NULL
+                                           : strcmp(o->set, row[k].set) == 0);
+            assert_true(o->is.young == row[k].young && o->is.poisson == row[k].poisson &&
+                        o->is.density == row[k].density && o->file == NULL);
+        }
+        rg_case_free(c);
+    }
+}
+
+static void test_wrong_materials(void **state) {
+    (void)state;
+#define FILE_KEY ":5:21: materials[1].file: pulse.csv: "
+    static const struct {
+        const char *csv, *messages;
+    } wrong[] = {
+        {"set,young,poisson\n1,2\n", FILE_KEY "line 2 of the file has 2 fields, its first one 3\n"},
+        {"young,poisson\n1,2\n", FILE_KEY "its first line names the columns, and there is no column 'set'\n"},
+        {"set,young,poisson,young\n", FILE_KEY "column young is there twice\n"},
+        {"set,density\n", FILE_KEY "column density of the file is given beside it too\n"},
+        {"set,young,poisson\n", FILE_KEY "the file has no rows\n"},
+        {"", FILE_KEY "the file has no rows\n"},
+        {"set,young,poisson\na,1,0\nb,-1,0\nc,1,x\n",
+         ":5:21: materials[2].young: -1: out of range; allowed: number > 0 (Pa)\n"
+         ":5:21: materials[3].poisson: x: not a number; allowed: number >= 0 and < 0.5\n"},
+        {"set,young,poisson\na,1,\n",
+         ":5:5: materials[1].poisson: missing; allowed: number >= 0 and < 0.5\n"},
+        {"set,young,poissn,poisson\na,1,0,0\n",
+         ":5:15: materials[1].poissn: unknown key; did you mean 'poisson'?\n"},
+        {"set,name,young,poisson\na,first,1,0\n", ":5:21: materials[1].name: first: the name of an earlier "
+                                                  "material; allowed: letters, digits, _ and -; "
+                                                  "unique among materials\n"},
+    };
+    write_bytes(grains, strlen(grains));
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+        write_csv(wrong[i].csv);
+        expect_messages(0, NULL, wrong[i].messages);
+    }
+    unlink(csv);
+    expect_messages(0, NULL, FILE_KEY "cannot be read: No such file or directory\n");
+    static const char *const list[] = {"materials=[{name: g, file: [1], model: neo-hookean}]"};
+    expect_messages(1, list,
+                    "--set materials=[{name: g, file: [1], model: neo-hookean}]: materials[0].file: [1]: not "
+                    "the path of a CSV file\n");
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_straight), cmocka_unit_test(test_smooth_step),
-        cmocka_unit_test(test_smooth),   cmocka_unit_test(test_case),
-        cmocka_unit_test(test_mistakes), cmocka_unit_test(test_wrong_files),
+        cmocka_unit_test(test_straight),  cmocka_unit_test(test_smooth_step),
+        cmocka_unit_test(test_smooth),    cmocka_unit_test(test_case),
+        cmocka_unit_test(test_mistakes),  cmocka_unit_test(test_wrong_files),
+        cmocka_unit_test(test_materials), cmocka_unit_test(test_wrong_materials),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }
