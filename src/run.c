@@ -399,10 +399,13 @@ static void make_state(run *r, double *cost, MPI_Comm comm) {
 
 /* All that a time loop needs: at rest or from a checkpoint, on a partition by `cost` (rg_part_of_case). */
 static void prepare(run *r, double *cost, MPI_Comm comm) {
+    bool settle = r->input->start == RG_START_STATIC;
     make_state(r, cost, comm);
     measure_exchange(r->solver);
     if (!r->restart) {
         rg_solver_start(r->solver);
+        r->summary.equilibrium =
+            settle ? rg_equilibrium_find(r->solver, r->options->quiet ? NULL : stdout) : (rg_equilibrium){0};
     }
     rg_free(r->summary.estimate.of_material);
     r->summary.estimate = rg_estimate_run(r->solver);

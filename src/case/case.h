@@ -17,6 +17,7 @@ typedef enum { RG_FRAGMENTS_EACH, RG_FRAGMENTS_LAST, RG_FRAGMENTS_NONE } rg_frag
 typedef enum { RG_KEEP_ENERGY, RG_KEEP_OPENING } rg_keep;
 typedef enum { RG_BREAKING_BY_LAW, RG_BREAKING_NEVER } rg_breaking;
 typedef enum { RG_SHAPE_SPHERE, RG_SHAPE_PLANE, RG_SHAPE_CYLINDER } rg_shape_kind;
+typedef enum { RG_START_INITIAL, RG_START_STATIC } rg_start;
 typedef enum { RG_MOTION_FREE, RG_MOTION_PRESCRIBED } rg_motion;
 
 /* output.fields, as bits */
@@ -204,6 +205,7 @@ typedef struct {
         double linear, quadratic; /* b1, b2 */
     } viscosity;
     rg_initial initial;
+    rg_start start;
     int initial_sets;
     rg_initial_set *initial_set; /* the last one that has an element counts */
     int boundaries;

@@ -339,7 +339,9 @@ void rg_case_check(rg_check *ck, const rg_node *root) {
         int before = ck->problems->count;
         check_table(ck, &rg_case_table, root, "", ck->c);
         if (ck->problems->count == before) {
-            rg_rotation_rule(&(rg_entry){ck, root, NULL}, "initial.", &ck->c->initial);
+            rg_entry whole = {ck, root, NULL};
+            rg_rotation_rule(&whole, "initial.", &ck->c->initial);
+            rg_start_rule(&whole);
         }
     } else if (root->kind != RG_NODE_BAD) {
         char value[64];

@@ -185,16 +185,18 @@ static void write_indent(FILE *out, int indent, bool dash) {
     fprintf(out, "%*s%s", dash ? indent - 2 : indent, "", dash ? "- " : "");
 }
 
-/* Writes the sections that lead to `name` but not to `before`. Returns the indent of the key itself and, in
- * *last, the last part of its name. */
-static int write_sections(FILE *out, const char *before, const char *name, int indent, const char **last) {
+/* Writes the sections that lead to `name` but not to `before`, the first with the dash of an entry if that is
+ * still to come. Returns the indent of the key itself and, in *last, the last part of its name. */
+static int write_sections(FILE *out, const char *before, const char *name, int indent, bool *dash,
+                          const char **last) {
     bool same = true;
     for (const char *dot = strchr(name, '.'); dot != NULL; dot = strchr(name, '.')) {
         size_t length = (size_t)(dot - name);
         same = same && strncmp(before, name, length + 1) == 0;
         if (!same) {
-            write_indent(out, indent, false);
+            write_indent(out, indent, *dash);
             fprintf(out, "%.*s:\n", (int)length, name);
+            *dash = false;
         }
         before += same ? length + 1 : 0;
         name = dot + 1;
@@ -224,7 +226,7 @@ static void write_table(FILE *out, const rg_key_table *table, const void *base, 
         if (!rg_key_present(key, base)) {
             continue;
         }
-        int inner = write_sections(out, before, key->name, indent, &last);
+        int inner = write_sections(out, before, key->name, indent, &dash, &last);
         write_indent(out, inner, dash);
         fprintf(out, "%s:", last);
         if (key->type == RG_KEY_LIST) {

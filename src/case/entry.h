@@ -20,4 +20,7 @@ void rg_entry_wrong(const rg_entry *e, const char *key, rg_place at, rg_subject 
  * (case/initial.c). */
 void rg_rotation_rule(const rg_entry *e, const char *prefix, const rg_initial *is);
 
+/* What a static start cannot be found for (case/initial.c). */
+void rg_start_rule(const rg_entry *e);
+
 #endif

@@ -54,3 +54,34 @@ void rg_initial_set_rule(rg_check *ck, const rg_node *list, int i, const char *p
         rg_rotation_rule(&e, "", &ck->c->initial_set[i].is);
     }
 }
+
+static bool any_open(const rg_case *c) {
+    bool open = false;
+    for (int i = 0; i < c->interface.sets; i++) {
+        open = open || c->interface.set[i].open;
+    }
+    return open;
+}
+
+void rg_start_rule(const rg_entry *e) {
+    const rg_case *c = e->ck->c;
+    unsigned inside = 0;
+    for (int i = 0; i <= c->others; i++) {
+        inside |= rg_material_inside(rg_case_material(c, i)->model);
+    }
+    rg_form form = c->interface.form;
+    const char *wrong =
+        c->start != RG_START_STATIC ? NULL
+        : form == RG_FORM_INCOMPLETE || form == RG_FORM_INTRINSIC
+            ? "needs form variational or continuous, whose forces have a potential without a history"
+        : (inside & (RG_HAS_DAMAGE | RG_HAS_PLASTIC)) != 0
+            ? "needs elastic materials: what flows or is damaged on the way would depend on the way"
+        : c->bodies > 0 ? "cannot be found with bodies, which the solid might touch on the way"
+        : any_open(c) && c->interface.friction > 0
+            ? "needs interface.friction 0 with open faces: where they stick would depend on the way"
+            : NULL;
+    if (wrong != NULL) {
+        const rg_node *node = rg_entry_given(e, "start");
+        rg_entry_wrong(e, "start", node->at, (rg_subject){.value = node->text}, wrong);
+    }
+}

@@ -104,6 +104,10 @@ static const char *const masses_meaning[] = {
 static const char *const shapes[] = {"sphere", "plane", "cylinder", NULL};
 static const char *const shapes_meaning[] = {
     "of a radius", "all behind it is rigid", "of a radius, without ends"};
+static const char *const starts[] = {"initial", "static", NULL};
+static const char *const starts_meaning[] = {
+    "from the state of `initial`",
+    "from the equilibrium under the loads of t = 0 and what `boundary` prescribes then (places; elsewhere along its lines it holds), with the velocities of `initial`; faces do not break on the way"};
 static const char *const motions[] = {"free", "prescribed", NULL};
 static const char *const motions_meaning[] = {
     "by the forces on it: it has a mass", "by its velocity at all times"};
@@ -238,6 +242,8 @@ static const rg_key case_keys[] = {
     INITIAL_KEYS("initial.", offsetof(rg_case, initial))
     {.name = "initial.sets", .type = RG_KEY_LIST, ELSE("none"), CASE(initial_set), .entry = &rg_initial_set_table,
      .offset_count = offsetof(rg_case, initial_sets), MEANS("elements with values of their own in place of those of `initial`; the last one that has an element counts")},
+
+    {.name = "start", EXPLAINED(starts), DEFAULT(RG_START_INITIAL), CASE(start), MEANS("how a run begins")},
 
     {.name = "boundary", .type = RG_KEY_LIST, ELSE("none: a free body"), CASE(boundary), .entry = &rg_boundary_table,
      .offset_count = offsetof(rg_case, boundaries), MEANS("prescribed motion of the surface; what is not named is free")},

@@ -1,11 +1,11 @@
 #include "domain/element.h"
 
 /* Ends of each node: a corner is both ends of itself. */
-static const int node_end[RG_NODES][2] = {{0, 0}, {1, 1}, {2, 2}, {3, 3}, {0, 1},
-                                          {1, 2}, {0, 2}, {0, 3}, {1, 3}, {2, 3}};
+const int rg_node_end[RG_NODES][2] = {{0, 0}, {1, 1}, {2, 2}, {3, 3}, {0, 1},
+                                      {1, 2}, {0, 2}, {0, 3}, {1, 3}, {2, 3}};
 
 void rg_node_position(const double *corner, int node, double x[3]) {
-    const int *end = node_end[node];
+    const int *end = rg_node_end[node];
     for (int c = 0; c < 3; c++) {
         x[c] = 0.5 * (corner[3 * end[0] + c] + corner[3 * end[1] + c]);
     }
@@ -33,14 +33,14 @@ void rg_barycentric(const double *corner, const double x[3], double l[4]) {
 
 void rg_shape(const double l[4], double N[RG_NODES]) {
     for (int n = 0; n < RG_NODES; n++) {
-        const int *end = node_end[n];
+        const int *end = rg_node_end[n];
         N[n] = n < 4 ? l[n] * (2 * l[n] - 1) : 4 * l[end[0]] * l[end[1]];
     }
 }
 
 /* Corners that two mid-edges, or an edge and a corner (listed twice), have in common. */
 static int common_ends(int a, int b) {
-    const int *p = node_end[a], *q = node_end[b];
+    const int *p = rg_node_end[a], *q = rg_node_end[b];
     return (p[0] == q[0]) + (p[0] == q[1]) + (p[1] == q[0]) + (p[1] == q[1]);
 }
 

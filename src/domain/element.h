@@ -6,6 +6,9 @@
 #include "layout.h"
 #include "modes.h"
 
+/* Corners at the ends of each node's edge; a corner is both of its own. */
+extern const int rg_node_end[RG_NODES][2];
+
 /* Reference position of a node from the four corners [4][3] (m). */
 void rg_node_position(const double *corner, int node, double x[3]);
 

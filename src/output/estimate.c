@@ -250,6 +250,10 @@ void rg_estimate_print(const rg_solver *s, const rg_estimate *e, FILE *out) {
         fprintf(out, "load           %s%s%s\n", c->load[i].name != NULL ? c->load[i].name : "",
                 c->load[i].name != NULL ? ": " : "", words);
     }
+    if (c->start == RG_START_STATIC) {
+        fprintf(out, "start          static: the run finds the equilibrium first, a pass over all forces an "
+                     "iteration\n");
+    }
     fprintf(out,
             "time step      %.4g s = %.3g of the critical %.4g s, set by element %" PRId64
             " with its faces %s\n",

@@ -53,6 +53,10 @@ static void write_run(FILE *f, const rg_summary *m, const rg_solver *s, const rg
     rg_json_integer(f, "neighbours_max", s->part->quality.neighbours_max);
     rg_json_text(f, "instruction_set", s->kernels->name);
     rg_json_text(f, "precision", RG_PRECISION);
+    if (m->equilibrium.passes > 0) {
+        rg_json_number(f, "static_residual", m->equilibrium.residual);
+        rg_json_integer(f, "static_passes", m->equilibrium.passes);
+    }
     rg_json_integer(f, "steps", s->step);
     rg_json_integer(f, "restarted_from_step", m->first_step);
     rg_json_number(f, "time_end", s->time);

@@ -409,6 +409,42 @@ void rg_constraints_drift(rg_constraints *k, size_t tile, rg_real *u) {
     }
 }
 
+void rg_constraints_place(rg_constraints *k, rg_real *u) {
+    rg_supports_set(k->supports, 0, 0, 0);
+    for (size_t n = 0; n < k->entries; n++) {
+        const entry *e = &k->entry[n];
+        for (int i = 0; i < e->pattern->constrained; i++) {
+            if (is_placed(k, e, i) && k->supports->acts[e->boundary[i]]) {
+                u[rg_node_index((size_t)e->slot, e->pattern->node[i], e->component)] =
+                    (rg_real)value_at(k, e, i, 0);
+            }
+        }
+    }
+    rg_oblique_place(k->oblique, u);
+}
+
+void rg_constraints_show(const rg_constraints *k, rg_held_line *show, void *to) {
+    for (size_t n = 0; n < k->entries; n++) {
+        const entry *e = &k->entry[n];
+        const double line[3] = {e->component == 0, e->component == 1, e->component == 2};
+        for (int i = 0; i < e->pattern->constrained; i++) {
+            if (k->supports->acts[e->boundary[i]]) {
+                show(to, (size_t)e->slot, e->pattern->node[i], line);
+            }
+        }
+    }
+    rg_oblique_show(k->oblique, show, to);
+}
+
+void rg_constraints_hold(const rg_constraints *k, size_t tile, rg_real *field) {
+    static const double rest[RG_NODES] = {0};
+    double impulse[RG_NODES];
+    rg_oblique_hold(k->oblique, tile, field);
+    for (size_t n = k->tile_begin[tile]; n < k->tile_begin[tile + 1]; n++) {
+        correct(&k->entry[n], pattern_now(k, &k->entry[n]), rest, field, impulse);
+    }
+}
+
 void rg_constraints_work(const rg_constraints *k, rg_exact_sum *work) {
     rg_oblique_work(k->oblique, work);
     for (size_t n = 0; n < k->entries; n++) {

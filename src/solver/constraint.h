@@ -51,6 +51,15 @@ void rg_constraints_drift(rg_constraints *k, size_t tile, rg_real *u);
 /* Adds the work done up to the last present time at which velocities were asked for (J) to `work`. */
 void rg_constraints_work(const rg_constraints *k, rg_exact_sum *work);
 
+/* A line along which a node is held of its element. */
+typedef void rg_held_line(void *to, size_t slot, int node, const double line[3]);
+
+/* For equilibria at t = 0: puts what has a place then into it; shows all lines that are held then; takes what
+ * is along them out of a field on a tile, by impulses through the mass. One thread, but for the last. */
+void rg_constraints_place(rg_constraints *k, rg_real *u);
+void rg_constraints_show(const rg_constraints *k, rg_held_line *show, void *to);
+void rg_constraints_hold(const rg_constraints *k, size_t tile, rg_real *field);
+
 /* Registers what the constraints must remember: all that varies of their entries, keyed by 4 * global number
  * of the element + component. */
 void rg_constraints_register(rg_constraints *k, rg_state *st);

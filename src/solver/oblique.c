@@ -340,21 +340,19 @@ void rg_oblique_set(rg_oblique *o, double time, double dt) {
 
 /* ---- Correction ---- */
 
-/* Brings an element's velocities to the targets, or to those of the present; finds the impulses over its mass
- * and returns their work. */
-static double correct(const rg_oblique *o, const entry *e, bool present, rg_real *velocity, double *impulse) {
+/* Brings an element's velocities along its rows to `target`; finds the impulses over its mass. */
+static void bring(const rg_oblique *o, const entry *e, const double *target, rg_real *velocity,
+                  double *impulse) {
     const row *r = o->row + e->first;
-    const memory *is = memory_of(e);
-    double change[MOST_ROWS], work = 0;
+    double change[MOST_ROWS];
     for (int i = 0; i < e->rows; i++) {
-        change[i] = (present ? is[i].present : is[i].target) - along(e, &r[i], velocity);
+        change[i] = target[i] - along(e, &r[i], velocity);
     }
     for (int i = 0; i < e->rows; i++) {
         impulse[i] = 0;
         for (int j = 0; j < e->rows; j++) {
             impulse[i] += e->inverse[i * e->rows + j] * change[j];
         }
-        work += 0.5 * e->mass * impulse[i] * (is[i].before + (present ? is[i].present : is[i].target));
     }
     for (int n = 0; n < RG_NODES; n++) {
         for (int c = 0; c < 3; c++) {
@@ -365,6 +363,19 @@ static double correct(const rg_oblique *o, const entry *e, bool present, rg_real
             }
             velocity[at] = (rg_real)v;
         }
+    }
+}
+
+/* To what is prescribed after the kick, or at its time; returns the work of that. */
+static double correct(const rg_oblique *o, const entry *e, bool present, rg_real *velocity, double *impulse) {
+    const memory *is = memory_of(e);
+    double target[MOST_ROWS], work = 0;
+    for (int i = 0; i < e->rows; i++) {
+        target[i] = present ? is[i].present : is[i].target;
+    }
+    bring(o, e, target, velocity, impulse);
+    for (int i = 0; i < e->rows; i++) {
+        work += 0.5 * e->mass * impulse[i] * (is[i].before + target[i]);
     }
     return work;
 }
@@ -425,6 +436,48 @@ void rg_oblique_drift(rg_oblique *o, size_t tile, rg_real *u) {
             }
             *displacement = r->held ? *displacement : here;
         }
+    }
+}
+
+void rg_oblique_place(rg_oblique *o, rg_real *u) {
+    if (o->entries > 0) {
+        choose_all(o);
+    }
+    enum { SWEEPS = 40 }; /* lines at an angle disturb each other */
+    for (size_t n = 0; n < SWEEPS * o->entries; n++) {
+        const entry *e = &o->entry[n / SWEEPS];
+        for (int i = 0; i < e->rows; i++) {
+            const row *r = &o->row[e->first + (size_t)i];
+            const rg_boundary *b = boundary_of(o, r);
+            double x[3];
+            place_of(o, e, r, x);
+            double gap = !r->held || !rg_boundary_is_placed(b)
+                             ? 0
+                             : rg_support_value(b, r->component, x, 0) - along(e, r, u);
+            for (int c = 0; c < 3; c++) {
+                rg_real *at = &u[rg_node_index((size_t)e->slot, r->node, c)];
+                *at = (rg_real)(*at + gap * r->along[c]);
+            }
+        }
+    }
+}
+
+void rg_oblique_show(const rg_oblique *o, rg_held_line *show, void *to) {
+    for (size_t n = 0; n < o->entries; n++) {
+        for (int i = 0; i < o->entry[n].rows; i++) {
+            const row *r = &o->row[o->entry[n].first + (size_t)i];
+            if (r->held) {
+                show(to, (size_t)o->entry[n].slot, r->node, r->along);
+            }
+        }
+    }
+}
+
+void rg_oblique_hold(const rg_oblique *o, size_t tile, rg_real *field) {
+    static const double rest[MOST_ROWS] = {0};
+    double impulse[MOST_ROWS];
+    for (size_t n = o->tile_begin[tile]; n < o->tile_begin[tile + 1]; n++) {
+        bring(o, &o->entry[n], rest, field, impulse);
     }
 }
 

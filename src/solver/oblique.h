@@ -11,6 +11,7 @@
 
 #include "base/exact_sum.h"
 #include "domain/assembly.h"
+#include "solver/constraint.h"
 #include "solver/state.h"
 #include "solver/supports.h"
 
@@ -28,6 +29,9 @@ void rg_oblique_set(rg_oblique *o, double time, double dt);
 void rg_oblique_kick(rg_oblique *o, size_t tile, rg_real *velocity, rg_real *now);
 void rg_oblique_drift(rg_oblique *o, size_t tile, rg_real *u);
 void rg_oblique_work(const rg_oblique *o, rg_exact_sum *work);
+void rg_oblique_place(rg_oblique *o, rg_real *u);
+void rg_oblique_show(const rg_oblique *o, rg_held_line *show, void *to);
+void rg_oblique_hold(const rg_oblique *o, size_t tile, rg_real *field);
 void rg_oblique_register(rg_oblique *o, rg_state *st);
 
 void rg_oblique_free(rg_oblique *o);

@@ -23,6 +23,7 @@ typedef struct {
     bool constrain; /* prescribed motions, loads and bodies act */
     bool advance;   /* the history of the material goes on by the step that led here: once for each state */
     bool hold;      /* no face breaks */
+    bool load;      /* of what acts from outside, loads alone do */
     bool apart;     /* velocity is that of elements that do not know yet that they share nodes */
 } impulse;
 
@@ -138,6 +139,9 @@ static void element_sweep(rg_solver *s, size_t tile, const rg_workspace *w, cons
     tile_kick(s, tile, w, p, RG_SWEEP_ELEMENT);
     if (p->constrain) {
         push(s, tile, p);
+    } else if (p->load) {
+        rg_loads_find(s->loads, tile, s->u, s->velocity);
+        rg_loads_push(s->loads, tile, &(rg_push){p->dt, 0, p->velocity, NULL});
     }
     s->tile_stiffening[tile] = largest(bulk.stiffening, blocks * RG_LANES);
 }
@@ -360,6 +364,18 @@ void rg_solver_impulse(rg_solver *s, rg_real *velocity, double dt) {
     evaluate(s, &(impulse){.velocity = velocity, .dt = dt});
 }
 
+void rg_solver_acceleration(rg_solver *s, rg_real *acceleration, bool loaded) {
+#pragma omp parallel for schedule(static)
+    for (size_t i = 0; i < s->domain->blocks * RG_NODE_BLOCK; i++) {
+        acceleration[i] = 0;
+    }
+    if (loaded) {
+        rg_loads_set(s->loads, 0, 0, 0);
+    }
+    publish(s);
+    evaluate(s, &(impulse){.velocity = acceleration, .dt = 1, .hold = true, .load = loaded});
+}
+
 /* ---- Time ---- */
 
 /* The stiffening of the initial state, with faces that cannot break yet. */
@@ -371,10 +387,14 @@ static void measure(rg_solver *s) {
     s->pass_seconds = MPI_Wtime() - begin;
 }
 
-void rg_solver_start(rg_solver *s) {
-    rg_initial_fill(s);
+void rg_solver_settle(rg_solver *s) {
     rg_constraints_start(s->constraints, s->u, s->velocity, s->comm);
     measure(s);
+}
+
+void rg_solver_start(rg_solver *s) {
+    rg_initial_fill(s);
+    rg_solver_settle(s);
 }
 
 void rg_solver_measure(rg_solver *s) {

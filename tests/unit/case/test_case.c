@@ -366,7 +366,7 @@ static void test_echo_text(void **state) {
     assert_non_null(strstr(text, "\n  young: 260000000000 # Pa\n"));
     assert_non_null(strstr(text, "\n  safety: 0.5\n"));
     assert_non_null(strstr(text, "\n  - set: \"z+\"\n    component: z\n    velocity: 6.086 # m/s\n"));
-    assert_non_null(strstr(text, "\ninitial:\n  sets: []\nboundary:")); /* no values */
+    assert_non_null(strstr(text, "\ninitial:\n  sets: []\nstart: initial\nboundary:")); /* no values */
     free(text);
     rg_case_free(c);
 }

@@ -46,6 +46,7 @@ static const char defaults[] =
     "mass: consistent\n"
     "initial:\n"
     "  sets: []\n"
+    "start: initial\n"
     "boundary: []\n"
     "loads: []\n"
     "bodies: []\n"
@@ -252,6 +253,7 @@ static void test_everything(void **state) {
                 "    x: 1.5e3 # m/s\n"
                 "    z: \"-y\" # m/s\n"
                 "  sets: []\n"
+                "start: initial\n"
                 "boundary:\n"
                 "  - set: \"x-\"\n"
                 "    component: y\n"
@@ -384,6 +386,14 @@ static void test_forms_and_laws(void **state) {
     expect_part("interface={law: none, form: continuous}", "mass", "initial", "mass: lumped\n");
 }
 
+/* An entry whose first key stands in a section. */
+static void test_sections_of_entries(void **state) {
+    (void)state;
+    expect_part("loads=[{acceleration: {y: 1, z: 2}}, {acceleration: {x: t}, until: 3}]", "loads", "bodies",
+                "loads:\n  - acceleration:\n      y: 1 # m/s2\n      z: 2 # m/s2\n    from: 0 # s\n"
+                "  - acceleration:\n      x: \"t\" # m/s2\n    from: 0 # s\n    until: 3 # s\n");
+}
+
 static void test_interval_of_a_long_run(void **state) {
     (void)state;
     expect_part("time.end=49", "  interval", "  probes", "  interval: 0.97999999999999998 # s\n");
@@ -464,6 +474,7 @@ static void test_fixed_values(void **state) {
                               "viscosity.linear: 0\n"
                               "viscosity.quadratic: 0\n"
                               "mass: consistent\n"
+                              "start: initial\n"
                               "boundary[0].set: \"x-\"\n"
                               "boundary[0].component: y\n"
                               "boundary[0].displacement: 0\n"
@@ -546,12 +557,16 @@ static void test_changes_of_lines(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_defaults),          cmocka_unit_test(test_everything),
-        cmocka_unit_test(test_forms_and_laws),    cmocka_unit_test(test_interval_of_a_long_run),
+        cmocka_unit_test(test_defaults),
+        cmocka_unit_test(test_everything),
+        cmocka_unit_test(test_forms_and_laws),
+        cmocka_unit_test(test_interval_of_a_long_run),
+        cmocka_unit_test(test_sections_of_entries),
 #ifndef RG_SINGLE
         cmocka_unit_test(test_ceramic_and_metal),
 #endif
-        cmocka_unit_test(test_fixed_values),      cmocka_unit_test(test_changes),
+        cmocka_unit_test(test_fixed_values),
+        cmocka_unit_test(test_changes),
         cmocka_unit_test(test_changes_of_lines),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

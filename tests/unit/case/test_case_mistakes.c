@@ -15,7 +15,8 @@
     "allowed: list from displacement, velocity, stress, mean_stress, principal_stress, crack, "              \
     "damage, regime, plastic_strain, triaxiality, rank, fragment, material"
 #define BLOCKS                                                                                               \
-    "allowed: defaults, tables, mesh, material, materials, interface, viscosity, mass, initial, boundary, "  \
+    "allowed: defaults, tables, mesh, material, materials, interface, viscosity, mass, initial, start, "     \
+    "boundary, "                                                                                             \
     "loads, "                                                                                                \
     "bodies, time, output, checkpoint"
 #define CERAMIC        ": not used, because material.model is neo-hookean; it belongs to deshpande-evans\n"

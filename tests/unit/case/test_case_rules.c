@@ -525,7 +525,7 @@ static const mistake materials[] = {
      ":18:11: output.fields: plastic_strain: no material has such a field\n"
      ":20:1: x: unknown key; allowed: defaults, tables, mesh, material, materials, interface, viscosity, "
      "mass, "
-     "initial, "
+     "initial, start, "
      "boundary, loads, bodies, time, output, checkpoint\n"},
     {"  model: neo-hookean\n",
      "  model: rubber\n"

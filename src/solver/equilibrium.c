@@ -1,0 +1,336 @@
+#include "solver/equilibrium.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <omp.h>
+#include <string.h>
+
+#include "base/error.h"
+#include "base/first_bad.h"
+#include "base/mem.h"
+#include "base/vector.h"
+#include "domain/element.h"
+#include "layout.h"
+#include "solver/coarse.h"
+#include "solver/step.h"
+
+enum { NEWTON_STEPS = 30, HALVINGS = 10, ITERATIONS = 20000, MODES = 6 };
+
+/* What the precision of the fields leaves to be found. */
+static const bool single = sizeof(rg_real) < sizeof(double);
+static double tolerance(void) {
+    return single ? 1e-4 : 1e-8;
+}
+
+/* Of residuals that fall no more: what rounding leaves of light loads. */
+static double rounding(void) {
+    return single ? 1e-2 : 1e-5;
+}
+
+typedef struct {
+    rg_solver *solver;
+    rg_coarse *coarse;
+    size_t length;             /* of the fields */
+    rg_real *start, *internal; /* u, and the acceleration by internal forces, at the last Newton step */
+    rg_real *residual, *force, *change; /* acceleration; M times it; sum of the CG's steps */
+    rg_real *search, *product, *product_force, *preconditioned;
+    double mass[RG_NODES][RG_NODES]; /* M/(rho V) */
+    rg_exact_sum *sum;               /* [threads] */
+    double nudge;                    /* largest displacement of a difference (m) */
+    int64_t passes;
+} newton;
+
+/* ---- Fields ---- */
+
+static void copy(const newton *q, const rg_real *from, rg_real *to) {
+#pragma omp parallel for schedule(static)
+    for (size_t i = 0; i < q->length; i++) {
+        to[i] = from[i];
+    }
+}
+
+/* to = factor to + scale from */
+static void add(const newton *q, double scale, const rg_real *from, double factor, rg_real *to) {
+#pragma omp parallel for schedule(static)
+    for (size_t i = 0; i < q->length; i++) {
+        to[i] = (rg_real)(factor * to[i] + scale * from[i]);
+    }
+}
+
+static void hold(const newton *q, rg_real *field) {
+#pragma omp parallel for schedule(static)
+    for (size_t t = 0; t < q->solver->domain->tiles; t++) {
+        rg_constraints_hold(q->solver->constraints, t, field);
+    }
+}
+
+/* out = M field */
+static void times_mass(const newton *q, const rg_real *field, rg_real *out) {
+    const rg_domain *d = q->solver->domain;
+#pragma omp parallel for schedule(static)
+    for (size_t block = 0; block < d->blocks; block++) {
+        double mass[RG_LANES];
+        for (int l = 0; l < RG_LANES; l++) {
+            size_t slot = block * RG_LANES + (size_t)l;
+            mass[l] = d->id[slot] >= 0 ? rg_element_mass(d, q->solver->model->material, slot) : 0;
+        }
+        for (int a = 0; a < RG_NODES; a++) {
+            for (int c = 0; c < 3; c++) {
+                double sum[RG_LANES] = {0};
+                for (int b = 0; b < RG_NODES; b++) {
+                    const rg_real *v = field + rg_node_index(block * RG_LANES, b, c);
+                    for (int l = 0; l < RG_LANES; l++) {
+                        sum[l] += q->mass[a][b] * v[l];
+                    }
+                }
+                rg_real *to = out + rg_node_index(block * RG_LANES, a, c);
+                for (int l = 0; l < RG_LANES; l++) {
+                    to[l] = (rg_real)(mass[l] * sum[l]);
+                }
+            }
+        }
+    }
+}
+
+/* Of two fields over all elements; an element's own sum has an order of its own. */
+static double dot(const newton *q, const rg_real *a, const rg_real *b) {
+    const rg_domain *d = q->solver->domain;
+    memset(q->sum, 0, (size_t)q->solver->threads * sizeof *q->sum);
+#pragma omp parallel for schedule(static)
+    for (size_t block = 0; block < d->blocks; block++) {
+        double sum[RG_LANES] = {0};
+        for (size_t i = block * RG_NODE_BLOCK; i < (block + 1) * RG_NODE_BLOCK; i++) {
+            sum[i % RG_LANES] += (double)a[i] * b[i];
+        }
+        for (size_t l = 0; l < RG_LANES; l++) {
+            if (d->id[block * RG_LANES + l] >= 0) {
+                rg_exact_add(&q->sum[omp_get_thread_num()], sum[l]);
+            }
+        }
+    }
+    for (int t = 1; t < q->solver->threads; t++) {
+        rg_exact_merge(&q->sum[0], &q->sum[t]);
+    }
+    rg_exact_allreduce(&q->sum[0], 1, q->solver->comm);
+    return rg_exact_value(&q->sum[0]);
+}
+
+static double largest(const newton *q, const rg_real *field) {
+    double most = 0;
+#pragma omp parallel for schedule(static) reduction(max : most)
+    for (size_t i = 0; i < q->length; i++) {
+        double size = fabs((double)field[i]);
+        most = size > most ? size : most;
+    }
+    MPI_Allreduce(MPI_IN_PLACE, &most, 1, MPI_DOUBLE, MPI_MAX, q->solver->comm);
+    return most;
+}
+
+/* Norm of an acceleration, sqrt(a M a). */
+static double norm(const newton *q, const rg_real *field) {
+    times_mass(q, field, q->force);
+    return sqrt(dot(q, field, q->force));
+}
+
+static void accelerate(newton *q, rg_real *out, bool loaded) {
+    rg_solver_acceleration(q->solver, out, loaded);
+    q->passes++;
+}
+
+/* ---- Supports ---- */
+
+typedef struct {
+    const newton *of;
+    double centre[3], size;
+    rg_exact_sum *sum; /* [MODES][MODES] */
+} rigid;
+
+/* Six motions of a rigid body, along a held line. */
+static void add_line(void *to, size_t slot, int node, const double line[3]) {
+    rigid *r = to;
+    double x[3], arm[3], moment[3], along[MODES];
+    rg_node_position(r->of->solver->domain->corner + 12 * slot, node, x);
+    rg_vector_subtract(x, r->centre, arm);
+    rg_vector_cross(arm, line, moment);
+    for (int k = 0; k < MODES; k++) {
+        along[k] = k < 3 ? line[k] : moment[k - 3] / r->size;
+    }
+    for (int i = 0; i < MODES * MODES; i++) {
+        rg_exact_add(&r->sum[i], along[i / MODES] * along[i % MODES]);
+    }
+}
+
+/* Whether the supports leave the body no motion as a rigid one: the matrix of these is definite. */
+static bool is_held(const newton *q) {
+    const double(*box)[3] = (const double(*)[3])q->solver->part->box;
+    rigid r = {.of = q, .sum = RG_NEW(rg_exact_sum, MODES * MODES)};
+    for (int c = 0; c < 3; c++) {
+        r.centre[c] = 0.5 * (box[0][c] + box[1][c]);
+        r.size = fmax(r.size, box[1][c] - box[0][c]);
+    }
+    rg_constraints_show(q->solver->constraints, add_line, &r);
+    rg_exact_allreduce(r.sum, MODES * MODES, q->solver->comm);
+    double matrix[MODES][MODES], most = 0;
+    for (int i = 0; i < MODES * MODES; i++) {
+        matrix[i / MODES][i % MODES] = rg_exact_value(&r.sum[i]);
+        most = fmax(most, matrix[i / MODES][i % MODES]);
+    }
+    rg_free(r.sum);
+    bool held = most > 0;
+    for (int k = 0; held && k < MODES; k++) { /* Gauss: a pivot that vanishes is a motion that is left */
+        held = matrix[k][k] > 1e-10 * most;
+        for (int i = k + 1; held && i < MODES; i++) {
+            double factor = matrix[i][k] / matrix[k][k];
+            for (int j = k; j < MODES; j++) {
+                matrix[i][j] -= factor * matrix[k][j];
+            }
+        }
+    }
+    return held;
+}
+
+_Noreturn static void refuse(const newton *q, int status, const char *why) {
+    rg_speak(q->solver->comm);
+    rg_fatal(status, "%s: start: static: %s", q->solver->input->path, why);
+}
+
+/* ---- The linear system ---- */
+
+/* product = M^-1 K search without what is held, by a difference of internal forces. */
+static void apply_tangent(newton *q) {
+    rg_solver *s = q->solver;
+    double scale = q->nudge / largest(q, q->search);
+    copy(q, q->start, s->u);
+    add(q, scale, q->search, 1, s->u);
+    accelerate(q, q->product, false);
+    add(q, 1 / scale, q->internal, -1 / scale, q->product);
+    hold(q, q->product);
+}
+
+/* preconditioned = (1/omega^2 + P A^-1 P^T M) residual. */
+static void precondition(newton *q) {
+    add(q, 1 / q->solver->omega2, q->residual, 0, q->preconditioned);
+    rg_coarse_correct(q->coarse, q->force, q->preconditioned);
+}
+
+/* `change` becomes what takes the residual to `goal` in its norm, about. */
+static void solve(newton *q, double goal) {
+    memset(q->change, 0, q->length * sizeof *q->change);
+    double before = 1, now = 0;
+    times_mass(q, q->residual, q->force);
+    for (int k = 0; k < ITERATIONS; k++) {
+        if (sqrt(dot(q, q->residual, q->force)) <= goal) {
+            return;
+        }
+        precondition(q);
+        now = dot(q, q->preconditioned, q->force);
+        add(q, 1, q->preconditioned, k == 0 ? 0 : now / before, q->search);
+        apply_tangent(q);
+        times_mass(q, q->product, q->product_force);
+        double curvature = dot(q, q->search, q->product_force);
+        if (!(curvature > 0)) {
+            refuse(q, RG_FAILURE, "no stable equilibrium: a part of the body is not held, or it buckles");
+        }
+        add(q, now / curvature, q->search, 1, q->change);
+        add(q, -now / curvature, q->product, 1, q->residual);
+        add(q, -now / curvature, q->product_force, 1, q->force);
+        before = now;
+    }
+}
+
+/* ---- Newton ---- */
+
+/* The residual at the present displacement; returns its norm, *scale: that of loads and reactions. */
+static double find_residual(newton *q, double *scale) {
+    accelerate(q, q->residual, true);
+    double whole = norm(q, q->residual);
+    hold(q, q->residual);
+    *scale = fmax(*scale, whole);
+    return norm(q, q->residual);
+}
+
+/* A step along `change` that makes the residual smaller, if there is one; returns its norm. */
+static double step(newton *q, double before, double *scale) {
+    double now = INFINITY, share = 1;
+    for (int k = 0; k < HALVINGS && !(now < before); k++, share *= 0.5) {
+        copy(q, q->start, q->solver->u);
+        add(q, share, q->change, 1, q->solver->u);
+        now = find_residual(q, scale);
+    }
+    return now;
+}
+
+static void tell(const newton *q, FILE *out, double residual) {
+    if (out != NULL && q->solver->rank == 0) {
+        fprintf(out, "static start   residual %.2g of the loads after %" PRId64 " passes\n", residual,
+                q->passes);
+        fflush(out);
+    }
+}
+
+static newton make(rg_solver *s) {
+    newton q = {.solver = s, .length = s->domain->blocks * RG_NODE_BLOCK};
+    rg_real **const field[] = {&q.start,  &q.internal, &q.residual,      &q.force,         &q.change,
+                               &q.search, &q.product,  &q.product_force, &q.preconditioned};
+    for (size_t i = 0; i < sizeof field / sizeof *field; i++) {
+        *field[i] = RG_NEW(rg_real, q.length + 1);
+    }
+    for (int i = 0; i < RG_NODES * RG_NODES; i++) {
+        q.mass[i / RG_NODES][i % RG_NODES] = rg_mass_entry(s->input->mass, i / RG_NODES, i % RG_NODES);
+    }
+    double least = INFINITY;
+    for (size_t slot = 0; slot < s->domain->blocks * RG_LANES; slot++) {
+        least = fmin(least, s->domain->geom[rg_geom_index(slot, RG_GEOM_VOLUME)]);
+    }
+    MPI_Allreduce(MPI_IN_PLACE, &least, 1, MPI_DOUBLE, MPI_MIN, s->comm);
+    q.nudge = (single ? 1e-2 : 1e-5) * cbrt(least);
+    q.sum = RG_NEW(rg_exact_sum, (size_t)s->threads);
+    return q;
+}
+
+static void end(newton *q) {
+    void *blocks[] = {q->start,  q->internal, q->residual, q->force,         q->change,
+                      q->search, q->product,  q->sum,      q->product_force, q->preconditioned};
+    for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) {
+        rg_free(blocks[i]);
+    }
+    rg_coarse_free(q->coarse);
+}
+
+/* Norm of the loads alone. */
+static double load_norm(newton *q) {
+    accelerate(q, q->residual, true);
+    accelerate(q, q->internal, false);
+    add(q, -1, q->internal, 1, q->residual);
+    return norm(q, q->residual);
+}
+
+rg_equilibrium rg_equilibrium_find(rg_solver *s, FILE *out) {
+    newton q = make(s);
+    rg_constraints_place(s->constraints, s->u);
+    if (!is_held(&q)) {
+        refuse(&q, RG_USAGE,
+               "what `boundary` prescribes at t = 0 does not hold the body: it can still move or turn");
+    }
+    q.coarse = rg_coarse_make(s);
+    double loads = load_norm(&q), scale = loads, residual = find_residual(&q, &scale), last = INFINITY;
+    for (int k = 0; k < NEWTON_STEPS && residual > tolerance() * scale; k++) {
+        if (residual > 0.5 * last && residual < rounding() * scale) {
+            break; /* to rounding */
+        }
+        last = residual;
+        copy(&q, s->u, q.start);
+        accelerate(&q, q.internal, false);
+        solve(&q, fmax(1e-4 * residual, 0.1 * tolerance() * scale));
+        scale = loads;
+        residual = step(&q, residual, &scale);
+        tell(&q, out, residual / scale);
+    }
+    if (!(residual <= rounding() * scale)) {
+        refuse(&q, RG_FAILURE, "no equilibrium found");
+    }
+    rg_equilibrium found = {.residual = scale > 0 ? residual / scale : 0, .passes = q.passes};
+    end(&q);
+    rg_solver_settle(s);
+    return found;
+}

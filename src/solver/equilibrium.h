@@ -1,0 +1,25 @@
+/* The equilibrium from which a run with `start: static` begins: u with M^-1 (internal forces + loads of t =
+ * 0) = 0 but along held lines, faces not breaking.
+ *
+ * Newton's method on the residual, its linear systems by conjugate gradients in the inner product of the
+ * mass, with tangents from differences of the internal forces (loads that follow the surface are held fixed
+ * in them), preconditioned by the mass over the highest squared frequency and a coarse space
+ * (solver/coarse.h). All sums are exact or of integers: the same bits on any ranks and threads. The cost is
+ * one pass over all forces an iteration. */
+#ifndef RG_EQUILIBRIUM_H
+#define RG_EQUILIBRIUM_H
+
+#include <stdio.h>
+
+#include "solver/solver.h"
+
+typedef struct {
+    double residual; /* over the loads and reactions, in the norm of M^-1 */
+    int64_t passes;
+} rg_equilibrium;
+
+/* After rg_solver_start: moves the displacement into equilibrium and tells `out` (NULL: nobody) of it. Ends
+ * the run with a message where the body is not held or no equilibrium is found. Collective. */
+rg_equilibrium rg_equilibrium_find(rg_solver *s, FILE *out);
+
+#endif

@@ -1,0 +1,126 @@
+"""Static starts: equilibria against closed forms, rest afterwards, the same bits on any layout and through a restart."""
+
+import numpy as np
+import pytest
+from conftest import SINGLE, launch, rounding
+
+BAR = """
+defaults: 0
+mesh: {cells: [2, 2, 8], size: [0.5e-3, 0.5e-3, 2e-3], jitter: 0.1}
+material: {model: linear-elastic, young: 70e9, poisson: 0, density: 2700}
+interface: {law: none, beta_s: 2}
+start: static
+boundary: [{name: hold, set: z-, component: z, displacement: 0}, {set: x-, normal: 0}, {set: y-, component: y, velocity: 0}]
+time: {end: 1, safety: 0.9, steps: 1000}
+output: {fields: [], interval: 100, probes: [{name: end, at: [0.1e-3, 0.1e-3, 2e-3]}]}
+"""
+SIDES = [{"set": side, "component": side[0], "displacement": 0} for side in ("x-", "y-", "z-")]
+CLAMP = [{"set": "z-", "component": component, "displacement": 0} for component in "xyz"]
+PASSES = 3000
+
+
+@pytest.fixture(scope="module")
+def bar(scratch):
+    path = scratch / "static.yaml"
+    path.write_text(BAR)
+    return path
+
+
+@pytest.mark.parametrize("form", ["variational", "continuous"])
+def test_a_bar_hangs_at_rest(run, figure, bar, form):
+    """By traction and gravity; then 1000 steps without change."""
+    law = {"law": "none", "form": form, **({"beta_s": 2} if form == "variational" else {})}
+    young, density, length, pull, fall = 70e9, 2700, 2e-3, 1e6, 3e5 if form == "variational" else 0  # which a lumped mass lumps
+    loads = [{"name": "pull", "set": "z+", "traction": {"z": pull}}, {"acceleration": {"z": fall}}]
+    done = run(bar, sets={"interface": law, "loads": loads})
+    theory = (pull * length + density * fall * length**2 / 2) / young
+    figure(f"hanging bar, form {form}: displacement of its end", done.history["end_uz"][0], theory=theory, bound=rounding(3e-8, 1e-3), relative=True,
+           why="the residual at which the search ends")
+    area, a, b = 0.25e-6, pull + density * fall * length, density * fall
+    stored = area / (2 * young) * (a**2 * length - a * b * length**2 + b**2 * length**3 / 3)
+    figure(f"hanging bar, form {form}: stored energy", done.energy["bulk"][0], theory=stored, bound=rounding(1e-7, 1e-3), relative=True,
+           why="the residual at which the search ends")
+    figure(f"hanging bar, form {form}: kinetic over stored energy in 1000 steps", done.energy["kinetic"].max() / stored, bound=rounding(1e-14, 1e-5),
+           why="the residual at which the search ends")
+    assert done.energy["external_work"][0] == 0 and done.energy["total"][0] == done.energy["bulk"][0] + done.energy["penalty"][0]
+    assert done.summary["static_residual"] < rounding(1e-8, 1e-3) and done.summary["static_passes"] < 600
+    hold = done.history["hold_force_z"]
+    assert hold[10] == pytest.approx(-area * a, rel=rounding(1e-6, 1e-2)) and hold[-1] == pytest.approx(hold[10], rel=rounding(1e-6, 1e-2))
+
+
+@pytest.mark.skipif(SINGLE, reason="a deflection of 60 elements leaves too little of strains in floats")
+def test_a_cantilever_bends(run, figure, bar):
+    """Timoshenko's beam; its clamp, which holds the section flat, makes it a little stiffer."""
+    length, width, young, poisson, shear = 10e-3, 1e-3, 70e9, 0.25, 1e5
+    sets = {"mesh": {"cells": [3, 3, 30], "size": [width, width, length]}, "material.poisson": poisson, "loads": [{"set": "z+", "traction": {"x": shear}}],
+            "boundary": CLAMP, "time.steps": 200, "output.probes": [{"name": "end", "at": [width / 2, width / 2, length]}]}
+    done = run(bar, threads=2, sets=sets)
+    force, inertia = shear * width**2, width**4 / 12
+    factor, modulus = 10 * (1 + poisson) / (12 + 11 * poisson), young / 2 / (1 + poisson)
+    theory = force * length**3 / (3 * young * inertia) + force * length / (factor * modulus * width**2)
+    figure("cantilever: deflection of its end", done.history["end_ux"][0], theory=theory, bound=0.01, relative=True)
+    assert done.summary["static_residual"] < 1e-8 and done.summary["static_passes"] < PASSES
+    assert done.energy["kinetic"].max() < 1e-10 * done.energy["bulk"][0]
+
+
+def test_pressure_all_around(run, figure, bar):
+    """Of a neo-Hookean block on three rollers, one of them prescribed along its normal: it shrinks by J, -p = stress."""
+    pressure, poisson, young = 1e9, 0.25, 70e9
+    sets = {"loads": [{"where": "nx + ny + nz > 0", "pressure": pressure}], "boundary": [{"where": "nx < -0.5", "direction": [1, 0, 0], "displacement": 0}, *SIDES[1:]],
+            "material": {"model": "neo-hookean", "young": young, "poisson": poisson, "density": 2700}, "time.steps": 5, "output.interval": 1}
+    history = run(bar, sets=sets).history
+    for axis in "xyz":
+        figure(f"block under pressure: stress along {axis}", history[f"end_s{axis}{axis}"][0], theory=-pressure, bound=rounding(1e-7, 2e-3), relative=True,
+               why="the residual at which the search ends")
+
+
+def test_a_stretched_bar_starts_at_rest(run, figure, bar):
+    stretch = {"name": "pull", "set": "z+", "component": "z", "displacement": "1e-6*(1 + 0*t)"}
+    done = run(bar, sets={"boundary": [*SIDES, stretch], "loads": [], "material.poisson": 0.3, "time.steps": 100})
+    figure("stretched bar: stress", done.history["end_szz"][0], theory=70e9 * 5e-4 / (1 - 0.3 * 5e-4) ** 2, bound=rounding(1e-7, 1e-3), relative=True,
+           why="the residual at which the search ends")
+    assert done.energy["kinetic"].max() < rounding(1e-12, 1e-5) * done.energy["bulk"][0]
+    assert done.history["pull_work"][-1] == pytest.approx(0, abs=rounding(1e-9, 1e-3) * done.energy["bulk"][0])
+
+
+EVERYTHING = {"mesh": {"cells": [2, 2, 6], "size": [0.5e-3, 0.5e-3, 1.5e-3], "jitter": 0.1}, "output.probes": [],
+              "materials": [{"name": "soft", "where": "x > 0.25e-3", "model": "neo-hookean", "young": 10e9, "poisson": 0.3, "density": 1000}],
+              "loads": [{"set": "z+", "traction": {"x": "1e5*(1 + y/1e-3)", "z": 1e6}}, {"where": "ny > 0.5", "pressure": "1e6*(1 + t/1e-6)"},
+                        {"acceleration": {"y": 1e5}}],
+              "boundary": [{"set": "z-", "angle": "1e-4 + 0*t", "axis": [0, 0, 1]}, {"where": "nx < -0.5 && z > 1e-3", "normal": 0}],
+              "initial": {"velocity": {"z": "3*z/2e-3"}}, "time.steps": 40, "output.interval": 10}
+
+
+@pytest.mark.parametrize("form", ["variational", "continuous"])
+def test_the_same_bits_on_any_layout_and_through_a_restart(run, bar, form):
+    law = {"law": "none", "form": form, **({"beta_s": 2} if form == "variational" else {})}
+    sets = {**EVERYTHING, "interface": law, "checkpoint.steps": 20, "checkpoint.keep": 10}
+    one = run(bar, sets=sets)
+    assert one.summary["static_residual"] < rounding(1e-8, 1e-3)
+    for ranks, threads in ((1, 2), (3, 1)):
+        other = run(bar, ranks=ranks, threads=threads, sets=sets)
+        for key in ("state_hash", "static_residual", "static_passes"):
+            assert one.summary[key] == other.summary[key], key
+        assert (one.dir / "history.csv").read_bytes() == (other.dir / "history.csv").read_bytes()
+    hash_of_all = one.summary["state_hash"]
+    shorter = run(bar, ranks=2, sets={**sets, "time.steps": 25})
+    again = launch("run", "--restart", shorter.dir, "-q", "--set", "time.steps=40", ranks=3)
+    assert again.returncode == 0, again.stderr
+    assert f'"state_hash": "{hash_of_all}"' in (shorter.dir / "summary.json").read_text()
+
+
+@pytest.mark.parametrize("change, status, message", [
+    ({"boundary": SIDES[:2]}, 2, "start: static: what `boundary` prescribes at t = 0 does not hold the body: it can still move or turn"),
+    ({"boundary": [SIDES[2], {"set": "z+", "component": "z", "displacement": 0}, {**SIDES[0], "from": 1e-9}, SIDES[1]]}, 2,
+     "start: static: what `boundary` prescribes at t = 0 does not hold the body: it can still move or turn"),
+    ({"interface.form": "intrinsic", "interface.law": "xu-needleman", "interface.strength": 1e8, "interface.energy": 30}, 2,
+     "start: static: needs form variational or continuous, whose forces have a potential without a history"),
+    ({"material": {"model": "j2", "young": 70e9, "poisson": 0.3, "density": 2700, "yield_stress": 1e8}}, 2,
+     "start: static: needs elastic materials: what flows or is damaged on the way would depend on the way"),
+    ({"bodies": [{"name": "b", "shape": "plane", "motion": "prescribed", "at": [0, 0, 1], "normal": [0, 0, -1]}]}, 2,
+     "start: static: cannot be found with bodies, which the solid might touch on the way"),
+    ({"loads": [{"set": "z+", "traction": {"z": -9e10}}], "material.poisson": 0.2, "boundary": CLAMP, "material.model": "neo-hookean"}, 1, "start: static: no ")])
+def test_static_starts_that_are_refused(bar, tmp_path, change, status, message):
+    from conftest import overrides
+    said = launch("run", bar, "-q", "-o", tmp_path / "out", *overrides({k: v for k, v in change.items()}))
+    assert said.returncode == status and message in said.stderr, said.stderr
