@@ -85,9 +85,9 @@ def test_a_stretched_bar_starts_at_rest(run, figure, bar):
 
 EVERYTHING = {"mesh": {"cells": [2, 2, 6], "size": [0.5e-3, 0.5e-3, 1.5e-3], "jitter": 0.1}, "output.probes": [],
               "materials": [{"name": "soft", "where": "x > 0.25e-3", "model": "neo-hookean", "young": 10e9, "poisson": 0.3, "density": 1000}],
-              "loads": [{"set": "z+", "traction": {"x": "1e5*(1 + y/1e-3)", "z": 1e6}}, {"where": "ny > 0.5", "pressure": "1e6*(1 + t/1e-6)"},
+              "loads": [{"name": "pull", "set": "z+", "traction": {"x": "1e5*(1 + y/1e-3)", "z": 1e6}}, {"where": "ny > 0.5", "pressure": "1e6*(1 + t/1e-6)"},
                         {"acceleration": {"y": 1e5}}],
-              "boundary": [{"set": "z-", "angle": "1e-4 + 0*t", "axis": [0, 0, 1]}, {"where": "nx < -0.5 && z > 1e-3", "normal": 0}],
+              "boundary": [{"name": "hold", "set": "z-", "angle": "1e-4 + 0*t", "axis": [0, 0, 1]}, {"where": "nx < -0.5 && z > 1e-3", "normal": 0}],
               "initial": {"velocity": {"z": "3*z/2e-3"}}, "time.steps": 40, "output.interval": 10}
 
 
