@@ -63,7 +63,7 @@ class Spall:
         free = [f"{c}{sign}" for c in "xy" for sign in "-+" if (f"{c}{sign}", c) not in held]
         if len(pull) < 2 or free:
             raise BadInput(f"{cls.NAME} is for bars that are pulled at both ends (z-, z+) and cannot move at their sides")
-        if case.get("initial") or case.get("bodies"):
+        if any((case.get("initial") or {}).values()) or case.get("bodies"):
             raise BadInput(f"{cls.NAME} is for bars at rest, without rigid bodies")
         return pull
 

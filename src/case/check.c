@@ -278,6 +278,8 @@ static void learn(rg_check *ck, const rg_key *key, const rg_node *node, bool goo
         ck->form = ck->form && good;
         ck->usage[RG_GROUP_INTERFACE] = usage_if(ck->form, RG_GROUP_INTERFACE, ck->c);
         ck->usage[RG_GROUP_DG] = usage_if(ck->form, RG_GROUP_DG, ck->c);
+    } else if (key->offset == offsetof(rg_case, interface.beta_s)) {
+        ck->penalty_given = node != NULL;
     } else if (key->offset == offsetof(rg_case, interface.law)) {
         rg_law_rule(ck, node, good);
     } else if (key->offset == offsetof(rg_case, interface.activation)) {

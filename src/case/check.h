@@ -25,7 +25,8 @@ typedef struct {
     bool box;          /* mesh.origin and mesh.size are good */
     bool form;         /* interface.form and .faces are good */
     bool models;       /* those of all materials are good */
-    bool switch_given; /* interface.activation or .onset is there */
+    bool penalty_given; /* interface.beta_s is there */
+    bool switch_given;  /* interface.activation or .onset is there */
     rg_material_check material;
 } rg_check;
 

@@ -2,9 +2,12 @@
 
 #include "cohesive/facts.h"
 
-/* Whether the newer set holds for the case. */
+/* Whether the newer set holds for the case: a switch that conserves, or none, goes with its form and law. */
 static bool conserves(const rg_case *c) {
-    return c->defaults >= 1 && c->interface.form == RG_FORM_VARIATIONAL;
+    rg_law law = c->interface.law;
+    bool falls =
+        law == RG_LAW_NONE || (rg_law_facts_of(law, c->interface.shape[law], 1).forms & RG_ENVELOPE) != 0;
+    return c->defaults >= 1 && c->interface.form == RG_FORM_VARIATIONAL && falls;
 }
 
 double rg_default_beta_s(const rg_case *c) {
@@ -12,20 +15,20 @@ double rg_default_beta_s(const rg_case *c) {
 }
 
 double rg_default_activation(const rg_case *c) {
-    rg_law law = c->interface.law;
-    bool falls =
-        law != RG_LAW_NONE && (rg_law_facts_of(law, c->interface.shape[law], 1).forms & RG_ENVELOPE) != 0;
-    return conserves(c) && falls ? RG_ACTIVATION_CONSERVING : RG_ACTIVATION_CONTINUOUS;
+    return conserves(c) && c->interface.law != RG_LAW_NONE ? RG_ACTIVATION_CONSERVING
+                                                           : RG_ACTIVATION_CONTINUOUS;
 }
 
 double rg_default_onset(const rg_case *c) {
-    return c->defaults >= 1 ? 1 : 0.3;
+    return c->defaults >= 1 ? 0.5 : 0.3;
 }
 
 double rg_default_contact(const rg_case *c) {
     return conserves(c) ? RG_CONTACT_POTENTIAL : RG_CONTACT_PENALTY;
 }
 
+/* A switch that does not conserve needs the smaller step. */
 double rg_default_safety(const rg_case *c) {
-    return conserves(c) ? 0.9 : 0.5;
+    bool near = c->interface.law == RG_LAW_NONE || c->interface.activation == RG_ACTIVATION_CONSERVING;
+    return conserves(c) && near ? 0.875 : 0.5;
 }

@@ -9,13 +9,16 @@ enum { RG_DEFAULTS = 1 /* the newest set */ };
 
 /* Of form variational set 1 is chosen as one (kernels/README.md, "Which set of defaults"): a penalty that is
  * as stiff as its coercivity needs lengthens the critical step, and a switch and a contact that conserve
- * energy let the step come near it. Other forms have neither and keep the thesis's values. */
-#define RG_DEFAULT_WORDS_beta_s "4 (defaults 1: 2)"
+ * energy let the step come near it. Other forms have neither and keep the values of set 0. */
+#define RG_DEFAULT_WORDS_beta_s                                                                              \
+    "2 of form variational and a law of which activation may be conserving, else 4 (defaults 0: 4)"
 #define RG_DEFAULT_WORDS_activation                                                                          \
-    "continuous (defaults 1: conserving, of a law that it takes, without contact flux)"
-#define RG_DEFAULT_WORDS_onset   "0.3 (defaults 1: 1)"
-#define RG_DEFAULT_WORDS_contact "penalty (defaults 1: potential)"
-#define RG_DEFAULT_WORDS_safety  "0.5 (defaults 1: 0.9)"
+    "conserving of form variational, a law that it takes and no contact flux, else continuous (defaults 0: " \
+    "continuous)"
+#define RG_DEFAULT_WORDS_onset   "0.5 (defaults 0: 0.3)"
+#define RG_DEFAULT_WORDS_contact "potential where beta_s is 2 by default, else penalty (defaults 0: penalty)"
+#define RG_DEFAULT_WORDS_safety                                                                              \
+    "0.875 of form variational with activation conserving or law none, else 0.5 (defaults 0: 0.5)"
 
 double rg_default_beta_s(const rg_case *c);
 double rg_default_activation(const rg_case *c);

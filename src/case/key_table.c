@@ -71,9 +71,9 @@ static const char *const penalties_meaning[] = {
     "lambda + 2 mu in all directions, which conserves angular momentum exactly"};
 static const char *const activations[] = {"continuous", "total", "conserving", NULL};
 static const char *const activations_meaning[] = {
-    "the opening counts from the jump at the moment of breaking, so the traction is continuous in time",
-    "the whole jump enters at once (the thesis's): gains energy",
-    "like continuous, and so that the energy of the switch adds up, for long runs of violent breaks (form variational, contact penalty or potential; law linear, rate or benzeggagh-kenane)"};
+    "the opening counts from the jump at the moment of breaking, so the traction is continuous in time (legacy): loses or gains energy at each switch",
+    "the whole jump enters at once (legacy, the thesis's): gains energy",
+    "like continuous, and so that the energy of the switch adds up (form variational, contact penalty or potential; law linear, rate or benzeggagh-kenane)"};
 static const char *const shears[] = {"released", "fading", NULL};
 static const char *const shears_meaning[] = {
     "it drops from one step to the next, whatever it is",
@@ -84,9 +84,9 @@ static const char *const criteria_meaning[] = {
     "the same in tension; under a pressure p where shear reaches beta strength + friction p: with activation conserving, beta and friction"};
 static const char *const contacts[] = {"penalty", "flux", "potential", NULL};
 static const char *const contacts_meaning[] = {
-    "one-sided penalty on the normal opening",
-    "all DG terms return (the thesis's): unstable once closed faces slide",
-    "the penalty as an exact potential, which fades as faces slide off each other: for rubble that slides far"};
+    "one-sided penalty on the normal opening (legacy)",
+    "all DG terms return (legacy, the thesis's): unstable once closed faces slide",
+    "the penalty as an exact potential, which fades as faces slide off each other"};
 static const char *const precisions[] = {"double", "single", NULL};
 static const char *const keeps[] = {"energy", "opening", NULL};
 static const char *const keeps_meaning[] = {
@@ -151,10 +151,10 @@ static const char *const fragments_meaning[] = {
     {.name = path "rotation.at", .unit = "m", REAL3, ANY, ELSE("0, 0, 0"), .offset = (at_) + offsetof(rg_initial, at), MEANS("a point of the axis")},
 
 static const rg_key case_keys[] = {
-    {.name = "defaults", INTEGER, FROM_TO(0, RG_DEFAULTS), DEFAULT(0), MAY_CHANGE, CASE(defaults),
-     MEANS("which defaults the case means: 0, those that stand first here; 1, those that conserve energy at nearly the "
-           "critical step, of form variational: interface.beta_s 2, activation conserving, onset 1, contact potential, "
-           "time.safety 0.9")},
+    {.name = "defaults", INTEGER, FROM_TO(0, RG_DEFAULTS), DEFAULT(1), MAY_CHANGE, CASE(defaults),
+     MEANS("which defaults the case means: 1, those that conserve energy at nearly the critical step, of form "
+           "variational; 0, those of version 0.9: interface.beta_s 4, activation continuous, onset 0.3, contact penalty, "
+           "time.safety 0.5")},
 
     {.name = "tables", .type = RG_KEY_TABLES, ELSE("none"), CASE(tables),
      MEANS("functions of one variable that expressions may call: straight lines between the points, or smooth, a monotone cubic; constant beyond the ends")},

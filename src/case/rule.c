@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include "base/mem.h"
+#include "case/default.h"
 #include "cohesive/facts.h"
 
 /* ---- mesh.file: relative to the case file, which case.yaml in the output directory is not ---- */
@@ -138,6 +139,9 @@ void rg_law_rule(rg_check *ck, const rg_node *node, bool good) {
     for (size_t i = 0; i < sizeof groups / sizeof *groups; i++) {
         bool sure = good && (ck->form || groups[i] != RG_GROUP_SWITCH);
         ck->usage[groups[i]] = !sure ? RG_UNSURE : rg_group_used(groups[i], ck->c) ? RG_USED : RG_UNUSED;
+    }
+    if (good && !ck->penalty_given) { /* its default depends on the law, which comes later */
+        ck->c->interface.beta_s = rg_default_beta_s(ck->c);
     }
     if (good && ck->form) {
         check_law_and_form(ck, node);

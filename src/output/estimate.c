@@ -20,10 +20,11 @@
 
 /* A point that has just switched by the conserving activation unloads 1/interface.onset times as stiffly as a
  * closed one bears contact, in the stiffer of opening and sliding. In all directions alike, at all faces at
- * once, that stiffness is taken to add up to 1.2 times what the normal one does, so that up to this safety no
- * state that a face can take is unstable. */
+ * once, that stiffness adds up to 1.2 times what the normal one does. Half of that is asked for, since never
+ * do all points switch together: bars torn to pieces keep their energy in 20,000 steps within 0.8 % at 0.5
+ * and safety 0.875, and gain 6.5 % at 0.3 and 0.9. */
 static double steady_safety(const rg_case *c) {
-    return (1 + 1e-9) * sqrt(c->interface.onset / 1.2);
+    return (1 + 1e-9) * sqrt(c->interface.onset / 0.6);
 }
 
 /* Longest edge of interface i (m). */

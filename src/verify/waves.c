@@ -84,7 +84,7 @@ void rg_verify_shear_wave(MPI_Comm comm, const rg_verify_change *change, rg_veri
 #ifdef RG_SINGLE
 static const double energy_limit = 1e-3;
 #else
-static const double energy_limit = 3e-9;
+static const double energy_limit = 1e-8;
 #endif
 
 void rg_verify_energy(MPI_Comm comm, const rg_verify_change *change, rg_verify_rows *rows) {

@@ -52,11 +52,11 @@ def whole(first, second, **interface):
 
 
 WAYS = {  # solids, interface, bounds of the three stresses and of the energy error
-    "alumina to steel": (ALUMINA, STEEL, {}, (0.0035, 2e-4, 0.005, 8e-5)),
-    "steel to alumina": (STEEL, ALUMINA, {}, (0.003, 0.0025, 8e-4, 5e-5)),
-    "alumina to steel, incomplete": (ALUMINA, STEEL, {"form": "incomplete", "beta_s": 40}, (0.004, 9e-4, 0.002, 0.005)),
-    "alumina to steel, shared nodes": (ALUMINA, STEEL, {"form": "continuous"}, (0.0045, 5e-4, 0.007, 4e-4)),
-    "alumina to steel, penalty isotropic": (ALUMINA, STEEL, {"penalty": "isotropic"}, (0.0045, 0.0035, 0.0015, 1.5e-5)),
+    "alumina to steel": (ALUMINA, STEEL, {}, (9e-4, 0.007, 0.013, 6e-6)),
+    "steel to alumina": (STEEL, ALUMINA, {}, (0.003, 0.0015, 8e-4, 1.2e-6)),
+    "alumina to steel, incomplete": (ALUMINA, STEEL, {"form": "incomplete", "beta_s": 40}, (0.004, 9e-4, 0.002, 0.0012)),
+    "alumina to steel, shared nodes": (ALUMINA, STEEL, {"form": "continuous"}, (0.0045, 5e-4, 0.007, 1.5e-5)),
+    "alumina to steel, penalty isotropic": (ALUMINA, STEEL, {"penalty": "isotropic"}, (7e-4, 1.5e-4, 0.012, 1e-5)),
 }
 
 
@@ -103,7 +103,7 @@ def test_reflection_breaks_the_interface(delamination, figure):
            bound=rounding(4e-15, 1e-5), unit="mm2", relative=True, why=ROUNDING)
     figure("interface of alumina and steel: energy against G_c times the area", 1e6 * summary["dissipated_J"],
            theory=1e6 * 5 * area, bound=rounding(4e-15, 1e-5), unit="uJ", relative=True, why=ROUNDING)
-    figure("interface of alumina and steel: energy error", summary["energy_error_rel"], bound=3e-3)
+    figure("interface of alumina and steel: energy error", summary["energy_error_rel"], bound=8e-5)
     assert np.abs(delamination.frames()[-1]["crack/points"][:, 2]).max() < 1e-6
     rate = (1 / impedance(ALUMINA) + 1 / impedance(STEEL)) * 110e6 / (2 * 5 / 110e6)
     separation = np.log(through / (through - 110e6)) / rate
@@ -318,4 +318,4 @@ def test_body_meets_both_materials(run, figure):
     assert ball["velocity"][0] > 0 and abs(ball["velocity"][2]) > 0.01  # back, and to one side
     change = max(np.abs(energy[f"momentum_{axis}"] - value).max() for axis, value in zip("xyz", (-start, 0, 0)))
     figure("sphere on two materials: change of linear momentum", change / start, bound=rounding(4e-15, 1e-5), why=ROUNDING)
-    figure("sphere on two materials: energy error", bar.summary["energy_error_rel"], bound=3e-4)
+    figure("sphere on two materials: energy error", bar.summary["energy_error_rel"], bound=3e-3)

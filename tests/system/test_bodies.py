@@ -44,7 +44,7 @@ def test_energy_is_handed_over(bounce, figure):
     energy = bounce.energy
     assert energy["bodies"][0] == pytest.approx(0.5 * BALL * FALL**2, rel=1e-12)
     assert energy["contact"].max() > 0.1 * energy["bodies"][0] and energy["contact"][-1] == 0
-    figure("sphere and block: energy error of the bounce", bounce.summary["energy_error_rel"], bound=2e-5)
+    figure("sphere and block: energy error of the bounce", bounce.summary["energy_error_rel"], bound=5e-5)
 
 
 def test_ball_bounces_as_from_a_rigid_block(bounce, figure):
@@ -68,7 +68,7 @@ def test_force_moves_the_ball(bounce, figure):
 
 
 @pytest.mark.parametrize("name, sets, bound", [
-    ("lumped mass", {"mass": "lumped"}, 3e-5),
+    ("lumped mass", {"mass": "lumped"}, 1.2e-4),
     ("incomplete form", {"interface.form": "incomplete", "interface.beta_s": 40}, 9e-4)])
 def test_other_discretizations_hand_over_momentum_and_energy(run, figure, name, sets, bound):
     other = run(CASES / "bounce.yaml", sets=sets)
@@ -78,7 +78,7 @@ def test_other_discretizations_hand_over_momentum_and_energy(run, figure, name, 
 
 
 @pytest.mark.parametrize("name, change, bound", [
-    ("penalty of 400", {"penalty": 400}, 2.5e-4), ("mass of 10 ug", {"mass": 1e-8}, 2e-3)])
+    ("penalty of 400", {"penalty": 400}, 1.5e-3), ("mass of 10 ug", {"mass": 1e-8}, 8e-3)])
 def test_time_step_follows_stiff_contact_and_light_bodies(run, bounce, figure, name, change, bound):
     """Both would be unstable at the step of the solid alone."""
     ball = {"name": "ball", "shape": "sphere", "motion": "free", "at": [0.1e-3, 0, 1e-3], "radius": 1e-3,
@@ -108,16 +108,16 @@ def test_wall_sends_a_plane_wave(run, figure, wall):
     history, stress = push.history, -DENSITY * SPEED * 5
     late = history["time"] > 0.1e-6
     figure("rigid wall pushes a bar: stress against rho c V", 1e-6 * history["p_szz"][late].mean(),
-           theory=1e-6 * stress, bound=5e-4, unit="MPa", relative=True)
+           theory=1e-6 * stress, bound=4e-4, unit="MPa", relative=True)
     figure("rigid wall pushes a bar: force on the wall against rho c V times the area", history["wall_fz"][late].mean(),
-           theory=-stress * 0.04e-6, bound=2e-3, unit="N", relative=True)
+           theory=-stress * 0.04e-6, bound=8e-4, unit="N", relative=True)
     figure("rigid wall pushes a bar: force across, relative", abs(history["wall_fx"]).max() / abs(stress * 0.04e-6),
            bound=2.5e-9)
     figure("rigid wall pushes a bar: arrival", 1e6 * passage(history["time"], -history["p_szz"], -0.5 * stress),
            theory=1e6 * (0.5e-3 / SPEED + math.log(2) * rise), bound=0.02, unit="us", relative=True)
     figure("rigid wall pushes a bar: its work", 1e6 * push.energy["external_work"][-1],
            theory=-1e6 * stress * 0.04e-6 * 5 * (0.2e-6 - rise), bound=6e-4, unit="uJ", relative=True)
-    figure("rigid wall pushes a bar: energy error", push.summary["energy_error_rel"], bound=5e-4)
+    figure("rigid wall pushes a bar: energy error", push.summary["energy_error_rel"], bound=2.5e-5)
 
 
 # ---- Hertz ----

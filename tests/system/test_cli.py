@@ -265,7 +265,7 @@ def test_check_asks_for_the_units_of_impossible_waves(sets, speed):
     assert warned == ([] if speed is None else [speed])
 
 
-@pytest.mark.parametrize("sets, bound", [({}, None), ({"time.safety": 0.51}, "0.5"), ({"interface.onset": 0.075}, "0.25"),
+@pytest.mark.parametrize("sets, bound", [({}, None), ({"time.safety": 0.92}, "0.91"), ({"interface.onset": 0.15}, "0.5"),
                                          ({"interface.beta": 2}, None), ({"interface.activation": "continuous"}, None)])
 def test_check_warns_of_an_onset_too_stiff_for_the_step(sets, bound):
     process = launch("check", example("endurance.yaml"), *overrides(sets))

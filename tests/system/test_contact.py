@@ -35,7 +35,7 @@ def test_closed_crack_stays_pressed(collision, figure):
 def test_halves_hardly_interpenetrate(collision, figure):
     lowest = min(opening.min() for opening in openings(collision, 0) if len(opening))
     assert lowest < 0
-    figure("halves pressed together: penetration, in edges", -lowest / EDGE, bound=2e-3)
+    figure("halves pressed together: penetration, in edges", -lowest / EDGE, bound=5e-3)
 
 
 def test_contact_takes_up_energy_and_gives_it_back(collision, figure):
@@ -43,12 +43,12 @@ def test_contact_takes_up_energy_and_gives_it_back(collision, figure):
     late = energy["time"] > CLOSED
     assert energy["contact"].max() > 1e-6
     figure("halves pressed together: least energy of contact later, of the most",
-           energy["contact"][late].min() / energy["contact"].max(), bound=1e-5)
+           energy["contact"][late].min() / energy["contact"].max(), bound=3e-5)
 
 
 def test_energy_balance_through_tearing_and_collision(collision, figure):
     assert collision.summary["status"] == "completed"
-    figure("halves torn apart and pressed together: energy error", collision.summary["energy_error_rel"], bound=0.02)
+    figure("halves torn apart and pressed together: energy error", collision.summary["energy_error_rel"], bound=0.0018)
 
 
 def test_collision_alone_changes_the_energy_by_little(collision, figure):

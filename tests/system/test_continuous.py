@@ -46,7 +46,7 @@ def test_free_bar_rings_at_its_frequency(run, figure):
     bar = run(example("free-bar.yaml"), sets=sets)
     figure("free bar, shared nodes: half period against Rayleigh and Love", 1e6 * half_period(bar.energy),
            theory=1e6 * bar_half_period(), bound=1e-3, unit="us", relative=True)
-    figure("free bar, shared nodes, 4,000 steps: energy error", bar.summary["energy_error_rel"], bound=3e-4)
+    figure("free bar, shared nodes, 4,000 steps: energy error", bar.summary["energy_error_rel"], bound=1.5e-8)
 
 
 @pytest.fixture(scope="module")
@@ -66,7 +66,7 @@ def test_plane_costs_its_area_times_the_energy(plane, figure):
     assert plane.summary["failed_area_m2"] == pytest.approx(AREA, rel=rounding(1e-12, 1e-5))
     figure("spall, shared nodes: energy dissipated, against that of the flat plane", 1e6 * plane.summary["dissipated_J"],
            theory=1e6 * TOUGHNESS * AREA, bound=rounding(3e-15, 1e-5), unit="uJ", relative=True, why=ROUNDING)
-    figure("spall, shared nodes: energy error", plane.summary["energy_error_rel"], bound=0.003)
+    figure("spall, shared nodes: energy error", plane.summary["energy_error_rel"], bound=0.002)
     assert plane.summary["fragments"] == 2
 
 
@@ -101,7 +101,7 @@ def test_stress_before_fracture_is_that_of_the_dg_form(plane, lumped, figure):
     one, other = (np.interp(time, h.history["time"], h.history["p1mm_szz"]) for h in (plane, lumped))
     late = time > 0.14e-6
     figure("spall, shared nodes against the DG form with the lumped mass: plateau to 0.22 us", 1e-6 * one[late].mean(),
-           theory=1e-6 * other[late].mean(), bound=0.01, unit="MPa", relative=True)
+           theory=1e-6 * other[late].mean(), bound=0.008, unit="MPa", relative=True)
     figure("spall, shared nodes against the DG form with the lumped mass: ripples apart (root mean square), of the stress",
            np.sqrt(np.mean((one - other) ** 2)) / STRESS, bound=0.1)
 

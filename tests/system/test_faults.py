@@ -188,7 +188,7 @@ def test_autopsy_of_an_element_inside_out(tmp_path, ranks):
 
 @pytest.mark.parametrize("ranks", [1, 2])
 def test_autopsy_of_a_time_step_that_collapses(tmp_path, ranks):
-    found = fail(tmp_path, {**PUSH, "time.collapse": 0.5}, ranks, r"time step collapsed: .*below 0.5 \(time.collapse\)")
+    found = fail(tmp_path, {**PUSH, "time.collapse": 0.5, "time.safety": 0.5}, ranks, r"time step collapsed: .*below 0.5 \(time.collapse\)")
     step, rest = map(float, re.search(r"collapsed: (\S+) s, below 0.5 .* of the (\S+) s at rest", found["reason"]).groups())
     assert 0 < step < 0.5 * rest
     assert found["step_limited_by"] == "the stiffening of the element"

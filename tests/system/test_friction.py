@@ -8,7 +8,7 @@ from conftest import CASES, launch
 
 MODULUS, DENSITY, COEFFICIENT = 260e9, 3690, 0.3
 EDGE, HEIGHT, AREA, APPROACH = 0.05e-3, 0.1e-3, 0.04e-6, 8e-9  # m, m, m2, m
-PRESSURE = MODULUS * APPROACH / (2 * HEIGHT + EDGE / 4)  # the contact gives way too: its stiffness is 4 E/h
+PRESSURE = MODULUS * APPROACH / (2 * HEIGHT + EDGE / 2)  # the contact gives way too: its stiffness is 2 E/h
 SLOWING = COEFFICIENT * PRESSURE / (DENSITY * HEIGHT)  # m/s2
 PRESSED = 0.15e-6  # s: from here on
 
@@ -45,8 +45,8 @@ def test_block_stops_after_the_stopping_distance(slide, figure):
     blocks = table(slide)
     distance = blocks.slip[-1] - blocks.slip[0]
     figure("sliding block: stopping distance", 1e6 * distance, theory=1e6 * blocks.velocity[0] ** 2 / (2 * SLOWING),
-           bound=0.004, unit="um", relative=True)
-    figure("sliding block: motion at rest, of the distance", np.ptp(blocks.slip[-20:]) / distance, bound=0.03)
+           bound=0.0018, unit="um", relative=True)
+    figure("sliding block: motion at rest, of the distance", np.ptp(blocks.slip[-20:]) / distance, bound=0.024)
 
 
 def test_heat_is_friction_times_slip(slide, figure):
@@ -59,7 +59,7 @@ def test_heat_is_friction_times_slip(slide, figure):
 
 
 def test_ledger_closes(slide, figure):
-    figure("sliding block: energy error", slide.summary["energy_error_rel"], bound=2e-4)
+    figure("sliding block: energy error", slide.summary["energy_error_rel"], bound=2.5e-5)
     assert (np.diff(slide.energy["friction"]) >= 0).all()
     work = abs(slide.energy["external_work"][0] - slide.energy["total"][0])
     assert slide.energy["friction"][-1] > 0.3 * work
@@ -68,20 +68,20 @@ def test_ledger_closes(slide, figure):
 def test_no_friction_no_slowing(run, figure):
     free = run(CASES / "sliding.yaml", sets={"interface.friction": 0})
     blocks = table(free)
-    figure("block without friction: change of its speed, relative", np.ptp(blocks.velocity) / blocks.velocity[0], bound=8e-6)
+    figure("block without friction: change of its speed, relative", np.ptp(blocks.velocity) / blocks.velocity[0], bound=2e-5)
     assert not free.energy["friction"].any()
 
 
-def test_block_slides_on_a_potential_as_on_a_penalty(run, figure):
+def test_block_slides_on_a_penalty_as_on_a_potential(run, figure):
     """By 0.7 % of an edge, so that little fades; tests/unit/kernels/test_friction.c has what does."""
-    slide = run(CASES / "sliding.yaml", sets={"interface.contact": "potential"})
+    slide = run(CASES / "sliding.yaml", sets={"interface.contact": "penalty"})
     blocks = table(slide)
     sliding = blocks.relative > 0.3
     slowing = -np.polyfit(blocks.time[sliding], blocks.velocity[sliding], 1)[0]
-    figure("block on a potential: deceleration against mu p/(rho h)", 1e-6 * slowing, theory=1e-6 * SLOWING, bound=0.003,
+    figure("block on a penalty: deceleration against mu p/(rho h)", 1e-6 * slowing, theory=1e-6 * SLOWING, bound=0.003,
            unit="Mm/s2", relative=True)
-    figure("block on a potential: energy error", slide.summary["energy_error_rel"], bound=6e-6)
-    assert abs(blocks.relative[-1]) < 0.02 * blocks.relative[0]
+    figure("block on a penalty: energy error", slide.summary["energy_error_rel"], bound=1.5e-4)
+    assert abs(blocks.relative[-1]) < 0.1 * blocks.relative[0]  # it sticks, and swings
 
 
 def shaken(run, share, **more):
@@ -113,7 +113,7 @@ def test_time_step_covers_sticking(slide, run, figure):
     near = shaken(run, 0.2, **{"time.safety": 0.98, "time.end": 1.2e-6, "interface.friction": 1})
     free = run(CASES / "sliding.yaml", sets={"interface.friction": 0})
     assert near.summary["dt_critical"] < free.summary["dt_critical"]
-    figure("block that sticks, at 98 % of the critical step: energy error", near.summary["energy_error_rel"], bound=1.5e-3)
+    figure("block that sticks, at 98 % of the critical step: energy error", near.summary["energy_error_rel"], bound=4e-6)
     assert near.energy["friction"][-1] < 1e-9 * near.summary["energy_largest_J"]
 
 

@@ -85,7 +85,7 @@ def test_values_as_an_editor_sees_them():
     assert values("material", "poisson") == {
         "description": "Poisson's ratio; required", "type": "number", "minimum": 0, "exclusiveMaximum": 0.5}
     assert values("time", "safety") == {
-        "description": "time step as a fraction of the critical one; default: 0.5 (defaults 1: 0.9)", "type": "number", "exclusiveMinimum": 0,
+        "description": "time step as a fraction of the critical one; default: 0.875 of form variational with activation conserving or law none, else 0.5 (defaults 0: 0.5)", "type": "number", "exclusiveMinimum": 0,
         "maximum": 1}
     assert values("material", "density")["description"] == "reference density (kg/m3); required"
     assert values("initial", "velocity", "z") == {"description": "along z (m/s); default: 0", "type": ["number", "string"]}

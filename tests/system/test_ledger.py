@@ -34,7 +34,8 @@ def test_dissipation_lies_between_failed_and_broken_area(energy):
 
 
 def test_stored_energies_are_not_negative(energy):
-    for name in ("kinetic", "bodies", "bulk", "penalty", "cohesive", "contact", "dissipated"):
+    """But that of opened faces, which counts from the state at their switch (kernels/cohesive/conserving.h)."""
+    for name in ("kinetic", "bodies", "bulk", "penalty", "contact", "dissipated"):
         assert (energy[name] >= -1e-9 * energy[name].max()).all(), name
 
 
@@ -49,24 +50,24 @@ def test_total_is_the_sum_of_its_parts(energy, figure):
            why=ROUNDING)
 
 
-@pytest.mark.parametrize("jitter, velocity, bounds", [(0, 15, (1.0, 0.04)), (0.12, 15, (0.3, 0.014)), (0, 40, (0.3, 0.2))])
-def test_conserving_activation_keeps_the_energy_of_a_violent_break(run, figure, jitter, velocity, bounds):
-    """The first 500 steps of the bars of bench/examples/endurance, undamped; bounds in %: the default is worse, the other better."""
+@pytest.mark.parametrize("jitter, velocity, before, bound", [(0, 15, 1.0, 0.4), (0.12, 15, 0.3, 0.1), (0, 40, 0.3, 0.2)])
+def test_energy_of_a_violent_break_holds(run, figure, jitter, velocity, before, bound):
+    """The first 500 steps of the bars of bench/examples/endurance, undamped; in %, where `before` is passed by defaults 0."""
     sets = {"mesh.jitter": jitter, "initial.velocity": {"z": f"-{velocity}*cos(pi*z/4e-3)"}, "time.steps": 500,
             "viscosity.linear": 0, "output.interval": 10, "output.fields": []}
-    default = run(example("endurance.yaml"), threads=2, sets={**sets, "interface.activation": "continuous"})
-    conserving = run(example("endurance.yaml"), threads=2, sets=sets)
-    assert default.summary["energy_error_rel"] > bounds[0] / 100
-    figure(f"bar torn at {velocity} m/s, jittered by {jitter}, activation conserving: energy error after 500 steps",
-           conserving.summary["energy_error_rel"], bound=bounds[1] / 100)
-    energy = conserving.energy
+    old = run(example("endurance.yaml"), threads=2, sets={**sets, "defaults": 0})
+    torn = run(example("endurance.yaml"), threads=2, sets=sets)
+    assert old.summary["energy_error_rel"] > before / 100
+    figure(f"bar torn at {velocity} m/s, jittered by {jitter}: energy error after 500 steps",
+           torn.summary["energy_error_rel"], bound=bound / 100)
+    energy = torn.energy
     assert energy["broken_area"][-1] > 1e-6 and energy["failed_area"][-1] > 0.5e-6
     assert (np.diff(energy["dissipated"]) >= -1e-14 * energy["dissipated"][-1]).all()
     assert (energy["dissipated"] <= TOUGHNESS * energy["broken_area"] * (1 + 1e-12)).all()
     assert (energy["dissipated"] >= TOUGHNESS * energy["failed_area"] * (1 - 1e-12)).all()
 
 
-@pytest.mark.parametrize("name, bound, later", [("spall", 6e-5, 6e-6), ("jittered", 4e-5, 3e-6)])
+@pytest.mark.parametrize("name, bound, later", [("spall", 3e-6, 2e-6), ("jittered", 1.5e-6, 1e-6)])
 def test_work_of_the_ends_is_accounted_for(run, figure, name, bound, later):
     case, sets = RUNS[name]
     spall = run(case, threads=2, sets=sets)
@@ -81,18 +82,8 @@ def test_work_of_the_ends_is_accounted_for(run, figure, name, bound, later):
     assert whole["time"][0] == 0 and whole["kinetic"][0] == pytest.approx(whole["external_work"][0], rel=1e-12)  # of the jump
 
 
-@pytest.mark.parametrize("velocity, bound", [(15, 0.03), (40, 0.012)])
-def test_lumped_mass_keeps_the_energy_of_a_violent_break_better(run, figure, velocity, bound):
-    """At the same step size, to 1 us."""
-    def torn(**sets):
-        start = {"initial.velocity.z": f"-{velocity}*cos(pi*z/4e-3)", "time.end": 1e-6, "output.fields": []}
-        return run(example("torn-bar.yaml"), threads=2, sets={**start, **sets}).summary
-
-    consistent = torn()
-    safety = consistent["dt_first"] / torn(**{"mass": "lumped", "time.steps": 1})["dt_critical"]
-    lumped = torn(**{"mass": "lumped", "time.safety": safety})
-    assert lumped["dt_first"] == pytest.approx(consistent["dt_first"], rel=1e-12)
-    figure(f"bar torn at {velocity} m/s, consistent mass: energy error after 1 us", consistent["energy_error_rel"],
-           bound=bound)
-    figure(f"bar torn at {velocity} m/s, lumped mass: its energy error over that",
-           lumped["energy_error_rel"] / consistent["energy_error_rel"], bound=0.7)
+@pytest.mark.parametrize("velocity, bound, share", [(15, 0.005, 0.012), (40, 0.003, 0.03)])
+def test_energy_of_a_bar_torn_to_pieces(run, figure, velocity, bound, share):
+    torn = run(example("torn-bar.yaml"), threads=2, sets={"initial.velocity.z": f"-{velocity}*cos(pi*z/4e-3)", "time.end": 1e-6, "output.fields": []})
+    figure(f"bar torn at {velocity} m/s: energy error after 1 us", torn.summary["energy_error_rel"], bound=bound)
+    figure(f"bar torn at {velocity} m/s: energy error after 1 us, of the dissipated", torn.summary["energy_error_dissipated"], bound=share)

@@ -27,7 +27,8 @@ def bar(run, sign, contact, friction=0):
 def test_pressure_passes_and_tension_does_not(run, figure, contact, friction):
     pressed, pulled = bar(run, 1, contact, friction), bar(run, -1, contact, friction)
     what = f"bar with an open face, contact {contact}, friction {friction}"
-    figure(f"{what}: pressure behind it", -pressed.history["far_szz"][-1], theory=PRESSURE, bound=2.5e-4, unit="Pa", relative=True)
+    figure(f"{what}: pressure behind it", -pressed.history["far_szz"][-1], theory=PRESSURE, bound=1.5e-4, unit="Pa", relative=True,
+           why="the worst of the three")
     figure(f"{what}: velocity of the free end that it makes in tension", -pulled.history["near_vz"][-1],
            theory=2 * PRESSURE / (8000 * 5000), bound=5e-4, unit="m/s", relative=True)
     assert np.abs(pulled.history["far_szz"]).max() < 1e-3 * PRESSURE > np.abs(pulled.history["near_szz"][-1])

@@ -61,7 +61,7 @@ QUIET = {"interface": {"law": "none"}, "mesh.cells": [2, 2, 20], "time.end": 0.3
          "output.fields": ["stress"], "output.energy_limit": 1e9}
 
 
-@pytest.mark.parametrize("model, bound", [("linear-elastic", 6e-3), ("st-venant-kirchhoff", 0.035)])
+@pytest.mark.parametrize("model, bound", [("linear-elastic", 5.5e-3), ("st-venant-kirchhoff", 0.03)])
 def test_small_strains_are_those_of_the_neo_hookean_solid(run, figure, model, bound):
     def difference(speed):
         sets = {**QUIET, "initial.velocity.z": f"-{speed}*cos(pi*z/4e-3)"}
@@ -94,7 +94,7 @@ def test_a_spinning_body_grows_if_it_is_linear(run, figure):
         return max(growth(model), key=lambda size: abs(size - theory))
 
     for model in ("neo-hookean", "st-venant-kirchhoff"):
-        figure(f"spinning cube, {model}: size over that at the start", worst(model, 1), theory=1, bound=2.5e-4,
+        figure(f"spinning cube, {model}: size over that at the start", worst(model, 1), theory=1, bound=8e-5,
                relative=True)
     theory = np.sqrt(1 + (rate * end) ** 2)
     figure("spinning cube, linear-elastic: size over that at the start", worst("linear-elastic", theory), theory=theory,
@@ -141,13 +141,13 @@ def test_plastic_wave_follows_an_elastic_precursor(run, figure):
     for level in (first / 2, 30, 40, 50):  # m/s: passes the probe 4 mm away so long after the end moved at that speed
         travelled = np.interp(level, rising, time[:len(rising)]) - 0.1e-6 * np.arctanh(level / last)
         late[level] = travelled / (4e-3 / np.interp(level, v, c)) - 1
-    figure("plastic wave: passage of the precursor, relative", late.pop(first / 2), bound=4e-4)
+    figure("plastic wave: passage of the precursor, relative", late.pop(first / 2), bound=6e-5)
     figure("plastic wave: passage of 30, 40 and 50 m/s, relative", max(late.values(), key=abs), bound=1.8e-3)
     between, after = (time > 0.76e-6) & (time < 0.83e-6), time > 1.4e-6
     figure("plastic wave: speed behind the precursor", np.mean(speed[between]), theory=first, bound=1.7e-3, unit="m/s",
            relative=True)
     figure("plastic wave: stress behind the precursor", 1e-6 * np.mean(stress[between]),
-           theory=1e-6 * np.interp(first, v, sigma), bound=5e-3, unit="MPa", relative=True)
+           theory=1e-6 * np.interp(first, v, sigma), bound=1.8e-3, unit="MPa", relative=True)
     figure("plastic wave: speed behind the wave", np.mean(speed[after]), theory=last, bound=3e-4, unit="m/s", relative=True)
     figure("plastic wave: stress behind the wave", 1e-6 * np.mean(stress[after]), theory=1e-6 * np.interp(last, v, sigma),
            bound=4.5e-4, unit="MPa", relative=True)
@@ -158,7 +158,7 @@ def test_ledger_of_a_plastic_wave(run, figure):
     energy = run(PLASTIC).energy
     assert energy["plastic"][-1] > 0.05 * energy["kinetic"].max() and (energy["damage"] == 0).all()
     assert (np.diff(energy["plastic"]) >= 0).all()
-    figure("plastic wave: energy error", np.abs(energy["error_rel"]).max(), bound=2.5e-5)
+    figure("plastic wave: energy error", np.abs(energy["error_rel"]).max(), bound=1.2e-4)
     parts = ("kinetic", "bulk", "penalty", "cohesive", "contact", "dissipated", "plastic", "damage")
     assert np.allclose(sum(energy[name] for name in parts) - energy["external_work"], energy["total"], rtol=1e-12)
 

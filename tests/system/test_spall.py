@@ -40,13 +40,13 @@ def test_breaks_when_the_waves_meet(bar, figure, mesh):
            unit="us", bound=0.025, relative=True)
 
 
-@pytest.mark.parametrize("mesh, bound", [("regular", 5e-4), ("jittered", 1e-3)])
+@pytest.mark.parametrize("mesh, bound", [("regular", 4e-3), ("jittered", 3e-3)])
 def test_incident_wave_is_200_mpa(bar, figure, mesh, bound):
     figure(f"spall, {mesh}: stress at the probe, first plateau", 1e-6 * plateau(bar(mesh).history), theory=1e-6 * STRESS,
            unit="MPa", bound=bound, relative=True)
 
 
-@pytest.mark.parametrize("mesh, bound", [("regular", 2e-3), ("jittered", 7e-3)])
+@pytest.mark.parametrize("mesh, bound", [("regular", 8e-3), ("jittered", 7e-3)])
 def test_incident_wave_arrives_in_time(bar, figure, mesh, bound):
     history = bar(mesh).history
     arrival = passage(history["time"], history["p1mm_szz"], STRESS / 2)
@@ -71,7 +71,7 @@ def test_regular_mesh_breaks_on_the_mid_plane(spall, figure):
            theory=1, bound=2.5e-5, relative=True)
 
 
-@pytest.mark.parametrize("mesh, bound", [("regular", 0.05), ("jittered", 0.1)])
+@pytest.mark.parametrize("mesh, bound", [("regular", 0.03), ("jittered", 0.03)])
 def test_dissipates_little_more_than_the_flat_plane(bar, figure, mesh, bound):
     figure(f"spall, {mesh}: energy dissipated, against that of the flat plane", 1e6 * bar(mesh).summary["dissipated_J"],
            theory=1e6 * TOUGHNESS * AREA, unit="uJ", bound=bound, relative=True)
@@ -79,22 +79,14 @@ def test_dissipates_little_more_than_the_flat_plane(bar, figure, mesh, bound):
 
 @pytest.mark.parametrize("mesh", MESHES)
 def test_energy_balance(bar, figure, mesh):
-    figure(f"spall, {mesh}: energy error", bar(mesh).summary["energy_error_rel"], bound=0.0025)
+    figure(f"spall, {mesh}: energy error", bar(mesh).summary["energy_error_rel"], bound=1e-4)
 
 
-def test_a_longer_step_costs_energy(run, spall, figure):
-    long = run(example("spall.yaml"), threads=2, sets={"time.safety": 0.9, "output.fields": []})
-    assert long.summary["dt_first"] == pytest.approx(1.8 * spall.summary["dt_first"], rel=1e-12)
-    figure("spall, regular, time.safety 0.9: energy error", long.summary["energy_error_rel"], bound=0.007)
-    figure("spall, regular, time.safety 0.9 against 0.5: first fracture", 1e6 * long.summary["first_fracture_time_s"],
-           theory=1e6 * spall.summary["first_fracture_time_s"], bound=0.003, unit="us", relative=True)
-
-
-@pytest.mark.parametrize("mass, steps, energy, dissipated, first", [("consistent", 616, 3.9e-5, 5.616, 0.22886), ("scaled", 480, 4.8e-5, 5.508, 0.23103)])
-def test_defaults_that_conserve_halve_the_steps(run, figure, mass, steps, energy, dissipated, first):
-    """`defaults: 1`, with either mass; the numbers are what is found, held as closely as rounding lets them be told."""
-    spall = run(example("spall.yaml"), threads=2, sets={"defaults": 1, "mass": mass, "output.fields": []})
-    name = f"spall, defaults 1, {mass} mass"
+@pytest.mark.parametrize("mass, steps, energy, dissipated, first", [("consistent", 633, 4.5e-5, 5.501, 0.22877), ("scaled", 494, 9.2e-5, 5.465, 0.23085)])
+def test_steps_and_what_they_give(run, figure, mass, steps, energy, dissipated, first):
+    """With either mass; the numbers are what is found, held as closely as rounding lets them be told."""
+    spall = run(example("spall.yaml"), threads=2, sets={"mass": mass, "output.fields": []})
+    name = f"spall, {mass} mass"
     figure(f"{name}: steps", spall.summary["steps"], theory=steps, unit="steps", bound=2)
     figure(f"{name}: energy error", spall.summary["energy_error_rel"], bound=2 * energy)
     figure(f"{name}: dissipated", 1e6 * spall.summary["dissipated_J"], theory=5.44, unit="uJ", bound=3 * (dissipated - 5.44))
@@ -102,3 +94,11 @@ def test_defaults_that_conserve_halve_the_steps(run, figure, mass, steps, energy
            bound=2 * (first - 1e6 * MEETING))
     figure(f"{name}: stress at the probe, first plateau", 1e-6 * plateau(spall.history), theory=1e-6 * STRESS, unit="MPa",
            bound=3e-3, relative=True)
+
+
+def test_the_older_defaults_are_what_they_were(run, figure):
+    """`defaults: 0`: the case of version 0.9."""
+    old = run(example("spall.yaml"), threads=2, sets={"defaults": 0, "output.fields": []}).summary
+    assert old["steps"] == 1270
+    figure("spall, defaults 0: energy error", old["energy_error_rel"], bound=2e-3)
+    figure("spall, defaults 0: dissipated", 1e6 * old["dissipated_J"], theory=5.44, unit="uJ", bound=0.3)

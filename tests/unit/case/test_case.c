@@ -46,10 +46,10 @@ static void test_defaults(void **state) {
     rg_case *c = read_good(path, 0, NULL);
     assert_true(c->mesh.jitter == 0 && c->mesh.seed == 1 && c->mesh.file == NULL);
     assert_true(c->interface.form == RG_FORM_VARIATIONAL && c->interface.penalty == RG_PENALTY_ELASTIC);
-    assert_true(c->defaults == 0 && c->interface.beta_s == 4 && c->interface.beta == 1);
-    assert_true(c->interface.activation == RG_ACTIVATION_CONTINUOUS);
-    assert_true(c->interface.contact == RG_CONTACT_PENALTY && c->mass == RG_MASS_CONSISTENT);
-    assert_true(c->time.safety == 0.5 && c->time.steps == 0);
+    assert_true(c->defaults == 1 && c->interface.beta_s == 2 && c->interface.beta == 1);
+    assert_true(c->interface.activation == RG_ACTIVATION_CONSERVING);
+    assert_true(c->interface.contact == RG_CONTACT_POTENTIAL && c->mass == RG_MASS_CONSISTENT);
+    assert_true(c->time.safety == 0.875 && c->time.steps == 0);
     assert_string_equal(c->output.dir, "results/bar");
     assert_true(c->output.interval_steps == 0 && c->output.interval_time == 1e-6 / 50);
     assert_true(c->output.fields == RG_FIELDS_COMMON && c->output.energy_limit == 0.05);
@@ -70,46 +70,47 @@ static void test_defaults_that_follow(void **state) {
         rg_activation activation;
         rg_contact contact;
     } known[] = {
-        {{"defaults=1"}, 2, 1, 0.9, RG_ACTIVATION_CONSERVING, RG_CONTACT_POTENTIAL},
+        {{"defaults=1"}, 2, 0.5, 0.875, RG_ACTIVATION_CONSERVING, RG_CONTACT_POTENTIAL},
         {{"defaults=0"}, 4, 0.3, 0.5, RG_ACTIVATION_CONTINUOUS, RG_CONTACT_PENALTY},
-        {{"defaults=1", "interface.law=rate"}, 2, 1, 0.9, RG_ACTIVATION_CONSERVING, RG_CONTACT_POTENTIAL},
+        {{"defaults=1", "interface.law=rate"}, 2, 0.5, 0.875, RG_ACTIVATION_CONSERVING, RG_CONTACT_POTENTIAL},
         {{"defaults=1", "interface={law: free, strength: 1}"},
-         2,
-         1,
-         0.9,
+         4,
+         0.5,
+         0.5,
          RG_ACTIVATION_CONTINUOUS,
-         RG_CONTACT_POTENTIAL},
+         RG_CONTACT_PENALTY},
         {{"defaults=1", "interface.form=incomplete"},
          4,
-         1,
+         0.5,
          0.5,
          RG_ACTIVATION_CONTINUOUS,
          RG_CONTACT_PENALTY},
         {{"defaults=1", "interface.form=continuous", "interface.faces=1"},
          4,
-         1,
+         0.5,
          0.5,
          RG_ACTIVATION_CONTINUOUS,
          RG_CONTACT_PENALTY},
         {{"defaults=1", "interface.form=intrinsic", "interface.law=exponential"},
          4,
-         1,
+         0.5,
          0.5,
          RG_ACTIVATION_CONTINUOUS,
          RG_CONTACT_PENALTY},
-        {{"defaults=1", "interface.contact=flux"}, 2, 1, 0.9, RG_ACTIVATION_CONTINUOUS, RG_CONTACT_FLUX},
+        {{"defaults=1", "interface.contact=flux"}, 2, 0.5, 0.5, RG_ACTIVATION_CONTINUOUS, RG_CONTACT_FLUX},
         {{"defaults=1", "interface.contact=penalty", "interface.friction=0.5"},
          2,
-         1,
-         0.9,
+         0.5,
+         0.875,
          RG_ACTIVATION_CONSERVING,
          RG_CONTACT_PENALTY},
         {{"defaults=1", "interface.beta_s=3", "interface.activation=total", "time.safety=0.25"},
          3,
-         1,
+         0.5,
          0.25,
          RG_ACTIVATION_TOTAL,
          RG_CONTACT_POTENTIAL},
+        {{"interface={law: none}"}, 2, 0.5, 0.875, RG_ACTIVATION_CONTINUOUS, RG_CONTACT_POTENTIAL},
         {{"defaults=0", "interface.activation=conserving", "interface.contact=potential"},
          4,
          0.3,
@@ -364,7 +365,7 @@ static void test_echo_text(void **state) {
     rg_case *c = read_good(path, 0, NULL);
     char *text = echo(c);
     assert_non_null(strstr(text, "\n  young: 260000000000 # Pa\n"));
-    assert_non_null(strstr(text, "\n  safety: 0.5\n"));
+    assert_non_null(strstr(text, "\n  safety: 0.875\n"));
     assert_non_null(strstr(text, "\n  - set: \"z+\"\n    component: z\n    velocity: 6.086 # m/s\n"));
     assert_non_null(strstr(text, "\ninitial:\n  sets: []\nstart: initial\nboundary:")); /* no values */
     free(text);

@@ -14,7 +14,7 @@ static const char small[] = "mesh: {cells: [2, 3, 4], size: [0.25, 2, 0.5]}\n"
 
 /* All that is not given. */
 static const char defaults[] =
-    "defaults: 0\n"
+    "defaults: 1\n"
     "mesh:\n"
     "  cells: [2, 3, 4]\n"
     "  size: [0.25, 2, 0.5] # m\n"
@@ -30,14 +30,15 @@ static const char defaults[] =
     "materials: []\n"
     "interface:\n"
     "  form: variational\n"
-    "  beta_s: 4\n"
+    "  beta_s: 2\n"
     "  penalty: elastic\n"
     "  law: linear\n"
     "  strength: 400 # Pa\n"
     "  energy: 34 # J/m2\n"
     "  beta: 1\n"
-    "  activation: continuous\n"
-    "  contact: penalty\n"
+    "  activation: conserving\n"
+    "  onset: 0.5\n"
+    "  contact: potential\n"
     "  friction: 0\n"
     "  sets: []\n"
     "viscosity:\n"
@@ -52,7 +53,7 @@ static const char defaults[] =
     "bodies: []\n"
     "time:\n"
     "  end: 0.5 # s\n"
-    "  safety: 0.5\n"
+    "  safety: 0.875\n"
     "  collapse: 0.01\n"
     "output:\n"
     "  dir: \"results/m\"\n"
@@ -184,7 +185,7 @@ static void test_defaults(void **state) {
 static void test_everything(void **state) {
     (void)state;
     expect_echo(small, sizeof all / sizeof *all - 1, all,
-                "defaults: 0\n"
+                "defaults: 1\n"
                 "mesh:\n"
                 "  cells: [2, 3, 4]\n"
                 "  size: [0.25, 2, 0.5] # m\n"
@@ -346,7 +347,7 @@ static void expect_part(const char *set, const char *from, const char *to, const
 static void test_forms_and_laws(void **state) {
     (void)state;
     static const char *const known[][2] = {
-        {"interface={law: none}", "  form: variational\n  beta_s: 4\n  penalty: elastic\n  law: none\n"},
+        {"interface={law: none}", "  form: variational\n  beta_s: 2\n  penalty: elastic\n  law: none\n"},
         {"interface={law: none, form: continuous}", "  form: continuous\n  law: none\n"},
         {"interface={law: linear, form: continuous, faces: z, strength: 1, energy: 2}",
          "  form: continuous\n  faces: \"z\"\n  beta_s: 4\n  penalty: elastic\n  law: linear\n  strength: 1 "
@@ -462,14 +463,15 @@ static void test_fixed_values(void **state) {
                               "material.poisson: 0.125\n"
                               "material.density: 3690\n"
                               "interface.form: variational\n"
-                              "interface.beta_s: 4\n"
+                              "interface.beta_s: 2\n"
                               "interface.penalty: elastic\n"
                               "interface.law: linear\n"
                               "interface.strength: 400\n"
                               "interface.energy: 34\n"
                               "interface.beta: 1\n"
-                              "interface.activation: continuous\n"
-                              "interface.contact: penalty\n"
+                              "interface.activation: conserving\n"
+                              "interface.onset: 0.5\n"
+                              "interface.contact: potential\n"
                               "interface.friction: 0\n"
                               "viscosity.linear: 0\n"
                               "viscosity.quadratic: 0\n"

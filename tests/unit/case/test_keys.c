@@ -92,7 +92,7 @@ static void test_rows(void **state) {
         int keys;
     } rows[] = {
         {"interface.onset",
-         "interface.onset\n    number > 0 and <= 1; default: 0.3 (defaults 1: 1); with activation "
+         "interface.onset\n    number > 0 and <= 1; default: 0.5 (defaults 0: 0.3); with activation "
          "conserving\n"
          "    opening from which the law starts, in jumps at which the penalty alone would carry the "
          "strength; a smaller one is "

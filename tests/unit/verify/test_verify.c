@@ -363,7 +363,7 @@ static const struct {
      {0, 1e-3 * AXIAL}},
     {"energy, not all steps", rg_verify_energy, {"time.steps=50"}, "f", {0}},
     {"spall, denser", rg_verify_spall, {"material.density=4000"}, "ff?", {0}},
-    {"separation", rg_verify_separation, {"interface.energy=36"}, "hf", {0}},
+    {"separation", rg_verify_separation, {"interface.energy=33"}, "hf", {0}},
     {"identity", rg_verify_identity, {"mesh.seed=2"}, "hf", {0}},
 };
 
@@ -378,18 +378,18 @@ static const struct {
     double limit[2];            /* in double and in single precision */
     double found;               /* deviation on these meshes; 0: rounding */
 } wanted[] = {
-    {"speed of pressure waves (m/s)", "8905.95", {1e-3, 1e-3}, 1.7e-6},
-    {"speed of shear waves (m/s)", "5395.92", {1e-3, 1e-3}, 7e-7},
+    {"speed of pressure waves (m/s)", "8905.95", {1e-3, 1e-3}, 6.9e-6},
+    {"speed of shear waves (m/s)", "5395.92", {1e-3, 1e-3}, 2.4e-6},
     {"patch test: displacement / largest", "0", {1e-12, 2e-6}, 0},
     {"patch test: stress / E", "0", {1e-12, 2e-8}, 0},
     {"turned by 90 degrees: velocity / wave speed", "0", {1e-12, 1e-4}, 0},
     {"turned by 90 degrees: stress / E", "0", {1e-12, 1e-5}, 0},
-    {"energy of a free bar, change in 3000 steps", "0", {3e-9, 1e-3}, 9.7e-10},
-    {"spall: stress of the waves (Pa)", "2.00004e+08", {0.01, 0.01}, 1e-3},
-    {"spall: time of first fracture (s)", "2.24569e-07", {0.03, 0.03}, 1.7e-2},
-    {"spall: energy error", "0", {0.01, 0.01}, 1.3e-3},
+    {"energy of a free bar, change in 3000 steps", "0", {1e-8, 1e-3}, 4.2e-9},
+    {"spall: stress of the waves (Pa)", "2.00004e+08", {1e-3, 1e-3}, 1.2e-4},
+    {"spall: time of first fracture (s)", "2.24569e-07", {0.03, 0.03}, 1.6e-2},
+    {"spall: energy error", "0", {1e-4, 1e-3}, 3.4e-5},
     {"separation: area (m2)", "1e-08", {1e-9, 1e-6}, 0},
-    {"separation: energy lost, G_c x area (J)", "3.4e-07", {0.02, 0.02}, 7.8e-3},
+    {"separation: energy lost, G_c x area (J)", "3.4e-07", {5e-3, 5e-3}, 2e-3},
     {"momentum of fragments, change", "0", {1e-12, 1e-6}, 0},
     {"same bits on all ranks, 1 thread each", NULL, {0, 0}, 0},
     {"same bits on all ranks, 2 threads each", NULL, {0, 0}, 0},
