@@ -22,9 +22,9 @@ typedef struct {
     rg_problems *problems;
     rg_case *c;
     rg_usage usage[RG_GROUPS];
-    bool box;          /* mesh.origin and mesh.size are good */
-    bool form;         /* interface.form and .faces are good */
-    bool models;       /* those of all materials are good */
+    bool box;           /* mesh.origin and mesh.size are good */
+    bool form;          /* interface.form and .faces are good */
+    bool models;        /* those of all materials are good */
     bool penalty_given; /* interface.beta_s is there */
     bool switch_given;  /* interface.activation or .onset is there */
     rg_material_check material;
