@@ -12,7 +12,7 @@
 
 /* What rounding leaves; in single precision displacements as large as the body cancel to strains of 1e-6. */
 #ifdef RG_SINGLE
-static const double patch_limit[2] = {2e-6, 2e-8}, rotation_limit[2] = {1e-4, 1e-5};
+static const double patch_limit[2] = {2e-6, 2e-8}, rotation_limit[2] = {1e-4, 3e-5};
 #else
 static const double patch_limit[2] = {1e-12, 1e-12}, rotation_limit[2] = {1e-12, 1e-12};
 #endif

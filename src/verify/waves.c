@@ -82,7 +82,7 @@ void rg_verify_shear_wave(MPI_Comm comm, const rg_verify_change *change, rg_veri
 }
 
 #ifdef RG_SINGLE
-static const double energy_limit = 1e-3;
+static const double energy_limit = 1e-6;
 #else
 static const double energy_limit = 1e-8;
 #endif
