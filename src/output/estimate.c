@@ -169,7 +169,8 @@ rg_estimate rg_estimate_run(const rg_solver *s) {
     e.bytes_per_element = bytes_per_element(s, false);
     e.peak_bytes_per_element = bytes_per_element(s, true);
     e.frames = frames(c, steps, e.dt);
-    e.frame_bytes = rg_snapshots_frame_bytes(c) * (double)e.elements;
+    e.written = rg_snapshots_elements(s);
+    e.frame_bytes = rg_snapshots_frame_bytes(c) * (double)e.written;
     e.seconds = 1.3 * s->pass_seconds * (double)e.steps; /* a step is a pass, the update and some output */
     find_worst_zone(s, &e);
     e.of_material = count_materials(s); /* now that the memory has been counted */
@@ -274,6 +275,9 @@ void rg_estimate_print(const rg_solver *s, const rg_estimate *e, FILE *out) {
         fprintf(out,
                 "disk           %.3g GB: %.0f frames of %.3g GB, and what cracks take; less by compression\n",
                 e->frames * e->frame_bytes * 1e-9, e->frames, e->frame_bytes * 1e-9);
+    }
+    if (c->output.fields != 0 && c->output.region != NULL) {
+        fprintf(out, "output         fields of %" PRId64 " elements: output.region\n", e->written);
     }
     fprintf(out, "time loop      about ");
     print_seconds(e->seconds, out);

@@ -14,6 +14,7 @@ typedef struct {
     int64_t steps;
     double bytes_per_element, peak_bytes_per_element; /* fields; and with output and cracks everywhere */
     double frames, frame_bytes; /* of field output; on disk, without compression and cracks */
+    int64_t written;            /* elements that have it: output.region */
     double seconds;             /* estimate for the time loop on these ranks and threads */
     double cohesive_zone; /* length at the face that resolves it worst (m); infinite where none breaks */
     double zone_edge;     /* longest edge of that face (m) */

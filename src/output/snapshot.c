@@ -182,6 +182,19 @@ static rg_snapshots *prepare(const rg_solver *s, rg_slab **slab) {
     return w;
 }
 
+int64_t rg_snapshots_elements(const rg_solver *s) {
+    if (s->input->output.fields == 0 || s->input->output.region == NULL) {
+        return s->part->total;
+    }
+    rg_slab *slab = NULL;
+    rg_snapshots *w = prepare(s, &slab);
+    int64_t total = w->total;
+    rg_free(w->row);
+    rg_free(w);
+    rg_slab_free(slab);
+    return total;
+}
+
 rg_snapshots *rg_snapshots_open(const rg_solver *s, rg_slab **slab) {
     rg_snapshots *w = prepare(s, slab);
     if (w->fields != 0) {

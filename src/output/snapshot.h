@@ -29,6 +29,10 @@ rg_writer_mark rg_snapshots_sync(rg_snapshots *w);
 /* Bytes of a frame on disk for each element, as they are without compression and without cracks. */
 double rg_snapshots_frame_bytes(const rg_case *c);
 
+/* Elements of the whole mesh whose fields are written. Ends the run, as opening does, where output.region has
+ * none. Collective. */
+int64_t rg_snapshots_elements(const rg_solver *s);
+
 /* Whether the fragments are one of the fields. */
 bool rg_snapshots_show_fragments(const rg_snapshots *w);
 

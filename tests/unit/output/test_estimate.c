@@ -154,6 +154,24 @@ static void check_counts(void) {
     r.input->output.interval_time = 3e-7;
     e = rg_estimate_run(s);
     report(near(e.frame_bytes, 144 * (70 * 4 + 3 * 8)) && near(e.frames, 5), "estimate", "frames at times");
+    char *message = NULL, region[64];
+    double height = 0.5 * (s->part->box[0][2] + s->part->box[1][2]);
+    int64_t above = 0;
+    snprintf(region, sizeof region, "z > %.17g", height);
+    for (rg_gid id = 0; id < 144; id++) {
+        double z = 0;
+        for (int k = 0; k < 4; k++) {
+            z += r.mesh->x[3 * r.mesh->corner[4 * id + k] + 2] / 4;
+        }
+        above += z > height;
+    }
+    r.input->output.region = rg_expr_new(region, &message);
+    e = rg_estimate_run(s);
+    report(e.written == above && above > 20 && above < 124 &&
+               near(e.frame_bytes, (double)above * (70 * 4 + 3 * 8)),
+           "estimate", "elements of the region");
+    rg_expr_free(r.input->output.region);
+    r.input->output.region = NULL;
     r.input->output.fields = RG_FIELD_DISPLACEMENT | RG_FIELD_PLASTIC | RG_FIELD_TRIAXIALITY;
     r.input->output.precision = RG_OUTPUT_DOUBLE;
     r.input->output.interval_steps = 100;
