@@ -189,7 +189,28 @@ typedef struct {
     double *energy; /* out: [row][RG_E_INTERFACE][lane] (J) */
 } rg_interface_state_args;
 
-/* A set of kernels. `begin` and `end` count blocks. */
+/* Contact of two faces of different elements, A and B (contact/pair.h), of corners as they are now, ordered
+ * so that (x1 - x0) x (x2 - x0) points out of the element. Double, whatever the precision of this build. */
+typedef struct {
+    int32_t face[2];  /* A, B: rows of `corner` */
+    double stiffness; /* kappa (Pa/m) */
+    double skin;      /* depth at which they start to press (m) */
+    double limit;     /* faces deeper than this do not see each other (m) */
+    double fading;    /* 0; else area of the one face that both were (m^2), which has a contact of its own as
+                         long as they lie upon each other */
+} rg_contact_pair;
+
+typedef struct {
+    const double *corner; /* [face][3][3] (m) */
+    const double *sunk;   /* [face]: the larger one of both adds to the skin (m) */
+    const rg_contact_pair *pair;
+    double *force;  /* out: [pair][A, B][3 corners][3] (N) */
+    double *energy; /* out: [pair] (J); 0: they do not touch, and their forces are not written */
+    double *depth;  /* out: [pair] largest depth where they are over each other; 0: they are not, or nowhere
+                       less deep than the limit (m) */
+} rg_contact_args;
+
+/* A set of kernels. `begin` and `end` count blocks; of contact, pairs. */
 typedef struct {
     const char *name; /* "x86-64-v4", ..., "reference" */
     void (*send)(const rg_trace_args *args, size_t begin, size_t end);
@@ -203,6 +224,7 @@ typedef struct {
     void (*kinetic)(const rg_kinetic_args *args, size_t begin, size_t end);
     void (*interface_state)(const rg_interface_state_args *args, size_t begin, size_t end);
     void (*viscosity)(const rg_viscosity_args *args, size_t begin, size_t end);
+    void (*contact)(const rg_contact_args *args, size_t begin, size_t end);
 } rg_kernels;
 
 /* The opening from which a continuous activation starts is eps = RG_ONSET sigma_c h_s / (beta_s (lambda + 2

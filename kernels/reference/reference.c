@@ -31,4 +31,5 @@ const rg_kernels rg_kernels_reference = {
     .kinetic = rg_reference_kinetic,
     .interface_state = rg_reference_interface_state,
     .viscosity = rg_reference_viscosity,
+    .contact = rg_reference_contact,
 };

@@ -36,5 +36,6 @@ void rg_reference_interface_state(const rg_interface_state_args *args, size_t be
 void rg_reference_kick(const rg_kick_args *args, size_t begin, size_t end);
 void rg_reference_drift(const rg_drift_args *args, size_t begin, size_t end);
 void rg_reference_kinetic(const rg_kinetic_args *args, size_t begin, size_t end);
+void rg_reference_contact(const rg_contact_args *args, size_t begin, size_t end);
 
 #endif

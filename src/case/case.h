@@ -19,6 +19,7 @@ typedef enum { RG_BREAKING_BY_LAW, RG_BREAKING_NEVER } rg_breaking;
 typedef enum { RG_SHAPE_SPHERE, RG_SHAPE_PLANE, RG_SHAPE_CYLINDER } rg_shape_kind;
 typedef enum { RG_START_INITIAL, RG_START_STATIC } rg_start;
 typedef enum { RG_MOTION_FREE, RG_MOTION_PRESCRIBED } rg_motion;
+typedef enum { RG_CONTACT_OF_INTERFACES, RG_CONTACT_GENERAL } rg_contact_model;
 
 /* output.fields, as bits */
 enum {
@@ -200,6 +201,10 @@ typedef struct {
             rg_keep keep;
         } weibull;
     } interface;
+    struct {
+        rg_contact_model model;
+        double penalty; /* stiffness times h/(lambda + 2 mu), h the height of an element over its face */
+    } contact;
     rg_mass mass;
     struct {
         double linear, quadratic; /* b1, b2 */

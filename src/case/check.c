@@ -186,6 +186,9 @@ static const char *why_unused(const scan *s, const rg_key *key, char *text, size
     if (key->group == RG_GROUP_WEIBULL) {
         return "not used without interface.weibull.modulus";
     }
+    if (key->group == RG_GROUP_CONTACT) {
+        return "not used, because contact.model is interfaces";
+    }
     if (key->models == 0) {
         snprintf(text, size, "not used, because interface.%s", rg_why_unused(key->group, s->ck->c));
         return text;
@@ -295,6 +298,12 @@ static void learn(rg_check *ck, const rg_key *key, const rg_node *node, bool goo
         rg_shear_rule(ck, node);
     } else if (key->offset == offsetof(rg_case, interface.criterion) && node != NULL && good) {
         rg_criterion_rule(ck, node);
+    } else if (key->offset == offsetof(rg_case, contact.model)) {
+        bool general = ck->c->contact.model == RG_CONTACT_GENERAL;
+        ck->usage[RG_GROUP_CONTACT] = !good ? RG_UNSURE : general ? RG_USED : RG_UNUSED;
+        if (general && node != NULL && good) {
+            rg_contact_model_rule(ck, node);
+        }
     } else if (key->offset == offsetof(rg_case, mass) && good && ck->form) {
         rg_mass_rule(ck, node);
     } else if (key->offset == offsetof(rg_case, interface.weibull.modulus)) {

@@ -87,6 +87,10 @@ static const char *const contacts_meaning[] = {
     "one-sided penalty on the normal opening (legacy)",
     "all DG terms return (legacy, the thesis's): unstable once closed faces slide",
     "the penalty as an exact potential, which fades as faces slide off each other"};
+static const char *const contact_models[] = {"interfaces", "general", NULL};
+static const char *const contact_models_meaning[] = {
+    "both sides of a crack, as interface.contact says; fragments pass through each other",
+    "those, and faces of the surface and of cracks that have separated, of one part or several: with interface.contact potential"};
 static const char *const precisions[] = {"double", "single", NULL};
 static const char *const keeps[] = {"energy", "opening", NULL};
 static const char *const keeps_meaning[] = {
@@ -231,6 +235,11 @@ static const rg_key case_keys[] = {
      MEANS("U follows from it and the corners of the face, whatever the partition")},
     {.name = "interface.weibull.keep", EXPLAINED(keeps), DEFAULT(RG_KEEP_ENERGY), GROUP(WEIBULL),
      CASE(interface.weibull.keep), MEANS("what stays that of `energy` on each face")},
+
+    {.name = "contact.model", EXPLAINED(contact_models), ELSE("interfaces"), CASE(contact.model),
+     MEANS("which faces meet each other")},
+    {.name = "contact.penalty", REAL, ABOVE(0), DEFAULT(4), GROUP(CONTACT), CASE(contact.penalty),
+     MEANS("stiffness, in moduli over the height of an element over its face")},
 
     {.name = "viscosity.linear", REAL, FROM(0), DEFAULT(0), CASE(viscosity.linear),
      MEANS("b1 of the bulk viscosity rho h (b1 c (-div v) + b2^2 h (div v)^2), against ringing behind shocks, as 0.06")},

@@ -199,6 +199,16 @@ void rg_contact_rule(rg_check *ck, const rg_node *node) {
     }
 }
 
+void rg_contact_model_rule(rg_check *ck, const rg_node *node) {
+    if (ck->usage[RG_GROUP_COHESIVE] == RG_USED && ck->c->interface.contact != RG_CONTACT_POTENTIAL) {
+        rg_subject subject = {.key = "contact.model",
+                              .value = node->text,
+                              .allowed = "with interface.contact potential: general"};
+        rg_problem_add(ck->problems, node->at, &subject,
+                       "the contact of interfaces must fade where faces slide off each other");
+    }
+}
+
 void rg_friction_rule(rg_check *ck, const rg_node *node) {
     if (ck->c->interface.friction > 0 && ck->c->interface.contact == RG_CONTACT_FLUX) {
         rg_subject subject = {

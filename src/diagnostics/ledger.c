@@ -217,6 +217,9 @@ static void sum_up(rg_solver *s, rg_exact_sum *sum) {
             element_energies(s, &d->tile[t], w, energy, change, mine);
             interface_energies(s, &d->tile[t], w, energy, mine);
             rg_bodies_energy(s->bodies, t, s->u, &mine[INTERFACE + RG_E_CONTACT]);
+            if (s->contacts != NULL) {
+                rg_contacts_energy(s->contacts, t, &mine[INTERFACE + RG_E_CONTACT]);
+            }
         }
         rg_free(change);
         rg_free(energy);

@@ -1,5 +1,5 @@
-/* Fragments that lie in each other. Faces that have lost each other do not see other faces, so nothing stops
- * one fragment from flying into another; this tells when it has happened. */
+/* Fragments that lie in each other: with contact.model interfaces nothing stops one from flying into another,
+ * and with model general one that is far faster than sound may do so; this tells when it has happened. */
 #ifndef RG_OVERLAP_H
 #define RG_OVERLAP_H
 

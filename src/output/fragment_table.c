@@ -156,9 +156,10 @@ void rg_fragment_table_look(rg_fragment_table *t, const rg_solver *s, const rg_f
     }
     t->overlap_time = s->time;
     if (s->rank == 0) {
-        rg_warn("fragments %" PRId64 " and %" PRId64 " overlap at %.6g s (step %" PRId64
-                "): pieces that have lost each other do not see each other; said once",
-                t->overlap[0], t->overlap[1], s->time, s->step);
+        rg_warn("fragments %" PRId64 " and %" PRId64 " overlap at %.6g s (step %" PRId64 "): %s; said once",
+                t->overlap[0], t->overlap[1], s->time, s->step,
+                s->contacts == NULL ? "contact.model interfaces lets them pass through each other"
+                                    : "they have got deeper than contact can see");
     }
 }
 

@@ -95,9 +95,21 @@ static void write_physics(FILE *f, const rg_summary *m, const rg_ledger *l) {
     rg_json_text(f, "status", m->failure[0] == '\0' ? "completed" : m->failure);
 }
 
+/* That pairs of faces exerted on each other, with the size of their forces (N s): each gave it to two
+ * elements. */
+static double contact_impulse(const rg_solver *s) {
+    rg_exact_sum sum = {0};
+    for (size_t slot = 0; slot < s->domain->blocks * RG_LANES; slot++) {
+        rg_exact_add(&sum, 0.5 * s->contact_impulse[slot]);
+    }
+    rg_exact_allreduce(&sum, 1, s->comm);
+    return rg_exact_value(&sum);
+}
+
 void rg_summary_write(rg_summary *m, rg_solver *s, const rg_ledger *l, const rg_fragment_table *fragments) {
     const rg_estimate *e = &m->estimate;
     uint64_t hash = rg_state_hash(s);
+    double impulse = s->contacts != NULL ? contact_impulse(s) : 0;
     m->first_fracture = rg_first_fracture(s);
     rg_halo *halo[3];
     int halos = rg_solver_halos(s, halo);
@@ -114,7 +126,12 @@ void rg_summary_write(rg_summary *m, rg_solver *s, const rg_ledger *l, const rg_
     rg_json_number(f, "exchange_alone_s", s->exchange_seconds);
     rg_phases_write(&phases, f);
     write_physics(f, m, l);
+    if (s->contacts != NULL) {
+        rg_json_integer(f, "contacts", s->contacts_most);
+        rg_json_number(f, "contact_impulse_Ns", impulse);
+    }
     write_bodies(f, s->bodies);
+    rg_json_integer(f, "overlaps", isfinite(fragments->overlap_time));
     rg_fragment_table_summary(fragments, f);
     rg_json_number(f, "bytes_per_tet", e->bytes_per_element);
     fprintf(f, "  \"state_hash\": \"%016" PRIx64 "\",\n  \"revision\": \"%s\"\n}\n", hash, RG_REVISION);

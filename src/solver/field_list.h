@@ -28,6 +28,11 @@
     X(history, REAL, ELEMENT, s->model->history_stride / RG_LANES, s->model->history_stride > 0, "history")  \
     /* dissipated by bulk viscosity (J) */                                                                   \
     X(heat, DOUBLE, ELEMENT, 1, is_viscous(s->input), "heat")                                                \
+    /* contact between fragments: 0 of an interface that holds, 1 from when it was found to have separated,  \
+     * 2 once both its sides count as exposed; and the impulse that it gave each element (N s) */            \
+    X(exposed, BYTE, FACE, 1, s->input->contact.model == RG_CONTACT_GENERAL, "exposed")                      \
+    X(contact_sunk, REAL, FACE, 2, s->input->contact.model == RG_CONTACT_GENERAL, "contact_sunk")            \
+    X(contact_impulse, DOUBLE, ELEMENT, 1, s->input->contact.model == RG_CONTACT_GENERAL, "contact_impulse") \
     /* tangent over the undeformed one, at most (1): of elements, of tiles */                                \
     X(stiffening, REAL, ELEMENT, 1, true, NULL)                                                              \
     X(tile_stiffening, REAL, TILE, 1, true, NULL)                                                            \

@@ -69,6 +69,9 @@ void rg_state_of_solver(rg_state *st, rg_solver *s) {
     /* The next time step follows the stiffening of the state before. */
     rg_state_add(st, "stiffening", RG_OF_RUN, RG_STATE_DOUBLE, 1, &s->stiffening_anywhere);
     rg_state_add(st, "pace", RG_OF_RUN, RG_STATE_DOUBLE, 1, &s->opening_rate); /* likewise */
+    if (s->contacts != NULL) {
+        rg_state_add(st, "contacts", RG_OF_RUN, RG_STATE_INT64, 1, &s->contacts_most);
+    }
     rg_state_add(st, "omega2", RG_OF_RUN, RG_STATE_DOUBLE, 1, &s->omega2);
     rg_state_add(st, "limiting", RG_OF_RUN, RG_STATE_INT64, 1, &s->limiting);
     rg_state_add(st, "damping", RG_OF_RUN, RG_STATE_DOUBLE, 1, &s->damping);

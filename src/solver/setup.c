@@ -22,6 +22,7 @@ static void allocate_rows(rg_solver *s) {
     s->stepper->rows[1] = RG_NEW(rg_real, rows * RG_TRACE_ROW);
     s->stepper->tractions = RG_NEW(rg_real, rows * RG_TILE_FACE_ROW);
     s->stepper->material = RG_NEW(rg_material, (size_t)s->model->materials);
+    s->stepper->touching_request = MPI_REQUEST_NULL;
     memcpy(s->stepper->material, s->model->material,
            (size_t)s->model->materials * sizeof *s->stepper->material);
     s->work = RG_NEW(rg_workspace, (size_t)s->threads);
@@ -116,6 +117,9 @@ static rg_solver *make(const rg_case *input, rg_part *part, MPI_Comm comm) {
     s->absorbing =
         rg_absorbing_make(input, s->domain, s->part, model->material, s->assembly, s->account, comm);
     rg_account_open(s->account, s->threads);
+    if (part->original == NULL) {
+        s->contacts = rg_contacts_make(input, s->domain, model->material, comm);
+    }
     allocate(s);
     rg_law_start(s);
     return s;
@@ -188,6 +192,7 @@ void rg_solver_free(rg_solver *s) {
         rg_loads_free(s->loads);
         rg_absorbing_free(s->absorbing);
         rg_account_free(s->account);
+        rg_contacts_free(s->contacts);
         rg_assembly_free(s->assembly);
         rg_conforming_faces_free((rg_conforming_faces *)s->conforming_faces);
         rg_domain_free((rg_domain *)s->domain);

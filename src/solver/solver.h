@@ -16,6 +16,7 @@
 
 #include "base/exact_sum.h"
 #include "case/case.h"
+#include "contact/contact.h"
 #include "domain/assembly.h"
 #include "domain/domain.h"
 #include "domain/halo.h"
@@ -73,8 +74,10 @@ struct rg_solver {
     rg_account *account; /* of what acts from outside */
     rg_loads *loads;
     rg_absorbing *absorbing;
-    double time, dt; /* of the current state (s); dt is the step that led to it */
-    double dt_next;  /* step that leads on, once kicked */
+    rg_contacts *contacts; /* between fragments; NULL: not computed */
+    int64_t contacts_most; /* most pairs of faces that touched at a time */
+    double time, dt;       /* of the current state (s); dt is the step that led to it */
+    double dt_next;        /* step that leads on, once kicked */
     int64_t step;
     double opening_rate;        /* largest on all ranks (1/s) */
     double stiffening_anywhere; /* largest on all ranks; infinite if not finite */

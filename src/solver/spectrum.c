@@ -464,4 +464,5 @@ void rg_spectrum(rg_solver *s) {
         keep(s, &found);
     }
     s->omega2 += s->bodies->omega2;
+    s->omega2 += s->contacts != NULL ? rg_contacts_omega2(s->contacts) : 0;
 }

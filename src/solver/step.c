@@ -6,6 +6,7 @@
 
 #include "base/interrupt.h"
 #include "partition/material.h"
+#include "solver/exposure.h"
 #include "solver/initial.h"
 #include "solver/law.h"
 #include "solver/step_limiter.h"
@@ -152,6 +153,9 @@ static void tile_drift(rg_solver *s, size_t tile, const rg_workspace *w) {
     rg_drift_args args = {s->dt_next, s->velocity + at, s->u + at};
     s->kernels->drift(&args, 0, rg_tile_eblocks(t));
     rg_constraints_drift(s->constraints, tile, s->u);
+    if (s->contacts != NULL) {
+        rg_contacts_place(s->contacts, tile, s->u, s->contact_sunk);
+    }
     rg_trace_args traces = rg_tile_traces(s, t, w, true);
     s->kernels->send(&traces, 0, rg_tile_face_blocks(t));
 }
@@ -184,6 +188,11 @@ static void boundary_sweep(rg_solver *s, size_t tile, const rg_workspace *w, con
         s->tile_opening_rate[tile] = rg_tile_opening_rate(s, t);
     }
     tile_kick(s, tile, w, p, RG_SWEEP_BOUNDARY);
+    if (s->contacts != NULL && p->constrain) {
+        rg_push k = {p->dt, 0.5 * s->dt, p->velocity, step_velocity_of(s, tile, p)};
+        rg_contacts_push(s->contacts, tile, &k, 0.5 * (s->dt + s->dt_next), s->contact_impulse,
+                         s->contact_sunk);
+    }
     if (p->apart) {
         rg_assembly_sum(s->assembly, tile, p->velocity);
     } else {
@@ -266,7 +275,9 @@ static void start_stiffening(rg_solver *s) {
         double here = largest(s->tile_stiffening, s->domain->tiles);
         s->stepper->here[0] = isfinite(here) ? here : INFINITY;
         s->stepper->here[1] = rg_interrupt_request();
-        MPI_Iallreduce(s->stepper->here, s->stepper->anywhere, 2, MPI_DOUBLE, MPI_MAX, s->comm,
+        s->stepper->here[2] = s->contacts != NULL ? rg_contacts_moved(s->contacts) : 0;
+        s->stepper->here[3] = s->stepper->separated;
+        MPI_Iallreduce(s->stepper->here, s->stepper->anywhere, 4, MPI_DOUBLE, MPI_MAX, s->comm,
                        &s->stepper->stiffening_request);
     }
     mark(s, RG_PHASE_REDUCE);
@@ -279,6 +290,43 @@ static void start_bodies(rg_solver *s, const impulse *p) {
         rg_bodies_sum(s->bodies);
     }
     mark(s, RG_PHASE_REDUCE);
+}
+
+/* Rows of faces in contact travel with the traces. */
+static void start_traces(rg_solver *s, rg_halo *traces) {
+    start(s, traces);
+    if (s->contacts != NULL) {
+        start(s, rg_contacts_halo(s->contacts));
+    }
+}
+
+static void finish_traces(rg_solver *s, rg_halo *traces) {
+    finish(s, traces);
+    if (s->contacts != NULL) {
+        finish(s, rg_contacts_halo(s->contacts));
+    }
+}
+
+/* Forces between fragments, and how many pairs of faces touch on all ranks. */
+static void meet(rg_solver *s, const impulse *p) {
+    if (s->contacts == NULL || !p->constrain || !rg_contacts_any(s->contacts)) {
+        return;
+    }
+    rg_contacts_meet(s->contacts, s->kernels);
+#pragma omp master
+    {
+        s->stepper->touching = rg_contacts_touching(s->contacts);
+        MPI_Iallreduce(&s->stepper->touching, &s->stepper->touching_anywhere, 1, MPI_INT64_T, MPI_SUM,
+                       s->comm, &s->stepper->touching_request);
+    }
+    mark(s, RG_PHASE_COMPUTE);
+}
+
+static void finish_meeting(rg_solver *s) {
+    MPI_Wait(&s->stepper->touching_request, MPI_STATUS_IGNORE);
+    if (s->stepper->touching_anywhere > s->contacts_most) {
+        s->contacts_most = s->stepper->touching_anywhere;
+    }
 }
 
 /* Shared nodes, from what the elements made for themselves; rows of other ranks arrive under the tiles that
@@ -312,12 +360,13 @@ static void evaluate(rg_solver *s, const impulse *whole) {
     {
         sweep(s, element_sweep, p, outer, all, traces);
         mark(s, RG_PHASE_COMPUTE);
-        finish(s, traces);
+        finish_traces(s, traces);
         sweep(s, element_sweep, p, 0, outer, NULL);
         mark(s, RG_PHASE_COMPUTE);
         start(s, s->stepper->halo_t);
         start_stiffening(s);
         start_bodies(s, p);
+        meet(s, p);
         sweep(s, boundary_sweep, p, outer, all, s->stepper->halo_t);
         mark(s, RG_PHASE_JUMP);
         finish(s, s->stepper->halo_t);
@@ -327,10 +376,11 @@ static void evaluate(rg_solver *s, const impulse *whole) {
             assemble_all(s, whole);
         }
         if (p->move) {
-            start(s, next);
+            start_traces(s, next);
         }
     }
     MPI_Wait(&s->stepper->stiffening_request, MPI_STATUS_IGNORE);
+    finish_meeting(s);
     s->stiffening_anywhere = s->stepper->anywhere[0];
     s->stop_request = (int)s->stepper->anywhere[1];
     if (s->tile_opening_rate != NULL && p->constrain) {
@@ -347,15 +397,21 @@ static void evaluate(rg_solver *s, const impulse *whole) {
 static void publish(rg_solver *s) {
     const rg_domain *d = s->domain;
     rg_halo_finish(s->stepper->halo_u[s->stepper->current]);
+    if (s->contacts != NULL) {
+        rg_halo_finish(rg_contacts_halo(s->contacts));
+    }
 #pragma omp parallel
     {
         const rg_workspace *w = &s->work[omp_get_thread_num()];
 #pragma omp for schedule(static)
         for (size_t t = 0; t < d->tiles; t++) {
+            if (s->contacts != NULL) {
+                rg_contacts_place(s->contacts, t, s->u, s->contact_sunk);
+            }
             rg_trace_args traces = rg_tile_traces(s, &d->tile[t], w, false);
             s->kernels->send(&traces, 0, rg_tile_face_blocks(&d->tile[t]));
         }
-        start(s, s->stepper->halo_u[s->stepper->current]);
+        start_traces(s, s->stepper->halo_u[s->stepper->current]);
     }
 }
 
@@ -387,8 +443,24 @@ static void measure(rg_solver *s) {
     s->pass_seconds = MPI_Wtime() - begin;
 }
 
+/* Finds the pairs that may touch, and lets them meet once: fragments must not lie in each other. */
+static void start_contacts(rg_solver *s) {
+    rg_exposure_mark(s);
+    rg_exposure_take(s);
+    rg_exposure_settle(s);
+    rg_contacts_search(s->contacts, s->exposed, s->u);
+    publish(s);
+    rg_halo_finish(rg_contacts_halo(s->contacts));
+#pragma omp parallel
+    rg_contacts_meet(s->contacts, s->kernels);
+    rg_exposure_refuse_overlap(s);
+}
+
 void rg_solver_settle(rg_solver *s) {
     rg_constraints_start(s->constraints, s->u, s->velocity, s->comm);
+    if (s->contacts != NULL) {
+        start_contacts(s);
+    }
     measure(s);
 }
 
@@ -417,6 +489,10 @@ void rg_solver_resume(rg_solver *s) {
     for (size_t t = 0; t < d->tiles; t++) {
         mark_cracked(s, &d->tile[t], d->tile[t].ibegin, d->tile[t].iend);
     }
+    if (s->contacts != NULL) {
+        s->stepper->separated = memchr(s->exposed, RG_SEPARATED, d->iblocks * RG_LANES) != NULL;
+        rg_contacts_search(s->contacts, s->exposed, s->u);
+    }
     publish(s);
 }
 
@@ -433,6 +509,36 @@ static impulse prepare(rg_solver *s, double dt) {
         .velocity = s->velocity, .dt = 0.5 * (s->dt + dt), .constrain = true, .advance = s->dt > 0};
 }
 
+/* The pairs that may touch, found anew; once new faces count as exposed, how deep these are in others. */
+static void search_contacts(rg_solver *s, bool exposed) {
+    rg_halo_finish(rg_contacts_halo(s->contacts));
+    rg_contacts_search(s->contacts, s->exposed, s->u);
+    publish(s);
+    if (exposed) {
+        rg_halo_finish(rg_contacts_halo(s->contacts));
+#pragma omp parallel
+        rg_contacts_meet(s->contacts, s->kernels);
+        rg_contacts_sink(s->contacts, s->exposed, s->contact_sunk);
+        rg_exposure_settle(s);
+        publish(s);
+    }
+}
+
+static void renew_contacts(rg_solver *s) {
+    rg_stepper *m = s->stepper;
+    bool exposed = m->anywhere[3] > 0;
+    if (exposed) {
+        rg_exposure_take(s);
+        m->separated = false;
+    }
+    if (exposed || m->anywhere[2] >= 1) {
+        search_contacts(s, exposed);
+    }
+    if (s->step % RG_EXPOSURE_EVERY == 0) {
+        m->separated = rg_exposure_mark(s);
+    }
+}
+
 /* The displacement has moved. */
 static void advance(rg_solver *s) {
     rg_bodies_drift(s->bodies, s->dt_next);
@@ -440,6 +546,9 @@ static void advance(rg_solver *s) {
     s->time += s->dt_next;
     s->dt = s->dt_next;
     s->step++;
+    if (s->contacts != NULL) {
+        renew_contacts(s);
+    }
 }
 
 void rg_solver_kick(rg_solver *s, double dt) {
@@ -459,7 +568,7 @@ void rg_solver_drift(rg_solver *s) {
             tile_drift(s, t, w);
         }
         mark(s, RG_PHASE_JUMP);
-        start(s, s->stepper->halo_u[1 - s->stepper->current]);
+        start_traces(s, s->stepper->halo_u[1 - s->stepper->current]);
     }
     advance(s);
 }

@@ -6,12 +6,17 @@
 #include "solver/solver.h"
 
 struct rg_stepper {
-    rg_material *material;          /* [materials], readied for the step that led here */
-    rg_real *rows[2], *tractions;   /* trace rows, of the current state and of the next; traction rows */
-    int current;                    /* which of `rows` */
-    rg_halo *halo_u[2], *halo_t;    /* of `rows` and `tractions` */
-    double here[2], anywhere[2];    /* stiffening and stop request: of this rank, of all; both on their way */
+    rg_material *material;        /* [materials], readied for the step that led here */
+    rg_real *rows[2], *tractions; /* trace rows, of the current state and of the next; traction rows */
+    int current;                  /* which of `rows` */
+    rg_halo *halo_u[2], *halo_t;  /* of `rows` and `tractions` */
+    /* Stiffening, stop request, way that faces in contact have moved (contact/contact.h), and 1 where faces
+     * have separated: of this rank, of all; both on their way. */
+    double here[4], anywhere[4];
     MPI_Request stiffening_request; /* of these */
+    bool separated;                 /* some faces have, and wait to be exposed */
+    int64_t touching, touching_anywhere;
+    MPI_Request touching_request;
 };
 
 #endif

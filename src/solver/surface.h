@@ -1,4 +1,5 @@
-/* The outer faces of the solid: which there are, their geometry, and what forces on them do to its elements.
+/* The outer faces of the solid (domain/face.h): integrals over them, and what forces on them do to its
+ * elements.
  *
  * Integrals over a face are by the six-point rule of the interfaces, exact to degree 4. The forces of a face
  * are on the nodes of its own element alone, which no other element shares (where elements do, the assembly
@@ -8,6 +9,7 @@
 
 #include "case/case.h"
 #include "domain/domain.h"
+#include "domain/face.h"
 #include "kernels.h"
 
 typedef struct {
@@ -21,27 +23,11 @@ typedef struct {
 
 rg_surface rg_surface_make(const rg_domain *d, const rg_material *m, rg_mass mass);
 
-/* Whether a face of an element is on the surface. */
-bool rg_surface_has(const rg_domain *d, size_t slot, int face);
-
-/* Area of a face of the element with these corners [4][3] (m^2), and its unit normal out of the element. */
-double rg_surface_area(const double *corner, int face, double normal[3]);
-
-/* Height of the element over the face (m). */
-double rg_surface_height(const rg_domain *d, size_t slot, int face);
-
 /* Positions of a face's nodes at displacement u (a whole field); NULL: of reference. */
 void rg_surface_place(const rg_surface *s, size_t slot, int face, const rg_real *u, double x[RG_FNODES][3]);
 
 /* Sum over a face's nodes of shape function times value, at point q of the rule. */
 void rg_surface_at(const rg_surface *s, int q, double value[RG_FNODES][3], double out[3]);
-
-/* What forces do to the solid. */
-typedef struct {
-    double dt, dt_now;      /* velocity += dt M^-1 f, step_velocity += dt_now M^-1 f */
-    rg_real *velocity;      /* whole fields (layout.h) */
-    rg_real *step_velocity; /* or NULL */
-} rg_push;
 
 /* Forces on the nodes of a face: the mass matrix couples all nodes of the element. */
 void rg_surface_push(const rg_surface *s, size_t slot, int face, double force[RG_FNODES][3],

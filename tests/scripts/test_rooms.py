@@ -9,7 +9,7 @@ import pytest
 from conftest import ROOT
 
 # From the bottom up; src/meson.build builds them in this order. "" is src itself, the doors.
-SRC = ["base", "case", "mesh", "mesh/import", "mesh/improve", "partition", "domain", "solver", "diagnostics", "output",
+SRC = ["base", "case", "mesh", "mesh/import", "mesh/improve", "partition", "domain", "contact", "solver", "diagnostics", "output",
        "restart", "verify", ""]
 # Where the contract and the registries of laws and materials lie: all rooms of kernels and it know each other.
 ROOT_OF_KERNELS = {pathlib.Path("kernels")}

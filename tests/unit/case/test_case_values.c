@@ -220,7 +220,8 @@ static const mistake keys[] = {
      "? {a: 1}\n"
      ": 4\n"
      "mesh:\n",
-     ":1:1: unknown key; allowed: defaults, tables, mesh, material, materials, interface, viscosity, mass, "
+     ":1:1: unknown key; allowed: defaults, tables, mesh, material, materials, interface, contact, "
+     "viscosity, mass, "
      "initial, start, "
      "boundary, loads, bodies, time, output, checkpoint\n"
      ":2:3: a key must be a single word\n"},

@@ -190,7 +190,8 @@ static const char body_lines[] =
     "\"ball\"},\n"
     "  {\n  \"position\": [11, 12, 13],\n  \"velocity\": [14, 15, 16],\n  \"force\": [17, null, 19],\n  "
     "\"name\": \"wall\"}],\n"
-    "  \"bytes_per_tet\": 3456,\n  \"state_hash\": \"0123456789abcdef\",\n  \"revision\": \"";
+    "  \"overlaps\": 0,\n  \"bytes_per_tet\": 3456,\n  \"state_hash\": \"0123456789abcdef\",\n  "
+    "\"revision\": \"";
 
 /* 18 values of a trace and 9 of a traction go over each face, which are doubles or half as long. */
 static void document_to_the_letter(void **state) {

@@ -1,0 +1,193 @@
+/* Contact of two faces: the energy from its definition, and its gradient by complex steps, exact to rounding.
+ * The polygon is found in another way than the kernel's: its corners are those points where two of the eight
+ * lines cross that no other line cuts off, in the order of their angles. */
+#include <complex.h>
+#include <math.h>
+#include <stdlib.h>
+
+#include "reference/reference.h"
+
+typedef double complex number;
+enum { LINES = 8, OF_FACES = 6, CROSSINGS = LINES * (LINES - 1) / 2 };
+#define STEP 1e-30
+
+static number dot(const number a[3], const number b[3]) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static void cross(const number a[3], const number b[3], number out[3]) {
+    out[0] = a[1] * b[2] - a[2] * b[1];
+    out[1] = a[2] * b[0] - a[0] * b[2];
+    out[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+static void unit(number v[3]) {
+    number length = csqrt(dot(v, v));
+    for (int c = 0; c < 3; c++) {
+        v[c] /= length;
+    }
+}
+
+/* c + x p_x + y p_y >= 0. */
+typedef struct {
+    number c, x, y;
+} line;
+
+static number value(const line *f, const number p[2]) {
+    return f->c + f->x * p[0] + f->y * p[1];
+}
+
+/* The linear function that has these values at three points. */
+static line through(number p[3][2], const number z[3]) {
+    number a = p[1][0] - p[0][0], b = p[1][1] - p[0][1], c = p[2][0] - p[0][0], d = p[2][1] - p[0][1];
+    number det = a * d - b * c, x = ((z[1] - z[0]) * d - (z[2] - z[0]) * b) / det,
+           y = ((z[2] - z[0]) * a - (z[1] - z[0]) * c) / det;
+    return (line){z[0] - x * p[0][0] - y * p[0][1], x, y};
+}
+
+typedef struct {
+    number p[2];
+    double angle;
+} corner;
+
+static int by_angle(const void *a, const void *b) {
+    const corner *p = a, *q = b;
+    return (p->angle > q->angle) - (p->angle < q->angle);
+}
+
+/* Corners of what is on the good side of all lines. */
+static int corners_of(const line *f, int lines, corner *out) {
+    int count = 0;
+    for (int i = 0; i < lines; i++) {
+        for (int j = i + 1; j < lines; j++) {
+            number det = f[i].x * f[j].y - f[i].y * f[j].x;
+            if (!(cabs(det) > 0)) {
+                continue;
+            }
+            corner k = {
+                .p = {(f[i].y * f[j].c - f[j].y * f[i].c) / det, (f[j].x * f[i].c - f[i].x * f[j].c) / det}};
+            bool good = true;
+            for (int m = 0; m < lines; m++) {
+                good = good && (m == i || m == j || creal(value(&f[m], k.p)) >= 0);
+            }
+            if (good) {
+                out[count++] = k;
+            }
+        }
+    }
+    number middle[2] = {0, 0};
+    for (int i = 0; i < count; i++) {
+        middle[0] += out[i].p[0] / count;
+        middle[1] += out[i].p[1] / count;
+    }
+    for (int i = 0; i < count; i++) {
+        out[i].angle = atan2(creal(out[i].p[1] - middle[1]), creal(out[i].p[0] - middle[0]));
+    }
+    qsort(out, (size_t)count, sizeof *out, by_angle);
+    return count;
+}
+
+/* Legendre's points and weights for degree 7 on (0, 1). */
+static const double point[4][2] = {{0.069431844202973712, 0.173927422568726929},
+                                   {0.330009478207571868, 0.326072577431273071},
+                                   {0.669990521792428132, 0.326072577431273071},
+                                   {0.930568155797026288, 0.173927422568726929}};
+
+/* int d^2 (1 - d^2/reach^2)^2 over a triangle, as a square folded to it. */
+static number triangle(const line *depth, double reach, const number *o, const number *a, const number *b) {
+    number area = (a[0] - o[0]) * (b[1] - o[1]) - (a[1] - o[1]) * (b[0] - o[0]), sum = 0;
+    for (int i = 0; i < 4; i++) {
+        for (int j = 0; j < 4; j++) {
+            double s = point[i][0], t = point[j][0];
+            number p[2];
+            for (int c = 0; c < 2; c++) {
+                p[c] = o[c] + s * ((1 - t) * (a[c] - o[c]) + t * (b[c] - o[c]));
+            }
+            number d = value(depth, p), r = d / reach;
+            sum += point[i][1] * point[j][1] * s * area * d * d * (1 - r * r) * (1 - r * r);
+        }
+    }
+    return sum;
+}
+
+static number energy_of(const rg_contact_pair *pair, double sunk, number x[2][3][3], double *deepest) {
+    double skin = pair->skin + sunk, reach = pair->limit - skin, least = INFINITY;
+    number normal[2][3], n[3], e[2][3], axis[3] = {0.3, 0.5, -0.8}, p[2][3][2], z[2][3], w[3] = {0, 0, 0};
+    for (int k = 0; k < 2; k++) {
+        number one[3], two[3];
+        for (int c = 0; c < 3; c++) {
+            one[c] = x[k][1][c] - x[k][0][c];
+            two[c] = x[k][2][c] - x[k][0][c];
+        }
+        cross(one, two, normal[k]);
+        unit(normal[k]);
+    }
+    *deepest = 0;
+    number facing = -dot(normal[0], normal[1]);
+    if (!(creal(facing) > 0)) {
+        return 0;
+    }
+    for (int c = 0; c < 3; c++) {
+        n[c] = normal[0][c] - normal[1][c];
+    }
+    unit(n);
+    cross(n, axis, e[0]);
+    unit(e[0]);
+    cross(n, e[0], e[1]);
+    for (int k = 0; k < 2; k++) {
+        for (int i = 0; i < 3; i++) {
+            p[k][i][0] = dot(x[k][i], e[0]);
+            p[k][i][1] = dot(x[k][i], e[1]);
+            z[k][i] = dot(x[k][i], n);
+            for (int c = 0; c < 3; c++) {
+                w[c] += (k == 1 ? 1 : -1) * x[k][i][c] / 3;
+            }
+        }
+    }
+    line a = through(p[0], z[0]), b = through(p[1], z[1]), f[LINES],
+         depth = {a.c - b.c - skin, a.x - b.x, a.y - b.y};
+    for (int i = 0; i < 6; i++) {
+        number one[3] = {0, 0, 0};
+        one[i % 3] = 1;
+        f[i] = through(p[i / 3], one);
+    }
+    f[6] = depth;
+    f[7] = (line){reach - depth.c, -depth.x, -depth.y};
+    corner k[CROSSINGS];
+    int count = corners_of(f, OF_FACES, k);
+    for (int i = 0; i < count; i++) {
+        double d = creal(value(&depth, k[i].p)) + skin;
+        least = fmin(least, d);
+        *deepest = fmax(*deepest, d);
+    }
+    *deepest = least < pair->limit ? *deepest : 0;
+    if (!(reach > 0)) {
+        return 0;
+    }
+    count = corners_of(f, LINES, k);
+    number sum = 0, t = facing / 0.35, wn = dot(w, n);
+    for (int i = 1; i + 1 < count; i++) {
+        sum += triangle(&depth, reach, k[0].p, k[i].p, k[i + 1].p);
+    }
+    number root = pair->fading > 0 ? 1 - (dot(w, w) + 15 * wn * wn) / pair->fading : 0;
+    root = creal(root) > 0 ? root : 0;
+    return 0.5 * pair->stiffness * (creal(t) < 1 ? t * t * (3 - 2 * t) : 1) * (1 - root * root) * sum;
+}
+
+void rg_reference_contact(const rg_contact_args *args, size_t begin, size_t end) {
+    for (size_t i = begin; i < end; i++) {
+        const rg_contact_pair *pair = &args->pair[i];
+        number x[2][3][3];
+        for (int k = 0; k < 18; k++) {
+            x[k / 9][k / 3 % 3][k % 3] = args->corner[9 * pair->face[k / 9] + k % 9];
+        }
+        double sunk = fmax(args->sunk[pair->face[0]], args->sunk[pair->face[1]]), deepest;
+        args->energy[i] = creal(energy_of(pair, sunk, x, &args->depth[i]));
+        for (int k = 0; k < 18 && args->energy[i] > 0; k++) {
+            number *moved = &x[k / 9][k / 3 % 3][k % 3], kept = *moved;
+            *moved += STEP * I;
+            args->force[18 * i + (size_t)k] = -cimag(energy_of(pair, sunk, x, &deepest)) / STEP;
+            *moved = kept;
+        }
+    }
+}

@@ -1,0 +1,619 @@
+#include "contact/contact.h"
+
+#include <float.h>
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "base/vector.h"
+#include "domain/element.h"
+
+/* A face travels as its u^ and by how much it has sunk. */
+enum { ROW = 9, VALUES = ROW + 1, HALO_TAG = 11 };
+
+#define NO_INTERFACE SIZE_MAX
+
+/* Of the height of an element: how deep faces may lie in each other before they press, which those that break
+ * under pressure do; how deep they see each other; and how far they may move between two searches, of the
+ * mean.
+ */
+#define SKIN  2e-3
+#define REACH 0.5
+#define FAT   0.2
+
+/* And at least so many steps as long as the last one. */
+#define FAT_STEPS 24
+
+/* A face of this rank. */
+typedef struct {
+    rg_lid slot;
+    int8_t face;
+    int8_t turned;    /* its corners, ascending, run the other way round */
+    size_t interface; /* of the values that it has as an interface's side: of `sunk`; or NO_INTERFACE */
+    size_t touch;     /* its first touch */
+} face;
+
+/* A pair as one of its faces sees it. */
+typedef struct {
+    size_t pair;
+    int side;
+} touch;
+
+struct rg_contacts {
+    const rg_domain *domain;
+    const rg_material *material;
+    MPI_Comm comm;
+    int rank;
+    double penalty, omega2;
+    double push[RG_FACES][RG_NODES][RG_FCORNERS]; /* M^-1 Q' of an element of unit mass */
+    double eigenvalue; /* largest of M^-1 K on unit mass and stiffness of one face */
+
+    size_t faces, far, pairs; /* of this rank, of others, with a part of this rank */
+    bool any;
+    size_t *tile_begin; /* faces of tile t: from tile_begin[t] on */
+    face *face;
+    double *rest, *corner, *last; /* [faces, then far][9]: undeformed, now; [faces][9] at the last search */
+    rg_gid *id;                   /* [faces, then far] */
+    rg_real *row;                 /* [faces, then far][VALUES] */
+    double *sunk;                 /* [faces, then far]: as it came (m) */
+    double *moved;                /* [faces]: since the search, and in the last step (m) */
+    double *stepped;
+    double fat;
+    rg_halo *halo;
+    rg_contact_pair *pair;
+    touch *touch;
+    double *force, *energy, *depth; /* of the pairs */
+};
+
+/* ---- Elements ---- */
+
+/* Q: what the six nodes of a face have a part in its corners by the projection
+ *     int l_i (u^ - u) = 0,  u^ = sum l_i u^_i,  i = 1 to 3. */
+static double projection(int corner, int node) {
+    static const int end[RG_FNODES - RG_FCORNERS][2] = {{0, 1}, {1, 2}, {0, 2}};
+    if (node < RG_FCORNERS) {
+        return node == corner ? 0.4 : -0.2;
+    }
+    const int *edge = end[node - RG_FCORNERS];
+    return edge[0] == corner || edge[1] == corner ? 0.6 : -0.2;
+}
+
+static void make_element(rg_contacts *c, rg_mass mass) {
+    for (int f = 0; f < RG_FACES; f++) {
+        for (int n = 0; n < RG_NODES; n++) {
+            for (int i = 0; i < RG_FCORNERS; i++) {
+                for (int a = 0; a < RG_FNODES; a++) {
+                    c->push[f][n][i] += rg_inverse_mass_entry(mass, n, rg_face_node[f][a]) * projection(i, a);
+                }
+            }
+        }
+    }
+    /* Q M^-1 Q' times the mass matrix of the corners over the area, (I + 1 1')/12: of a face that moves as
+     * one, and of others. */
+    double own = 0, other = 0;
+    for (int a = 0; a < RG_FNODES; a++) {
+        own += projection(0, a) * c->push[0][rg_face_node[0][a]][0];
+        other += projection(0, a) * c->push[0][rg_face_node[0][a]][1];
+    }
+    c->eigenvalue = fmax((own + 2 * other) / 3, (own - other) / 12);
+}
+
+/* Both sides of a pair bear its stiffness, and each face by half of the jump's square at most: twice kappa.
+ */
+static double largest_omega2(const rg_contacts *c) {
+    const rg_domain *d = c->domain;
+    double most = 0;
+    for (size_t slot = 0; slot < d->blocks * RG_LANES; slot++) {
+        double sum = 0;
+        for (int k = 0; k < RG_FACES; k++) {
+            if (rg_surface_has(d, slot, k)) {
+                double normal[3], area = rg_surface_area(d->corner + 12 * slot, k, normal);
+                const rg_material *m = &c->material[d->material[slot / RG_LANES]];
+                double kappa = c->penalty * (m->lambda + 2 * m->mu) / rg_surface_height(d, slot, k);
+                sum += 2 * kappa * area * c->eigenvalue / rg_element_mass(d, c->material, slot);
+            }
+        }
+        most = fmax(most, sum);
+    }
+    MPI_Allreduce(MPI_IN_PLACE, &most, 1, MPI_DOUBLE, MPI_MAX, c->comm);
+    return most;
+}
+
+rg_contacts *rg_contacts_make(const rg_case *input, const rg_domain *d, const rg_material *m, MPI_Comm comm) {
+    if (input->contact.model == RG_CONTACT_OF_INTERFACES) {
+        return NULL;
+    }
+    rg_contacts *c = RG_NEW(rg_contacts, 1);
+    *c = (rg_contacts){.domain = d, .material = m, .comm = comm, .penalty = input->contact.penalty};
+    MPI_Comm_rank(comm, &c->rank);
+    make_element(c, input->mass);
+    c->omega2 = largest_omega2(c);
+    c->tile_begin = RG_NEW(size_t, d->tiles + 1);
+    return c;
+}
+
+/* ---- Exposed faces ---- */
+
+/* 0: not exposed; 1: on the surface; 2: a former interface. */
+static int exposure(const rg_domain *d, const rg_tile *t, const uint8_t *exposed, size_t slot, int k) {
+    int32_t link = d->interface[rg_link_index(slot, k)];
+    if (rg_surface_has(d, slot, k)) {
+        return 1;
+    }
+    return d->id[slot] >= 0 && link >= 0 && exposed[t->ibegin * RG_LANES + (size_t)link / 4] >= 2 ? 2 : 0;
+}
+
+/* Where `sunk` has the value of side k of interface i. */
+static size_t sunk_index(size_t i, int k) {
+    return (i / RG_LANES * 2 + (size_t)k) * RG_LANES + i % RG_LANES;
+}
+
+/* Visits the exposed faces of a tile; counts them and, with room for them, lists them. */
+static size_t list_faces(const rg_contacts *c, size_t tile, const uint8_t *exposed, face *out) {
+    const rg_domain *d = c->domain;
+    const rg_tile *t = &d->tile[tile];
+    size_t count = 0;
+    for (size_t slot = t->begin * RG_LANES; slot < t->end * RG_LANES; slot++) {
+        for (int k = 0; k < RG_FACES; k++) {
+            int how = exposure(d, t, exposed, slot, k);
+            if (how > 0 && out != NULL) {
+                int32_t link = d->interface[rg_link_index(slot, k)];
+                out[count] = (face){.slot = (rg_lid)slot, .face = (int8_t)k, .interface = NO_INTERFACE};
+                if (how == 2) {
+                    out[count].interface = sunk_index(t->ibegin * RG_LANES + (size_t)link / 4, link % 2);
+                }
+            }
+            count += how > 0;
+        }
+    }
+    return count;
+}
+
+/* Corner i of a face, out of its ascending ones. */
+static int corner_of(const face *f, int i) {
+    return f->turned && i > 0 ? 3 - i : i;
+}
+
+static void set_rest(const rg_contacts *c, face *f, double *rest) {
+    const double *corner = c->domain->corner + 12 * (size_t)f->slot;
+    double out[3], across[3], one[3], two[3], along = 0;
+    rg_surface_area(corner, f->face, out);
+    for (int pass = 0; pass < 2; pass++) {
+        for (int i = 0; i < 3; i++) {
+            memcpy(rest + 3 * i, corner + 3 * rg_face_node[f->face][corner_of(f, i)], 3 * sizeof *rest);
+        }
+        for (int k = 0; k < 3; k++) {
+            one[k] = rest[3 + k] - rest[k];
+            two[k] = rest[6 + k] - rest[k];
+        }
+        for (int k = 0; k < 3; k++) {
+            int a = (k + 1) % 3, b = (k + 2) % 3;
+            across[k] = one[a] * two[b] - one[b] * two[a];
+            along += pass == 0 ? across[k] * out[k] : 0;
+        }
+        f->turned = along < 0;
+    }
+}
+
+static void set_row(const rg_contacts *c, size_t i, const rg_real *u) {
+    const face *f = &c->face[i];
+    for (int k = 0; k < ROW; k++) {
+        double sum = 0;
+        for (int a = 0; a < RG_FNODES; a++) {
+            sum += projection(corner_of(f, k / 3), a) *
+                   u[rg_node_index((size_t)f->slot, rg_face_node[f->face][a], k % 3)];
+        }
+        c->row[VALUES * i + (size_t)k] = (rg_real)sum;
+    }
+}
+
+static void set_corners(const rg_contacts *c, size_t i) {
+    for (size_t k = 0; k < ROW; k++) {
+        c->corner[ROW * i + k] = c->rest[ROW * i + k] + c->row[VALUES * i + k];
+    }
+    c->sunk[i] = c->row[VALUES * i + ROW];
+}
+
+static void forget(rg_contacts *c) {
+    rg_halo_free(c->halo);
+    c->halo = NULL;
+    void *blocks[] = {c->face,    c->rest, c->corner, c->last,  c->id,     c->row,   c->moved,
+                      c->stepped, c->pair, c->touch,  c->force, c->energy, c->depth, c->sunk};
+    for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) {
+        rg_free(blocks[i]);
+    }
+}
+
+/* The exposed faces of this rank, where they are now. */
+static rg_exposed_face *expose(rg_contacts *c, const uint8_t *exposed, const rg_real *u) {
+    const rg_domain *d = c->domain;
+    for (size_t t = 0; t < d->tiles; t++) {
+        c->tile_begin[t + 1] = c->tile_begin[t] + list_faces(c, t, exposed, NULL);
+    }
+    c->faces = c->tile_begin[d->tiles];
+    c->face = RG_NEW(face, c->faces + 1);
+    rg_exposed_face *e = RG_NEW(rg_exposed_face, c->faces + 1);
+    for (size_t t = 0; t < d->tiles; t++) {
+        list_faces(c, t, exposed, c->face + c->tile_begin[t]);
+    }
+    c->row = RG_NEW(rg_real, VALUES * (c->faces + 1));
+    for (size_t i = 0; i < c->faces; i++) {
+        face *f = &c->face[i];
+        size_t slot = (size_t)f->slot;
+        const rg_material *m = &c->material[d->material[slot / RG_LANES]];
+        e[i] = (rg_exposed_face){.id = RG_FACES * d->id[slot] + f->face,
+                                 .rank = c->rank,
+                                 .row = (int32_t)i,
+                                 .former = f->interface != NO_INTERFACE,
+                                 .modulus = m->lambda + 2 * m->mu,
+                                 .height = rg_surface_height(d, slot, f->face)};
+        set_rest(c, f, e[i].rest);
+        set_row(c, i, u);
+        for (int k = 0; k < ROW; k++) {
+            e[i].corner[k] = e[i].rest[k] + c->row[VALUES * i + (size_t)k];
+        }
+    }
+    return e;
+}
+
+/* ---- Pairs ---- */
+
+/* A face that one rank has and another one needs. */
+typedef struct {
+    int32_t rank;
+    rg_gid id;
+    size_t row;
+    const double *rest;
+} shared;
+
+static int by_rank(const void *a, const void *b) {
+    const shared *p = a, *q = b;
+    int order = (p->rank > q->rank) - (p->rank < q->rank);
+    return order != 0 ? order : (p->id > q->id) - (p->id < q->id);
+}
+
+static size_t unique(shared *s, size_t count) {
+    size_t kept = 0;
+    qsort(s, count, sizeof *s, by_rank);
+    for (size_t i = 0; i < count; i++) {
+        if (kept == 0 || by_rank(&s[i], &s[kept - 1]) != 0) {
+            s[kept++] = s[i];
+        }
+    }
+    return kept;
+}
+
+/* Rows of faces: the own ones, then those of other ranks, with the exchange that brings these. */
+static shared *make_rows(rg_contacts *c, const rg_exposed_face *own, const rg_candidate *p) {
+    shared *needed = RG_NEW(shared, c->pairs + 1), *given = RG_NEW(shared, c->pairs + 1);
+    size_t count = 0;
+    for (size_t i = 0; i < c->pairs; i++) {
+        for (int k = 0; k < 2; k++) {
+            const rg_exposed_face *far = &p[i].face[k], *near = &p[i].face[1 - k];
+            if (far->rank != c->rank) {
+                needed[count] = (shared){far->rank, far->id, 0, far->rest};
+                given[count++] = (shared){far->rank, near->id, (size_t)near->row, NULL};
+            }
+        }
+    }
+    c->far = unique(needed, count);
+    count = unique(given, count);
+    size_t rows = c->faces + c->far;
+    rg_halo_row *send = RG_NEW(rg_halo_row, count + 1);
+    int32_t *from = RG_NEW(int32_t, c->far + 1);
+    rg_free(c->row);
+    c->row = RG_NEW(rg_real, VALUES * (rows + 1));
+    c->sunk = RG_NEW(double, rows + 1);
+    c->rest = RG_NEW(double, ROW *(rows + 1));
+    c->corner = RG_NEW(double, ROW *(rows + 1));
+    c->last = RG_NEW(double, ROW *(c->faces + 1));
+    c->id = RG_NEW(rg_gid, rows + 1);
+    c->moved = RG_NEW(double, c->faces + 1);
+    c->stepped = RG_NEW(double, c->faces + 1);
+    for (size_t i = 0; i < c->faces; i++) {
+        memcpy(c->rest + ROW * i, own[i].rest, sizeof own[i].rest);
+        memcpy(c->last + ROW * i, own[i].corner, sizeof own[i].corner);
+        memcpy(c->corner + ROW * i, own[i].corner, sizeof own[i].corner);
+        c->id[i] = own[i].id;
+    }
+    for (size_t i = 0; i < c->far; i++) {
+        needed[i].row = c->faces + i;
+        memcpy(c->rest + ROW * needed[i].row, needed[i].rest, ROW * sizeof *c->rest);
+        c->id[needed[i].row] = needed[i].id;
+        from[i] = needed[i].rank;
+    }
+    for (size_t i = 0; i < count; i++) {
+        send[i] = (rg_halo_row){given[i].rank, given[i].row};
+    }
+    rg_halo_plan plan = {.send = send, .sends = count, .from = from, .receives = c->far, .own = c->faces};
+    c->halo = rg_halo_plan_make(&plan, VALUES, c->row, HALO_TAG, c->comm);
+    rg_free(send);
+    rg_free(from);
+    rg_free(given);
+    return needed;
+}
+
+static int32_t row_of(const rg_contacts *c, const rg_exposed_face *f, const shared *far) {
+    if (f->rank == c->rank) {
+        return f->row;
+    }
+    const shared key = {.rank = f->rank, .id = f->id};
+    const shared *there = bsearch(&key, far, c->far, sizeof *far, by_rank);
+    return (int32_t)there->row;
+}
+
+/* What each face touches: pairs come by the numbers of both faces, so that each face gets its partners
+ * ascending, lower ones after higher ones or before as the pairs come: sorted below. */
+typedef struct {
+    size_t row;
+    rg_gid partner;
+    touch is;
+} contact_of;
+
+static int by_partner(const void *a, const void *b) {
+    const contact_of *p = a, *q = b;
+    int order = (p->row > q->row) - (p->row < q->row);
+    return order != 0 ? order : (p->partner > q->partner) - (p->partner < q->partner);
+}
+
+static void make_touches(rg_contacts *c) {
+    contact_of *of = RG_NEW(contact_of, 2 * c->pairs + 1);
+    size_t count = 0;
+    for (size_t i = 0; i < c->pairs; i++) {
+        for (int k = 0; k < 2; k++) {
+            size_t row = (size_t)c->pair[i].face[k], other = (size_t)c->pair[i].face[1 - k];
+            if (row < c->faces) {
+                of[count++] = (contact_of){row, c->id[other], {i, k}};
+            }
+        }
+    }
+    qsort(of, count, sizeof *of, by_partner);
+    c->touch = RG_NEW(touch, count + 1);
+    for (size_t i = 0, f = 0; f <= c->faces; f++) {
+        c->face[f].touch = i;
+        while (i < count && of[i].row == f) {
+            c->touch[i] = of[i].is;
+            i++;
+        }
+    }
+    rg_free(of);
+}
+
+/* How far a face may move before the next search. */
+static double set_fat(const rg_contacts *c, const rg_exposed_face *e, double step) {
+    double sum[2] = {0, (double)c->faces};
+    for (size_t i = 0; i < c->faces; i++) {
+        sum[0] += e[i].height;
+    }
+    MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPI_DOUBLE, MPI_SUM, c->comm);
+    MPI_Allreduce(MPI_IN_PLACE, &step, 1, MPI_DOUBLE, MPI_MAX, c->comm);
+    double fat = sum[1] > 0 ? FAT * sum[0] / sum[1] : 0;
+    return isfinite(step) ? fmax(fat, FAT_STEPS * step) : fat;
+}
+
+static double largest(const double *x, size_t count) {
+    double most = 0;
+    for (size_t i = 0; i < count; i++) {
+        most = fmax(most, x[i]);
+    }
+    return most;
+}
+
+void rg_contacts_search(rg_contacts *c, const uint8_t *exposed, const rg_real *u) {
+    double step = largest(c->stepped, c->stepped != NULL ? c->faces : 0);
+    forget(c);
+    rg_exposed_face *own = expose(c, exposed, u);
+    c->fat = set_fat(c, own, step);
+    rg_search by = {c->penalty, SKIN, REACH, c->fat};
+    rg_candidate *p = rg_search_pairs(&by, own, c->faces, &c->pairs, c->comm);
+    shared *far = make_rows(c, own, p);
+    c->pair = RG_NEW(rg_contact_pair, c->pairs + 1);
+    c->force = RG_NEW(double, 18 * (c->pairs + 1));
+    c->energy = RG_NEW(double, c->pairs + 1);
+    c->depth = RG_NEW(double, c->pairs + 1);
+    for (size_t i = 0; i < c->pairs; i++) {
+        c->pair[i] = p[i].pair;
+        for (int k = 0; k < 2; k++) {
+            c->pair[i].face[k] = row_of(c, &p[i].face[k], far);
+        }
+    }
+    make_touches(c);
+    int here = c->pairs > 0, anywhere;
+    MPI_Allreduce(&here, &anywhere, 1, MPI_INT, MPI_MAX, c->comm);
+    c->any = anywhere != 0;
+    rg_free(far);
+    rg_free(p);
+    rg_free(own);
+}
+
+/* ---- Steps ---- */
+
+static double distance2(const double *a, const double *b) {
+    double d[3];
+    rg_vector_subtract(a, b, d);
+    return rg_vector_dot(d, d);
+}
+
+void rg_contacts_place(rg_contacts *c, size_t tile, const rg_real *u, const rg_real *sunk) {
+    for (size_t i = c->tile_begin[tile]; i < c->tile_begin[tile + 1]; i++) {
+        double moved = 0, stepped = 0;
+        size_t at = c->face[i].interface;
+        double before[ROW];
+        memcpy(before, c->corner + ROW * i, sizeof before);
+        set_row(c, i, u);
+        c->row[VALUES * i + ROW] = at == NO_INTERFACE ? 0 : sunk[at];
+        set_corners(c, i);
+        for (size_t k = 0; k < ROW; k += 3) {
+            moved = fmax(moved, distance2(c->corner + ROW * i + k, c->last + ROW * i + k));
+            stepped = fmax(stepped, distance2(c->corner + ROW * i + k, before + k));
+        }
+        c->moved[i] = sqrt(moved);
+        c->stepped[i] = sqrt(stepped);
+    }
+}
+
+rg_halo *rg_contacts_halo(const rg_contacts *c) {
+    return c->halo;
+}
+
+void rg_contacts_meet(rg_contacts *c, const rg_kernels *kernels) {
+    enum { BATCH = 32 };
+    rg_contact_args args = {c->corner, c->sunk, c->pair, c->force, c->energy, c->depth};
+    size_t batches = (c->pairs + BATCH - 1) / BATCH;
+#pragma omp for schedule(static)
+    for (size_t i = c->faces; i < c->faces + c->far; i++) {
+        set_corners(c, i);
+    }
+#pragma omp for schedule(static)
+    for (size_t b = 0; b < batches; b++) {
+        size_t end = (b + 1) * BATCH;
+        kernels->contact(&args, b * BATCH, end < c->pairs ? end : c->pairs);
+    }
+}
+
+/* Forces on the corners of a face, and the sum of their sizes by pairs (N); false where it touches nothing.
+ */
+static bool face_forces(const rg_contacts *c, const face *f, double force[3][3], double *felt) {
+    bool touches = false;
+    memset(force, 0, 9 * sizeof(double));
+    for (size_t i = f->touch; i < f[1].touch; i++) {
+        const touch *t = &c->touch[i];
+        double sum[3] = {0, 0, 0};
+        if (!(c->energy[t->pair] > 0)) {
+            continue;
+        }
+        const double *of = c->force + 18 * t->pair + 9 * t->side;
+        touches = true;
+        for (int k = 0; k < 9; k++) {
+            force[k / 3][k % 3] += of[k];
+            sum[k % 3] += of[k];
+        }
+        *felt += sqrt(sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]);
+    }
+    return touches;
+}
+
+static void push_element(const rg_contacts *c, const face *f, double force[3][3], const rg_push *push) {
+    double mass = rg_element_mass(c->domain, c->material, (size_t)f->slot);
+    for (int n = 0; n < RG_NODES; n++) {
+        for (int k = 0; k < 3; k++) {
+            double a = 0;
+            for (int i = 0; i < RG_FCORNERS; i++) {
+                a += c->push[f->face][n][corner_of(f, i)] * force[i][k];
+            }
+            size_t at = rg_node_index((size_t)f->slot, n, k);
+            push->velocity[at] = (rg_real)(push->velocity[at] + push->dt * a / mass);
+            if (push->step_velocity != NULL) {
+                push->step_velocity[at] = (rg_real)(push->step_velocity[at] + push->dt_now * a / mass);
+            }
+        }
+    }
+}
+
+/* How deep a face is in others, beyond their common skin. */
+static double depth_of(const rg_contacts *c, const face *f) {
+    double depth = 0;
+    for (size_t i = f->touch; i < f[1].touch; i++) {
+        size_t pair = c->touch[i].pair;
+        depth = fmax(depth, c->depth[pair] - c->pair[pair].skin);
+    }
+    return depth;
+}
+
+void rg_contacts_push(const rg_contacts *c, size_t tile, const rg_push *push, double dt, double *impulse,
+                      rg_real *sunk) {
+    for (size_t i = c->tile_begin[tile]; i < c->tile_begin[tile + 1]; i++) {
+        double force[3][3], felt = 0;
+        size_t at = c->face[i].interface;
+        if (at != NO_INTERFACE && sunk[at] > 0) {
+            sunk[at] = (rg_real)fmin(sunk[at], depth_of(c, &c->face[i]));
+        }
+        if (face_forces(c, &c->face[i], force, &felt)) {
+            push_element(c, &c->face[i], force, push);
+            impulse[c->face[i].slot] += felt * dt;
+        }
+    }
+}
+
+void rg_contacts_sink(const rg_contacts *c, const uint8_t *exposed, rg_real *sunk) {
+    for (size_t i = 0; i < c->faces; i++) {
+        size_t at = c->face[i].interface;
+        if (at != NO_INTERFACE &&
+            exposed[at / (2 * RG_LANES) * RG_LANES + at % RG_LANES] == RG_NEWLY_EXPOSED) {
+            sunk[at] = (rg_real)depth_of(c, &c->face[i]);
+        }
+    }
+}
+
+void rg_contacts_energy(const rg_contacts *c, size_t tile, rg_exact_sum *energy) {
+    for (size_t i = c->face[c->tile_begin[tile]].touch; i < c->face[c->tile_begin[tile + 1]].touch; i++) {
+        if (c->touch[i].side == 0) {
+            rg_exact_add(energy, c->energy[c->touch[i].pair]);
+        }
+    }
+}
+
+double rg_contacts_moved(const rg_contacts *c) {
+    double moved = largest(c->moved, c->faces), stepped = largest(c->stepped, c->faces);
+    return (moved + 2 * stepped) / c->fat;
+}
+
+int64_t rg_contacts_touching(const rg_contacts *c) {
+    int64_t count = 0;
+    for (size_t i = 0; i < c->pairs; i++) {
+        count += (size_t)c->pair[i].face[0] < c->faces && c->energy[i] > 0;
+    }
+    return count;
+}
+
+bool rg_contacts_any(const rg_contacts *c) {
+    return c->any;
+}
+
+/* ---- Set-up ---- */
+
+bool rg_contacts_overlap(const rg_contacts *c, char *words, size_t size) {
+    rg_gid lowest = INT64_MAX, first;
+    size_t which = 0;
+    for (size_t i = c->pairs; i-- > 0;) {
+        if (c->energy[i] > 0) {
+            which = i;
+            lowest = c->id[c->pair[i].face[0]];
+        }
+    }
+    MPI_Allreduce(&lowest, &first, 1, MPI_INT64_T, MPI_MIN, c->comm);
+    if (first == INT64_MAX) {
+        return false;
+    }
+    double where[4] = {0, 0, 0, 0};
+    if (first == lowest) {
+        const double *x = c->corner + ROW * c->pair[which].face[0];
+        for (int k = 0; k < 3; k++) {
+            where[k] = (x[k] + x[3 + k] + x[6 + k]) / 3;
+        }
+        where[3] = (double)(c->id[c->pair[which].face[1]] / RG_FACES);
+    }
+    double best[4];
+    int mine = first == lowest ? c->rank : INT32_MAX, speaker;
+    MPI_Allreduce(&mine, &speaker, 1, MPI_INT, MPI_MIN, c->comm);
+    memcpy(best, where, sizeof best);
+    MPI_Bcast(best, 4, MPI_DOUBLE, speaker, c->comm);
+    snprintf(words, size, "elements %" PRId64 " and %.0f lie in each other at (%.6g, %.6g, %.6g)",
+             first / RG_FACES, best[3], best[0], best[1], best[2]);
+    return true;
+}
+
+double rg_contacts_omega2(const rg_contacts *c) {
+    return c->omega2;
+}
+
+void rg_contacts_free(rg_contacts *c) {
+    if (c != NULL) {
+        forget(c);
+        rg_free(c->tile_begin);
+        rg_free(c);
+    }
+}

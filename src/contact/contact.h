@@ -1,0 +1,79 @@
+/* Contact between faces that are exposed: those of the surface, and both sides of interfaces that have
+ * separated. Pairs of them that may touch are found now and then (contact/search.h); what they do to each
+ * other is computed in every step (kernels/contact).
+ *
+ * A face is the triangle that is nearest to it: its corners are those of the linear field u^ = Q u with the
+ * same moments as the displacement on it. So forces on its corners are forces Q' f^ on its six nodes: a
+ * pressure that is uniform or linear over the face is the exact load of that pressure, and a body under it in
+ * the same stress everywhere.
+ *
+ * The rows u^ of faces that touch one of another rank travel with the traces; both ranks compute such a pair,
+ * from the same numbers to the same bits. An element adds up what its faces feel face by face, in the order
+ * of the partner's number. So results do not depend on ranks and threads, nor on when the search was made. */
+#ifndef RG_CONTACT_ROOM_H
+#define RG_CONTACT_ROOM_H
+
+#include <mpi.h>
+
+#include "base/exact_sum.h"
+#include "case/case.h"
+#include "contact/search.h"
+#include "domain/face.h"
+#include "domain/halo.h"
+#include "kernels.h"
+
+/* An interface that has come to be exposed may lie deep in its neighbours, under pressure. So that nothing
+ * jumps then, its sides begin as far sunk as they are: by so much later do they press. As they come out of
+ * each other, what they have sunk by falls with their depth. It is remembered, side by side of the
+ * interfaces: sunk[interface block][2][lane]. */
+typedef struct rg_contacts rg_contacts;
+
+/* Of an interface: it holds, has separated, its sides are exposed, and they have been since just now. */
+enum { RG_UNEXPOSED, RG_SEPARATED, RG_EXPOSED, RG_NEWLY_EXPOSED };
+
+/* Without faces yet. Keeps references to `d` and `m`. NULL where contact is that of interfaces alone.
+ * Collective; free with rg_contacts_free. */
+rg_contacts *rg_contacts_make(const rg_case *c, const rg_domain *d, const rg_material *m, MPI_Comm comm);
+
+/* Finds the exposed faces and the pairs anew: those of the surface and of the interfaces i with exposed[i]
+ * = 2. Nothing may be under way. Collective. */
+void rg_contacts_search(rg_contacts *c, const uint8_t *exposed, const rg_real *u);
+
+/* The pair with the lowest numbers whose faces lie in each other deeper than their skin, after the forces
+ * have been computed; then words[size] says where. Collective. */
+bool rg_contacts_overlap(const rg_contacts *c, char *words, size_t size);
+
+/* The rows of a tile's faces at displacement u. */
+void rg_contacts_place(rg_contacts *c, size_t tile, const rg_real *u, const rg_real *sunk);
+
+/* Exchange of the rows; NULL where no rank has a pair with another one. */
+rg_halo *rg_contacts_halo(const rg_contacts *c);
+
+/* Forces of all pairs. A worksharing loop: call it from all threads; ends with a barrier. */
+void rg_contacts_meet(rg_contacts *c, const rg_kernels *kernels);
+
+/* What they do to the elements of a tile. impulse[slot] grows by the forces that the faces of each element
+ * feel, times `dt` (N s). */
+void rg_contacts_push(const rg_contacts *c, size_t tile, const rg_push *push, double dt, double *impulse,
+                      rg_real *sunk);
+
+/* By how much the sides of newly exposed interfaces have sunk, once the pairs have met. */
+void rg_contacts_sink(const rg_contacts *c, const uint8_t *exposed, rg_real *sunk);
+
+/* Adds the energy of a tile's pairs (J), those whose lower face is here. */
+void rg_contacts_energy(const rg_contacts *c, size_t tile, rg_exact_sum *energy);
+
+/* How far faces have moved since the search, with two more steps like the last one, over what they may; from
+ * 1 on a search is due. Of this rank. */
+double rg_contacts_moved(const rg_contacts *c);
+
+/* Pairs that touch, those whose lower face is here; whether there may be any, on all ranks. */
+int64_t rg_contacts_touching(const rg_contacts *c);
+bool rg_contacts_any(const rg_contacts *c);
+
+/* What contact adds to the largest squared frequency, at most (1/s^2). */
+double rg_contacts_omega2(const rg_contacts *c);
+
+void rg_contacts_free(rg_contacts *c);
+
+#endif

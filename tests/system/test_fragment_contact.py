@@ -1,0 +1,114 @@
+"""Contact between faces that share no interface: parts of a mesh, and fragments that come back."""
+
+import itertools
+
+import pytest
+from conftest import CASES, launch
+
+H, DENSITY, YOUNG = 1e-4, 8000, 200e9  # speed 5000 m/s for a Poisson's ratio of 0
+SPEED = (YOUNG / DENSITY) ** 0.5
+
+
+def deck(boxes):
+    """An Abaqus deck of boxes (origin, size, cells), each cell six tetrahedra, with the sides of all as node sets."""
+    nodes, elements = [], []
+    for origin, size, cells in boxes:
+        first, count = len(nodes) + 1, [n + 1 for n in cells]
+
+        def number(i, j, k):
+            return first + i + count[0] * (j + count[1] * k)
+
+        for k, j, i in itertools.product(*(range(n) for n in reversed(count))):
+            nodes.append([o + s * m / n for o, s, m, n in zip(origin, size, (i, j, k), cells)])
+        for k, j, i in itertools.product(*(range(n) for n in reversed(cells))):
+            for axes in itertools.permutations(range(3)):
+                at, corners = [i, j, k], [number(i, j, k)]
+                for axis in axes:
+                    at[axis] += 1
+                    corners.append(number(*at))
+                elements.append(corners)
+    text = ["*NODE", *(f"{n + 1}, {x!r}, {y!r}, {z!r}" for n, (x, y, z) in enumerate(nodes)), "*ELEMENT, TYPE=C3D4",
+            *(", ".join(map(str, [e + 1, *corners])) for e, corners in enumerate(elements))]
+    for axis, name in enumerate("xyz"):
+        ends = [pick(x[axis] for x in nodes) for pick in (min, max)]
+        for word, end in zip(("low", "high"), ends):
+            text += [f"*NSET, NSET={name}{word}", *(str(n + 1) for n, x in enumerate(nodes) if abs(x[axis] - end) < 1e-9 * H)]
+    return "\n".join(text) + "\n"
+
+
+@pytest.fixture(scope="module")
+def case(scratch):
+    """case(name, boxes, text): a case file beside its mesh."""
+    def make(name, boxes, text):
+        folder = scratch / name
+        folder.mkdir(exist_ok=True)
+        (folder / "mesh.inp").write_text(deck(boxes))
+        process = launch("mesh", folder / "mesh.inp", "-o", folder / "mesh.h5")
+        assert process.returncode == 0, process.stderr
+        (folder / f"{name}.yaml").write_text("defaults: 1\nmesh: {file: mesh.h5}\ninterface: {law: none}\ncontact: {model: general}\n" + text)
+        return folder / f"{name}.yaml"
+    return make
+
+
+HELD = "boundary: [" + ", ".join(f"{{set: {axis}{end}, component: {axis}, velocity: 0}}" for axis in "xy" for end in ("low", "high")) + "]\n"
+
+
+def material(poisson=0.0):
+    return f"material: {{model: linear-elastic, young: {YOUNG}, poisson: {poisson}, density: {DENSITY}}}\n"
+
+
+def bars(case, one, two, gap=1e-3):
+    """Bars of so many cells, of one and of two elements across, the first one at 1 m/s towards the other."""
+    boxes = [((-H, -H, -(one + gap) * H), (2 * H, 2 * H, one * H), (1, 1, one)), ((-H, -H, 0), (2 * H, 2 * H, two * H), (2, 1, two))]
+    end = (2 * max(one, two) + 35) * H / SPEED
+    return case(f"bars-{one}-{two}", boxes, material() + HELD + f'initial: {{velocity: {{z: "z < {-gap / 2 * H} ? 1 : 0"}}}}\n'
+                f"time: {{end: {end}}}\noutput: {{interval: {end / 2}, fields: []}}\n")
+
+
+@pytest.mark.parametrize("one, two, restitution, bound", [(60, 60, 1, 5e-3), (30, 60, 0.5, 0.015)])
+def test_bars_part_as_waves_tell(run, figure, case, one, two, restitution, bound):
+    """Wave solution: a bar gives all its momentum to one as long or longer. What stays with it is that of a front's tail, some
+    elements long: it falls with the number of elements."""
+    result = run(bars(case, one, two))
+    last = result.fragments[-2:]
+    velocity = last["momentum_z"] / last["mass"]
+    figure("restitution of bars", (velocity[1] - velocity[0]) / 1.0, theory=restitution, bound=bound)
+    assert result.summary["contacts"] > 4 and result.summary["overlaps"] == 0
+    assert result.summary["contact_impulse_Ns"] == pytest.approx(last["momentum_z"][1], rel=1e-2)
+    assert result.summary["energy_error_rel"] < 3e-4
+
+
+def test_pressure_goes_through_faces_that_do_not_match(run, figure, case):
+    """Two blocks in a die, of 2 and 3 cells across, under a pressure that rises slowly: the same stress in all elements."""
+    pressure, end = 1e8, 160 * H / SPEED
+    boxes = [((0, 0, 0), (2 * H, 2 * H, 2 * H), (2, 2, 2)), ((0, 0, 2.001 * H), (2 * H, 2 * H, 2 * H), (3, 3, 3))]
+    path = case("die", boxes, material(0.25) + HELD.rstrip("]\n") + ", {set: zlow, component: z, velocity: 0}, {set: zhigh, absorbing: true}]\n"
+                f'loads: [{{set: zhigh, pressure: "{pressure / 2}*(1 - cos(pi*t/{end}))"}}]\n'
+                f"time: {{end: {end}}}\noutput: {{interval: {end}, fields: [stress], fragments: none}}\n")
+    stress = run(path).frames()[-1]["stress"][:, 5]
+    figure("stress across faces that do not match", abs(stress / -pressure - 1).max(), bound=1e-2)
+
+
+def test_parts_that_lie_in_each_other_are_refused(case):
+    boxes = [((0, 0, 0), (H, H, H), (1, 1, 1)), ((0.13 * H, 0.07 * H, 0.95 * H), (H, H, H), (2, 2, 2))]
+    path = case("sunk", boxes, material() + "time: {end: 1e-8}\n")
+    for ranks in (1, 2):
+        process = launch("run", path, "-q", "-o", path.parent / "out", ranks=ranks)
+        assert process.returncode == 2
+        assert "lie in each other at (" in process.stderr and "elements " in process.stderr
+
+
+TORN = {
+    "defaults": 1, "contact.model": "general", "mesh.cells": [2, 2, 12], "mesh.size": [0.4e-3, 0.4e-3, 2.4e-3],
+    "mesh.origin": [-0.2e-3, -0.2e-3, -1.2e-3], "initial.velocity": {"x": "3e3*y", "y": 0, "z": "40*sin(pi*z/2.4e-3)"},
+    "bodies": [{"name": f"wall{side}", "shape": "plane", "motion": "prescribed", "at": [0, 0, side * 1.205e-3],
+                "normal": [0, 0, -side]} for side in (-1, 1)],
+    "time": {"end": 1.2e-6, "safety": 0.45}, "output.interval": 5e-8, "output.fields": [],
+}
+
+
+def test_fragments_that_fly_back_keep_their_energy(run, figure):
+    """A bar that tears itself apart between rigid walls, which send its pieces back into each other."""
+    result = run(CASES / "fragments.yaml", threads=2, sets=TORN)
+    assert result.summary["overlaps"] == 0 and result.summary["fragments"] > 20 and result.summary["contacts"] > 20
+    figure("energy error of fragments that fly back", result.summary["energy_error_rel"], bound=5e-3)

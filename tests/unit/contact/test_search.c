@@ -1,0 +1,147 @@
+/* The search for faces that may touch, against all pairs: whatever touches or lies over each other, now or
+ * after every corner has moved as far as it may, was found; each pair once, by all ranks that have a part in
+ * it. Prints TAP from rank 0. */
+#include "contact/search.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "support/dice.h"
+#include "support/tap_memory.h"
+
+enum { FACES = 240 };
+
+static int ranks;
+static const rg_search by = {.penalty = 4, .skin = 2e-3, .reach = 0.5, .fat = 0.1};
+
+/* Triangles of edges near 1 in a box of 5, a few of them large, the same on all ranks; every sixth one flies
+ * far away. */
+static void throw_faces(rg_exposed_face *f) {
+    dice d = {5, 0};
+    for (int i = 0; i < FACES; i++) {
+        double R[3][3], at[3], size = i % 50 == 0 ? 4 : 0.7;
+        dice_rotation(&d, R);
+        for (int c = 0; c < 3; c++) {
+            at[c] = 2.5 * dice_sign(&d) + (i % 6 == 0 ? 1e3 * (c + 1) : 0);
+        }
+        f[i] = (rg_exposed_face){.id = 4 * i, .rank = i % 7 % ranks, .modulus = 1, .height = 0.6};
+        for (int k = 0; k < 9; k++) {
+            double p[3] = {size * cos(2.1 * (k / 3)), size * sin(2.1 * (k / 3)), 0.1 * dice_sign(&d)};
+            f[i].corner[k] = at[k % 3] + R[k % 3][0] * p[0] + R[k % 3][1] * p[1] + R[k % 3][2] * p[2];
+            f[i].rest[k] = f[i].corner[k] + 100 * i; /* nothing is shared undeformed */
+        }
+    }
+}
+
+/* Each corner by at most the length that the search allows. */
+static void move(rg_exposed_face *f, int pass) {
+    dice d = {(uint64_t)pass, 0};
+    for (int i = 0; i < 3 * FACES && pass > 0; i++) {
+        double R[3][3];
+        dice_rotation(&d, R);
+        for (int c = 0; c < 3; c++) {
+            f[i / 3].corner[3 * (i % 3) + c] += (1 - 1e-12) * by.fat * R[c][0];
+        }
+    }
+}
+
+static bool is_found(const rg_candidate *p, size_t pairs, rg_gid a, rg_gid b) {
+    int times = 0;
+    for (size_t i = 0; i < pairs; i++) {
+        times += p[i].face[0].id == a && p[i].face[1].id == b;
+    }
+    return times == 1;
+}
+
+/* Pairs over each other of which this rank has a part; those that were not found, or more than once. */
+static void compare(const rg_candidate *p, size_t pairs, int pass, int *over, int *missed) {
+    static rg_exposed_face f[FACES];
+    throw_faces(f);
+    move(f, pass);
+    for (int i = 0; i < FACES; i++) {
+        for (int k = i + 1; k < FACES; k++) {
+            rg_contact_pair pair;
+            double corner[18], force[18], sunk[2] = {0, 0}, energy, depth;
+            if ((f[i].rank != rank && f[k].rank != rank) || !rg_search_may_touch(&by, &f[i], &f[k], &pair)) {
+                continue;
+            }
+            pair.face[0] = 0;
+            pair.face[1] = 1;
+            memcpy(corner, f[i].corner, sizeof f[i].corner);
+            memcpy(corner + 9, f[k].corner, sizeof f[k].corner);
+            rg_kernels_select()->contact(&(rg_contact_args){corner, sunk, &pair, force, &energy, &depth}, 0,
+                                         1);
+            if (depth > 0) {
+                *over += 1;
+                *missed += !is_found(p, pairs, f[i].id, f[k].id);
+            }
+        }
+    }
+}
+
+static void test_all_pairs(void) {
+    static rg_exposed_face all[FACES], own[FACES];
+    size_t count = 0, pairs;
+    int over = 0, missed = 0, total;
+    throw_faces(all);
+    for (int i = 0; i < FACES; i++) {
+        own[count] = all[i];
+        own[count].row = (int32_t)count;
+        count += all[i].rank == rank;
+    }
+    rg_candidate *p = rg_search_pairs(&by, own, count, &pairs, MPI_COMM_WORLD);
+    bool mine = true, ascending = true, rows = true;
+    for (size_t i = 0; i < pairs; i++) {
+        mine = mine && (p[i].face[0].rank == rank || p[i].face[1].rank == rank);
+        ascending = ascending && p[i].face[0].id < p[i].face[1].id &&
+                    (i == 0 || p[i - 1].face[0].id < p[i].face[0].id ||
+                     (p[i - 1].face[0].id == p[i].face[0].id && p[i - 1].face[1].id < p[i].face[1].id));
+        for (int k = 0; k < 2; k++) {
+            const rg_exposed_face *f = &p[i].face[k];
+            rows = rows && (f->rank != rank || own[f->row].id == f->id);
+        }
+    }
+    for (int pass = 0; pass < 12; pass++) {
+        compare(p, pairs, pass, &over, &missed);
+    }
+    MPI_Allreduce(&over, &total, 1, MPI_INT, MPI_SUM, MPI_COMM_WORLD);
+    report(mine && rows, "search", "tells each rank its own pairs");
+    report(ascending, "search", "gives pairs by their numbers, each once");
+    report(total > 1000 && missed == 0, "search", "finds all that come over each other");
+    report(pairs < (size_t)FACES * (FACES - 1) / 16, "search", "finds few others");
+    rg_free(p);
+}
+
+static rg_exposed_face at(rg_gid id, const double x[9]) {
+    rg_exposed_face f = {.id = id, .modulus = 2, .height = 0.5};
+    memcpy(f.rest, x, sizeof f.rest);
+    memcpy(f.corner, x, sizeof f.corner);
+    return f;
+}
+
+/* An edge of the solid presses nothing, a notch does; of a former interface both sides fade. */
+static void test_neighbours(void) {
+    static const double top[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0}, side[9] = {0, 0, 0, 0, 0, -1, 1, 0, 0},
+                        notch[9] = {0, 0, 0, 1, 0, 0, 0, 0, 1}, below[9] = {0, 0, 0, 0, 1, 0, 1, 0, 0};
+    rg_exposed_face a = at(4, top), b = at(8, side), c = at(12, notch), d = at(16, below), e = at(5, below);
+    rg_contact_pair pair;
+    report(!rg_search_may_touch(&by, &a, &b, &pair), "search", "leaves out convex edges");
+    report(!rg_search_may_touch(&by, &a, &e, &pair), "search", "leaves out faces of one element");
+    report(rg_search_may_touch(&by, &a, &c, &pair), "search", "keeps notches");
+    bool keeps = rg_search_may_touch(&by, &a, &d, &pair) && pair.fading == 0;
+    a.former = d.former = 1;
+    report(keeps && rg_search_may_touch(&by, &a, &d, &pair) && pair.fading == 0.5, "search",
+           "knows both sides of a former interface");
+    report(pair.stiffness == 4 * 2 / 0.5 && pair.skin == 2e-3 * 0.5 && pair.limit == 0.502 * 0.5, "search",
+           "scales by the height of elements");
+}
+
+int main(int argc, char **argv) {
+    MPI_Init(&argc, &argv);
+    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+    MPI_Comm_size(MPI_COMM_WORLD, &ranks);
+    test_all_pairs();
+    test_neighbours();
+    return finish_with_nothing_left();
+}

@@ -1,0 +1,258 @@
+/* Contact of two faces: every set against the definition and its complex steps, and what must hold of a
+ * potential: both momenta, exchange of the faces, any triangulation of a flat surface. */
+#include <stdarg.h>
+#include <stddef.h>
+#include <setjmp.h>
+#include <cmocka.h>
+#include <math.h>
+#include <string.h>
+
+#include "kernels.h"
+#include "support/dice.h"
+#include "support/kernel_input.h"
+
+enum { PAIRS = 4000, TRIES = 400000 };
+
+typedef struct {
+    double corner[2 * PAIRS][9], sunk[2 * PAIRS], force[PAIRS][18], energy[PAIRS], depth[PAIRS];
+    rg_contact_pair pair[PAIRS];
+    size_t count;
+} bunch;
+
+static rg_contact_args args_of(bunch *b) {
+    return (rg_contact_args){b->corner[0], b->sunk, b->pair, b->force[0], b->energy, b->depth};
+}
+
+/* Two faces of edges near 1 that lie near each other, flat or steep, turned at random. */
+static void throw_faces(dice *d, double *x) {
+    static const double triangle[3][2] = {{0.6, 0}, {-0.3, 0.5}, {-0.3, -0.5}};
+    double R[3][3], steep = dice_unit(d) < 0.5 ? 0.06 : 0.36;
+    dice_rotation(d, R);
+    for (int k = 0; k < 2; k++) {
+        for (int i = 0; i < 3; i++) {
+            const double *from = triangle[k == 1 ? 2 - i : i];
+            double p[3] = {from[0] + 0.4 * dice_sign(d), from[1] + 0.4 * dice_sign(d), steep * dice_sign(d)};
+            for (int c = 0; c < 3; c++) {
+                x[9 * k + 3 * i + c] = R[c][0] * p[0] + R[c][1] * p[1] + R[c][2] * p[2];
+            }
+        }
+    }
+}
+
+/* Pairs that touch, and one in eight of those that do not; of one in four a former face. */
+static void throw_pairs(bunch *b, uint64_t seed) {
+    dice d = {seed, 0};
+    b->count = 0;
+    for (int k = 0; k < TRIES && b->count < PAIRS; k++) {
+        size_t at = b->count;
+        throw_faces(&d, b->corner[2 * at]);
+        b->pair[at] = (rg_contact_pair){.face = {(int32_t)(2 * at), (int32_t)(2 * at + 1)},
+                                        .stiffness = dice_power(&d, -1, 1),
+                                        .limit = 0.3 + 0.3 * dice_unit(&d),
+                                        .skin = 0.02 * dice_unit(&d),
+                                        .fading = k % 4 == 0 ? 0.4 + dice_unit(&d) : 0};
+        b->sunk[2 * at] = k % 3 == 0 ? 0.1 * dice_unit(&d) : 0;
+        b->sunk[2 * at + 1] = k % 3 == 0 ? 0.1 * dice_unit(&d) : 0;
+        rg_contact_args args = args_of(b);
+        rg_kernels_reference.contact(&args, at, at + 1);
+        b->count += b->energy[at] > 0 || k % 8 == 0;
+    }
+    assert_int_equal(b->count, PAIRS);
+}
+
+static bunch expected, found;
+
+static double size_of(const bunch *b, size_t i) {
+    double most = 0;
+    for (int k = 0; k < 18; k++) {
+        most = fmax(most, fabs(b->force[i][k]));
+    }
+    return most;
+}
+
+/* Forces of faces nearly at right angles, or of polygons that are nearly nothing, are small differences. */
+static void test_reference(void **state) {
+    (void)state;
+    const rg_kernels *sets[INPUT_SETS];
+    int n = input_sets(sets, INPUT_SETS), touching = 0;
+    throw_pairs(&expected, 7);
+    rg_contact_args args = args_of(&expected);
+    rg_kernels_reference.contact(&args, 0, PAIRS);
+    for (int s = 0; s < n; s++) {
+        found = expected;
+        memset(found.energy, 0, sizeof found.energy);
+        args = args_of(&found);
+        sets[s]->contact(&args, 0, PAIRS);
+        for (size_t i = 0; i < PAIRS; i++) {
+            double energy = expected.energy[i], kappa = expected.pair[i].stiffness;
+            if (!(fabs(found.energy[i] - energy) <= 2e-16 * kappa)) {
+                fail_msg("%s: energy %.17g instead of %.17g", sets[s]->name, found.energy[i], energy);
+            }
+            if (!(fabs(found.depth[i] - expected.depth[i]) <= 1e-14)) {
+                fail_msg("%s: depth %.17g instead of %.17g", sets[s]->name, found.depth[i],
+                         expected.depth[i]);
+            }
+            touching += energy > 0;
+            for (int k = 0; energy > 0 && found.energy[i] > 0 && k < 18; k++) {
+                double one = found.force[i][k], two = expected.force[i][k];
+                if (!(fabs(one - two) <= 2e-14 * kappa)) {
+                    fail_msg("%s: force %d of pair %zu is %.17g instead of %.17g", sets[s]->name, k, i, one,
+                             two);
+                }
+            }
+        }
+    }
+    assert_true(touching > n * PAIRS / 2);
+}
+
+/* Against central differences of the kernel's own energy; where a corner of one face comes to lie on an edge
+ * of the other the force has a corner too, which so small a step seldom meets. */
+static void test_gradient(void **state) {
+    (void)state;
+    const rg_kernels *set = rg_kernels_select();
+    static const double h = 1e-5;
+    int off = 0, all = 0;
+    throw_pairs(&found, 8);
+    rg_contact_args args = args_of(&found);
+    set->contact(&args, 0, PAIRS);
+    expected = found;
+    for (int k = 0; k < 18; k++) {
+        double up[PAIRS];
+        for (int sign = 1; sign >= -1; sign -= 2) {
+            for (size_t i = 0; i < PAIRS; i++) {
+                double *x = &found.corner[2 * i + (size_t)k / 9][k % 9];
+                *x = expected.corner[2 * i + (size_t)k / 9][k % 9] + sign * h;
+            }
+            set->contact(&args, 0, PAIRS);
+            memcpy(sign > 0 ? up : found.energy, found.energy, sizeof up);
+        }
+        for (size_t i = 0; i < PAIRS; i++) {
+            if (expected.energy[i] > 0) {
+                double slope = (up[i] - found.energy[i]) / (2 * h), size = expected.pair[i].stiffness;
+                off += !(fabs(slope + expected.force[i][k]) <= 1e-9 * size);
+                all++;
+            }
+        }
+        found = expected;
+    }
+    assert_true(all > 9 * PAIRS && off < all / 1000);
+}
+
+/* The forces of a pair have no sum and no moment, about any point. */
+static void test_momenta(void **state) {
+    (void)state;
+    const rg_kernels *set = rg_kernels_select();
+    throw_pairs(&found, 9);
+    rg_contact_args args = args_of(&found);
+    set->contact(&args, 0, PAIRS);
+    for (size_t i = 0; i < PAIRS; i++) {
+        double sum[3] = {0, 0, 0}, moment[3] = {0, 0, 0}, size = size_of(&found, i);
+        for (int k = 0; found.energy[i] > 0 && k < 6; k++) {
+            const double *x = &found.corner[2 * i + (size_t)k / 3][k % 3 * 3], *f = &found.force[i][3 * k];
+            for (int c = 0; c < 3; c++) {
+                int a = (c + 1) % 3, b = (c + 2) % 3;
+                sum[c] += f[c];
+                moment[c] += (x[a] + 1) * f[b] - (x[b] + 1) * f[a];
+            }
+        }
+        for (int c = 0; found.energy[i] > 0 && c < 3; c++) {
+            assert_true(fabs(sum[c]) <= 1e-14 * fmax(size, 1e-2 * found.pair[i].stiffness));
+            assert_true(fabs(moment[c]) <= 1e-14 * fmax(size, 1e-2 * found.pair[i].stiffness));
+        }
+    }
+}
+
+static void test_exchange(void **state) {
+    (void)state;
+    const rg_kernels *set = rg_kernels_select();
+    throw_pairs(&expected, 10);
+    found = expected;
+    rg_contact_args args = args_of(&expected), exchanged = args_of(&found);
+    for (size_t i = 0; i < PAIRS; i++) {
+        found.pair[i].face[0] = expected.pair[i].face[1];
+        found.pair[i].face[1] = expected.pair[i].face[0];
+    }
+    set->contact(&args, 0, PAIRS);
+    set->contact(&exchanged, 0, PAIRS);
+    for (size_t i = 0; i < PAIRS; i++) {
+        double kappa = expected.pair[i].stiffness;
+        assert_true(fabs(expected.energy[i] - found.energy[i]) <= 1e-16 * kappa);
+        for (int k = 0; expected.energy[i] > 0 && found.energy[i] > 0 && k < 18; k++) {
+            assert_true(fabs(expected.force[i][k] - found.force[i][(k + 9) % 18]) <= 1e-14 * kappa);
+        }
+    }
+}
+
+/* A square against a face, cut along one diagonal, along the other and into four: the same energy, and the
+ * same forces on the face and on the corners of the square, which stay in its plane. */
+static void test_cut(void **state) {
+    (void)state;
+    static const double square[5][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}, {0.2, -0.1}};
+    static const int cut[3][4][3] = {
+        {{0, 2, 1}, {0, 3, 2}}, {{1, 0, 3}, {1, 3, 2}}, {{0, 4, 1}, {1, 4, 2}, {2, 4, 3}, {3, 4, 0}}};
+    static const int faces[3] = {2, 2, 4};
+    const rg_kernels *set = rg_kernels_select();
+    double energy[3] = {0}, force[3][9] = {{0}},
+           face[3][3] = {{0.1, 0.7, -0.03}, {-0.8, -0.6, -0.06}, {0.9, -0.5, 0.01}};
+    for (int k = 0; k < 3; k++) {
+        bunch *b = &found;
+        memset(b, 0, sizeof *b);
+        for (int f = 0; f < faces[k]; f++) {
+            for (int i = 0; i < 3; i++) {
+                const double *p = square[cut[k][f][i]];
+                double at[3] = {p[0], p[1], 0.02 * p[0] + 0.01 * p[1]};
+                memcpy(&b->corner[2 * f + 1][3 * i], at, sizeof at);
+                /* the square faces down, the face below it up */
+                memcpy(&b->corner[2 * f][3 * i], face[i], sizeof at);
+                b->corner[2 * f][3 * i + 2] += 0.05;
+            }
+            b->pair[f] = (rg_contact_pair){{2 * f, 2 * f + 1}, 1, 1e-3, 0.501, 0};
+        }
+        rg_contact_args args = args_of(b);
+        set->contact(&args, 0, (size_t)faces[k]);
+        for (int f = 0; f < faces[k]; f++) {
+            energy[k] += b->energy[f];
+            for (int c = 0; b->energy[f] > 0 && c < 9; c++) {
+                force[k][c] += b->force[f][c];
+            }
+        }
+    }
+    assert_true(energy[0] > 1e-4);
+    for (int k = 1; k < 3; k++) {
+        assert_true(fabs(energy[k] - energy[0]) < 1e-14 * energy[0]);
+        for (int c = 0; c < 9; c++) {
+            assert_true(fabs(force[k][c] - force[0][c]) < 1e-16);
+        }
+    }
+}
+
+/* Two equal faces d apart: E = kappa/2 area phi(d - skin), and none beyond the reach; W for one that turns.
+ */
+static void test_value(void **state) {
+    (void)state;
+    const rg_kernels *set = rg_kernels_select();
+    static const double depth[] = {-0.1, 0.001, 0.1, 0.3, 0.6};
+    for (size_t k = 0; k < sizeof depth / sizeof *depth; k++) {
+        bunch *b = &found;
+        double d = depth[k] - 0.002, r = d / 0.5, phi = d > 0 && r < 1 ? d * d * pow(1 - r * r, 2) : 0;
+        memset(b, 0, sizeof *b);
+        double x[18] = {0, 0, depth[k], 1, 0, depth[k], 0, 1, depth[k], 0, 0, 0, 0, 1, 0, 1, 0, 0};
+        memcpy(b->corner, x, sizeof x);
+        b->pair[0] = (rg_contact_pair){{0, 1}, 3, 0.0005, 0.502, 0};
+        b->sunk[0] = 0.0015;
+        rg_contact_args args = args_of(b);
+        set->contact(&args, 0, 1);
+        assert_true(fabs(b->energy[0] - 0.5 * 3 * 0.5 * phi) <= 1e-15 * phi);
+        double push = phi > 0 ? b->force[0][11] + b->force[0][14] + b->force[0][17] : 0;
+        double slope = phi > 0 ? 2 * d * (1 - r * r) * (1 - 3 * r * r) : 0;
+        assert_true(fabs(push - 0.5 * 3 * 0.5 * slope) <= 1e-15);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_reference), cmocka_unit_test(test_gradient), cmocka_unit_test(test_momenta),
+        cmocka_unit_test(test_exchange),  cmocka_unit_test(test_cut),      cmocka_unit_test(test_value),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
