@@ -1,6 +1,8 @@
 #include "mesh/import/inp_generate.h"
 
 #include <inttypes.h>
+#include <math.h>
+#include <stdlib.h>
 
 #include "base/mem.h"
 
@@ -38,19 +40,30 @@ static rg_gid within(const rg_inp_lines *l, rg_gid number) {
 
 /* ---- nodes ---- */
 
-/* Nodes between rows a and b, with equal distances: numbers from that of a on in steps of `step`, which would
- * reach b's place after `intervals`. */
-static void fill(const rg_inp_lines *l, rg_inp_model *m, size_t a, size_t b, rg_gid intervals, rg_gid step,
-                 int scope, const char *set) {
+/* A line of nodes to be: as many intervals, each `bias` times as long as the next one; numbers in steps. */
+typedef struct {
+    rg_gid intervals, step;
+    double bias;
+} spread;
+
+/* How much of the whole length the first i intervals are. */
+static double part_of(const spread *s, rg_gid i) {
+    double ratio = 1 / s->bias, n = (double)s->intervals;
+    return s->bias == 1 ? (double)i / n : (pow(ratio, (double)i) - 1) / (pow(ratio, n) - 1);
+}
+
+/* Nodes between rows a and b: numbers from that of a on, which would reach b's place after all intervals. */
+static void fill(const rg_inp_lines *l, rg_inp_model *m, size_t a, size_t b, const spread *s, int scope,
+                 const char *set) {
     rg_gid from = m->nodes.number[a], end = m->nodes.number[b];
-    count(l, m, intervals - 1);
+    count(l, m, s->intervals - 1);
     collect(l, m, RG_INP_NODES, scope, set, from);
-    for (rg_gid i = 1; i < intervals; i++) {
-        double x[3], part = (double)i / (double)intervals;
+    for (rg_gid i = 1; i < s->intervals; i++) {
+        double x[3], part = part_of(s, i);
         for (size_t k = 0; k < 3; k++) {
             x[k] = m->x[3 * a + k] + part * (m->x[3 * b + k] - m->x[3 * a + k]);
         }
-        rg_gid number = within(l, from + i * step);
+        rg_gid number = within(l, from + i * s->step);
         rg_inp_add_node(m, number, x);
         collect(l, m, RG_INP_NODES, scope, set, number);
     }
@@ -66,7 +79,7 @@ void rg_inp_ngen(rg_inp_lines *l, rg_inp_model *m, int scope, const char *set) {
     }
     size_t a = need_row(l, &m->nodes, from + shift, "node"), b = need_row(l, &m->nodes, to + shift, "node");
     rg_gid intervals = (to > from ? to - from : from - to) / step;
-    fill(l, m, a, b, intervals, to > from ? step : -step, scope, set);
+    fill(l, m, a, b, &(spread){intervals, to > from ? step : -step, 1}, scope, set);
 }
 
 /* Nodes of a set, which must be there. */
@@ -79,14 +92,26 @@ static rg_inp_members bounding_set(rg_inp_lines *l, rg_inp_model *m, int scope) 
     return rg_inp_members_of_set(m, set);
 }
 
+static double read_bias(const rg_inp_lines *l) {
+    const char *text = rg_inp_parameter(l, "BIAS");
+    char *end = NULL;
+    double bias = text != NULL ? strtod(text, &end) : 1;
+    if (text != NULL && (end == text || *end != '\0' || !(bias > 0) || !isfinite(bias))) {
+        rg_inp_refuse(l->at, "*NFILL, BIAS=%s: a number > 0 is expected", text);
+    }
+    return bias;
+}
+
 void rg_inp_nfill(rg_inp_lines *l, rg_inp_model *m, int scope, const char *set) {
     rg_inp_members a = bounding_set(l, m, scope), b = bounding_set(l, m, scope);
-    rg_gid intervals = rg_inp_integer(l, 0), step = rg_inp_integer(l, 0);
+    spread s = {.bias = read_bias(l)};
+    s.intervals = rg_inp_integer(l, 0);
+    s.step = rg_inp_integer(l, 0);
     if (a.count != b.count) {
         rg_inp_refuse(l->at, "*NFILL: the two sets have %zu and %zu nodes", a.count, b.count);
     }
     for (size_t i = 0; i < a.count; i++) {
-        fill(l, m, a.row[i], b.row[i], intervals, step, scope, set);
+        fill(l, m, a.row[i], b.row[i], &s, scope, set);
     }
     rg_free(a.row);
     rg_free(b.row);

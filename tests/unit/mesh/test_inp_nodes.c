@@ -65,6 +65,12 @@ static void test_systems(void **state) {
     }
 }
 
+#define SEVENTHS                                                                                             \
+    WARNING ": 2 sets of nodes hold no whole face of the surface and are left out: 'a', 'b'\n"               \
+            "x 0: 0 0 0\nx 1: 3 6 9\nx 2: 0 1 0\nx 3: 0 0 1\nx 4: 0.428571 0.857143 1.28571\n"               \
+            "x 5: 0 0.857143 0.142857\nx 6: 1.28571 2.57143 3.85714\nx 7: 0 0.571429 0.428571\n"             \
+            "e 1: 0 2 4 5\ne 2: 4 5 6 7\ne 3: 1 3 6 7\n"
+
 /* Nodes between others; each is the corner of a tetrahedron, so that its place is told. */
 static void test_generated_nodes(void **state) {
     (void)state;
@@ -117,9 +123,29 @@ static void test_generated_nodes(void **state) {
                "x 0: 0 0 0\nx 1: 0 0 1\nx 2: 1 2 3\nx 3: 0 1 0\nx 4: 1 3 3\n"
                "e 1: 0 1 2 3, f and g at 1, g at 2, g at 3\ne 2: 1 2 3 4, f and g at 0, g at 1, g at 2\n");
     }
+    /* each distance half the next one */
+    static const char *const bias[][2] = {{"0.5", "1 2 3"}, {"2", "2 4 6"}, {"1", "1.5 3 4.5"}};
+    for (int i = 0; i < 3; i++) {
+        char words[1000];
+        snprintf(words, sizeof words,
+                 ENDS "*NSET, NSET=a\n1\n*NSET, NSET=b\n4\n*NFILL, BIAS=%s\na, b, 2, 1\n" SOLIDS
+                      "1, 1, 2, 5, 6\n2, 2, 4, 5, 6\n*NSET, NSET=a\n5, 6\n*NSET, NSET=b\n5, 6\n",
+                 bias[i][0]);
+        snprintf(said, sizeof said,
+                 "x 0: 0 0 0\nx 1: %s\nx 2: 3 6 9\nx 3: 0 1 0\nx 4: 0 0 1\ne 1: 0 1 3 4, a at 1\n"
+                 "e 2: 1 2 3 4, b at 0\n",
+                 bias[i][1]);
+        expect(words, said);
+    }
+    expect(ENDS "*NSET, NSET=a\n1, 5\n*NSET, NSET=b\n4, 6\n*NFILL, BIAS=0.5\na, b, 3, 10\n" SOLIDS
+                "1, 1, 11, 5, 15\n2, 11, 21, 15, 25\n3, 21, 4, 25, 6\n",
+           SEVENTHS);
     static const struct {
         const char *words, *said;
     } cases[] = {
+        {ENDS "*NSET, NSET=a\n1\n*NSET, NSET=b\n4\n*NFILL, BIAS=0\na, b, 2, 1\n",
+         ":11: *NFILL, BIAS=0: a number > 0 is expected"},
+        {ENDS "*NFILL, TWO STEP\na, b, 2, 1\n", ":6: *NFILL has no parameter 'TWOSTEP' that is known here"},
         {ENDS "*NGEN\n1, 4, 2\n", ":7: *NGEN: steps of 2 do not lead from node 1 to 4"},
         {ENDS "*NGEN\n1, 1\n", ":7: *NGEN: steps of 1 do not lead from node 1 to 1"},
         {ENDS "*NGEN\n1, 7\n", ":7: there is no node 7 so far"},
