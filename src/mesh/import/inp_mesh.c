@@ -193,8 +193,8 @@ static void take_face(building *b, const rg_inp_surface *s, const rg_inp_patch *
     if (kind == 0) {
         return; /* of an element that is left out, and said to be: it has no nodes here */
     }
-    if (kind < 4 && b->import.how.thickness > 0) {
-        take_edge(b, s, p, set, e);
+    if (b->import.how.thickness > 0) { /* solids are refused in the end */
+        kind < 4 ? take_edge(b, s, p, set, e) : (void)0;
         return;
     }
     if (kind == 3 && (p->face == RG_INP_FREE || p->face == RG_INP_SIDE)) {
