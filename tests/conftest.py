@@ -32,6 +32,7 @@ EVERYWHERE = {  # changes of fragments.yaml that must not change the bits, on an
               "tables": {"pulse": {"points": [[0, 0], [5e-8, 1], [2e-7, 0.2]], "smooth": True}},
               "loads": [{"name": "pull", "set": "z+", "traction": {"x": "2e7*pulse(t)*(1 + 1e3*y)", "z": "3e8*pulse(t)"}},
                         {"where": "abs(nx) > 0.5", "pressure": "2e8*pulse(2*t)*(1 + 1e2*z)", "from": 2e-8, "until": 1.5e-7},
+                        {"name": "gas", "cracks": True, "where": "abs(nz) > 0.3", "pressure": "2e7*(1 + 1e3*x)*(1 + t/1e-7)"},
                         {"set": "y-", "force": {"y": 3}}, {"name": "fall", "acceleration": {"y": -4e7, "z": "1e11*x*t/1e-7"}}],
               "boundary": [{"name": "hold", "set": "z-", "angle": "2e4*t", "axis": [0, 1, 3], "translation": {"z": "3e6*t*t"}}, {"set": "x+", "absorbing": True},
                            {"set": "z+", "absorbing": True}, {"name": "roll", "where": "nx < -0.5 && z > 0", "normal": "1e7*t*z", "until": 1.6e-7},

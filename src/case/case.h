@@ -81,6 +81,7 @@ typedef struct {
     char *name;     /* column prefix in history.csv; NULL: it has no columns */
     char *set;      /* named set of faces, or */
     rg_expr *where; /* not 0: on faces, by their middle and outward normal; of accelerations, at centroids */
+    bool cracks;    /* of a pressure: on faces between elements, as they open; all, or where those two say */
     rg_load_kind kind;
     rg_expr *value[RG_LOAD_KINDS][3]; /* of its kind, x, y, z (a pressure: the first alone); NULL: 0 */
     double from, until;               /* it acts in between (s); until 0: without end */

@@ -393,6 +393,8 @@ static const rg_key load_keys[] = {
      MEANS("a side of the box, or a surface set of the mesh file; not of an acceleration")},
     {.name = "where", .type = RG_KEY_EXPR, ELSE("set; of an acceleration the whole body"), .no_time = true, .normal = true, LOAD(where),
      MEANS("faces of the surface where it is not 0, by their middle and outward normal; of an acceleration elements, by their centroid")},
+    {.name = "cracks", .type = RG_KEY_BOOL, ELSE("false"), LOAD(cracks),
+     MEANS("true: the pressure acts inside cracks, on both faces, by the share of a face's points that have separated; with set or where only in those")},
     LOAD_VECTOR("traction", "Pa", TRACTION, false, "traction along x, per area of reference: it keeps its direction")
     {.name = "pressure", .unit = "Pa", .type = RG_KEY_EXPR, ELSE("another load"), ONE_OF, LOAD(value[RG_LOAD_PRESSURE][0]),
      MEANS("pressure on the deformed face: it follows its normal and its area")},

@@ -36,12 +36,22 @@ static bool one_kind(const rg_entry *e, rg_load_input *load) {
 static void check_part(const rg_entry *e, const rg_load_input *load) {
     const rg_node *set = rg_entry_given(e, "set"), *where = rg_entry_given(e, "where");
     bool inside = load->kind == RG_LOAD_ACCELERATION;
+    const rg_node *cracks = rg_entry_given(e, "cracks");
+    if (cracks != NULL && load->kind != RG_LOAD_PRESSURE) {
+        rg_entry_wrong(e, "cracks", cracks->key_at, (rg_subject){0}, "not used: it belongs to a pressure");
+        return;
+    }
+    if (load->cracks && e->ck->c->interface.law == RG_LAW_NONE) {
+        rg_entry_wrong(e, "cracks", cracks->at, (rg_subject){.value = "true"},
+                       "nothing opens, because interface.law is none");
+        return;
+    }
     if (inside && set != NULL) {
         rg_entry_wrong(e, "set", set->key_at, (rg_subject){0},
                        "not used: an acceleration acts on elements, which `where` selects");
     } else if (inside && where != NULL && rg_expr_uses_normal(load->where)) {
         rg_entry_wrong(e, "where", where->at, (rg_subject){0}, "depends on a normal, which only faces have");
-    } else if (!inside && (set != NULL) == (where != NULL)) {
+    } else if (!inside && (set != NULL) == (where != NULL) && !(load->cracks && set == NULL)) {
         rg_entry_wrong(e, NULL, set != NULL ? where->key_at : e->item->at,
                        (rg_subject){.allowed = "exactly one of set, where"},
                        set != NULL ? "set and where both given" : "missing set or where");

@@ -289,7 +289,7 @@ static uint8_t *find_faces(const rg_case *c, const rg_domain *d, const rg_part *
     uint8_t *all = RG_NEW(uint8_t, d->blocks * RG_LANES + 1);
     for (int b = 0; b < c->boundaries; b++) {
         if (c->boundary[b].absorbing) {
-            rg_selection s = {"boundary", b, c->boundary[b].set, c->boundary[b].where};
+            rg_selection s = {"boundary", b, c->boundary[b].set, c->boundary[b].where, false};
             uint8_t *here = rg_selection_faces(&s, c, d, part, comm);
             for (size_t slot = 0; slot < d->blocks * RG_LANES; slot++) {
                 all[slot] |= here[slot];

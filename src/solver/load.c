@@ -11,6 +11,7 @@
 #include "base/vector.h"
 #include "domain/element.h"
 #include "solver/selection.h"
+#include "solver/tile.h"
 
 /* A face under a load, or an element (face < 0), and what acts on its nodes at the present step. */
 typedef struct {
@@ -202,7 +203,29 @@ static double power(const rg_loads *all, const entry *e, const rg_real *velocity
     return e->force != NULL ? sum : mass_of(all, e) * sum;
 }
 
-void rg_loads_find(rg_loads *all, size_t tile, const rg_real *u, const rg_real *velocity) {
+/* Share of the points of an entry's face that have separated. */
+static double open_share(const rg_loads *all, const entry *e, const rg_tile *t, const rg_solver *s) {
+    int32_t link = all->surface.domain->interface[rg_link_index((size_t)e->slot, e->face)];
+    size_t i = t->ibegin * RG_LANES + (size_t)link / 4;
+    int count = 0;
+    for (int q = 0; s->broken[i] != 0 && q < RG_POINTS; q++) {
+        count += rg_point_is_broken(s, i, q) &&
+                 *rg_crack_value(s, i, q, RG_CRACK_OPENING) >= rg_separation(s, i, q);
+    }
+    return (double)count / RG_POINTS;
+}
+
+static void find_face_forces(const rg_loads *all, entry *e, const rg_tile *t, const rg_solver *s) {
+    double share = all->load[e->load].input->cracks ? open_share(all, e, t, s) : 1;
+    if (share > 0) {
+        face_forces(all, e, s->u);
+    }
+    for (int i = 0; share < 1 && i < 3 * RG_FNODES; i++) {
+        e->force[i / 3][i % 3] = share > 0 ? share * e->force[i / 3][i % 3] : 0;
+    }
+}
+
+void rg_loads_find(rg_loads *all, size_t tile, const rg_solver *s) {
     for (size_t i = all->tile_begin[tile]; i < all->tile_begin[tile + 1]; i++) {
         entry *e = &all->entry[i];
         const load *l = &all->load[e->load];
@@ -213,9 +236,9 @@ void rg_loads_find(rg_loads *all, size_t tile, const rg_real *u, const rg_real *
             evaluate(all, e, all->own[omp_get_thread_num() * all->count + e->load], all->time);
         }
         if (e->face >= 0) {
-            face_forces(all, e, u);
+            find_face_forces(all, e, &s->domain->tile[tile], s);
         }
-        e->before = 0.5 * all->dt_last * power(all, e, velocity);
+        e->before = 0.5 * all->dt_last * power(all, e, s->velocity);
     }
 }
 
@@ -292,7 +315,10 @@ static const char *const key[] = {
 
 void rg_loads_describe(const rg_loads *all, int i, char *words, size_t size) {
     const load *l = &all->load[i];
-    if (!is_body_force(l)) {
+    if (l->input->cracks) {
+        snprintf(words, size, "%s in cracks, on at most %.4g m2 of each side", key[l->input->kind],
+                 l->area / 2);
+    } else if (!is_body_force(l)) {
         snprintf(words, size, "%s on %.4g m2", key[l->input->kind], l->area);
     } else {
         snprintf(words, size, "%s of %s", key[l->input->kind],
@@ -337,7 +363,7 @@ static uint8_t *parts_of(rg_loads *all, int i, const rg_part *part) {
     const rg_load_input *in = all->load[i].input;
     const rg_domain *d = all->surface.domain;
     if (!is_body_force(&all->load[i])) {
-        rg_selection s = {"loads", i, in->set, in->where};
+        rg_selection s = {"loads", i, in->set, in->where, in->cracks};
         return rg_selection_faces(&s, all->input, d, part, all->comm);
     }
     uint8_t *on = RG_NEW(uint8_t, d->blocks * RG_LANES + 1);

@@ -8,6 +8,9 @@
  * surface that moves as one the forces add up to nothing, and so do their moments. On an element an
  * acceleration a, interpolated between its nodes: f = M a, which moves them by just a, with any mass.
  *
+ * Inside cracks a pressure acts on the faces of both elements, each by its own tangents, times the share of
+ * the face's points that have separated, as last known on both sides.
+ *
  * Forces are those of the displacement and the time of the step; their work is in an account
  * (solver/account.h). */
 #ifndef RG_LOAD_H
@@ -32,9 +35,11 @@ rg_loads *rg_loads_make(const rg_case *c, const rg_domain *d, const rg_part *par
 /* A step from `time`, dt_next long, after one of dt_last (s). One thread. */
 void rg_loads_set(rg_loads *l, double time, double dt_last, double dt_next);
 
-/* The forces on a tile at displacement u, and the work of the half step that led here, by `velocity` (both
- * whole fields). Before its kick. */
-void rg_loads_find(rg_loads *l, size_t tile, const rg_real *u, const rg_real *velocity);
+struct rg_solver;
+
+/* The forces on a tile at displacement and cracks of the solver, and the work of the half step that led here,
+ * by its velocity. Before its kick. */
+void rg_loads_find(rg_loads *l, size_t tile, const struct rg_solver *s);
 
 /* Kicks the velocities of a tile. After its kick. */
 void rg_loads_push(const rg_loads *l, size_t tile, const rg_push *push);

@@ -1,5 +1,5 @@
-/* Faces on the surface that an entry of the case selects: those of a named set, or those where an expression
- * of their middle and their outward normal is not 0. */
+/* Faces on the surface, or of interfaces, that an entry of the case selects: those of a named set, or those
+ * where an expression of their middle and their outward normal is not 0. */
 #ifndef RG_SELECTION_H
 #define RG_SELECTION_H
 
@@ -12,7 +12,8 @@ typedef struct {
     const char *list; /* of which it is an entry, and its number: "loads", 3 */
     int number;
     const char *set;      /* or */
-    const rg_expr *where; /* NULL: by the set */
+    const rg_expr *where; /* NULL: by the set; both: all */
+    bool inside; /* of faces with an interface, where the normal is of either sign, the same on both sides */
 } rg_selection;
 
 /* Bits of the selected faces of each element: [slots]; the caller frees them. Ends the run with a message

@@ -134,14 +134,14 @@ static void element_sweep(rg_solver *s, size_t tile, const rg_workspace *w, cons
     s->kernels->interface(&interface, 0, rg_tile_inner_blocks(t));
     mark_cracked(s, t, t->ibegin, t->sbegin);
     if (p->constrain) {
-        rg_loads_find(s->loads, tile, s->u, s->velocity);
+        rg_loads_find(s->loads, tile, s);
         rg_absorbing_note(s->absorbing, tile, s->velocity);
     }
     tile_kick(s, tile, w, p, RG_SWEEP_ELEMENT);
     if (p->constrain) {
         push(s, tile, p);
     } else if (p->load) {
-        rg_loads_find(s->loads, tile, s->u, s->velocity);
+        rg_loads_find(s->loads, tile, s);
         rg_loads_push(s->loads, tile, &(rg_push){p->dt, 0, p->velocity, NULL});
     }
     s->tile_stiffening[tile] = largest(bulk.stiffening, blocks * RG_LANES);

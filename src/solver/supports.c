@@ -207,7 +207,7 @@ rg_supports *rg_supports_make(const rg_case *c, const rg_domain *d, const rg_par
                        .bad = {.which = RG_NOWHERE}};
     for (int b = 0; b < c->boundaries; b++) {
         const rg_boundary *of = &c->boundary[b];
-        rg_selection selection = {"boundary", b, of->set, of->where};
+        rg_selection selection = {"boundary", b, of->set, of->where, false};
         uint8_t *faces = rg_selection_faces(&selection, c, d, part, comm);
         s->area[b] = area_of(d, faces, comm);
         if (of->absorbing) {

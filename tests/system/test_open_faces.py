@@ -42,6 +42,36 @@ def test_pressure_passes_and_tension_does_not(run, figure, contact, friction):
         assert frame["crack/damage"] == pytest.approx(1, abs=1e-12) and len(frame["crack/damage"]) == 2
 
 
+def test_pressure_inside_a_crack(run, figure):
+    """Two waves run away from it."""
+    crack = {"where": "abs(z - 1e-3) < 1e-6 && abs(nz) > 0.9", "open": True}
+    law = {"law": "linear", "strength": 1e10, "energy": 1e3, "beta_s": 2, "contact": "penalty", "sets": [crack]}
+    sets = {**BAR, "interface": law, "time": {"end": 2e-7, "safety": 0.9}, "loads": [{"name": "gas", "cracks": True, "pressure": f"{PRESSURE}*rise(t)"}]}
+    done = run(example("spall.yaml"), sets=sets)
+    history, energy = done.history, done.energy
+    for probe, way in (("near", -1), ("far", 1)):
+        figure(f"pressure inside a crack: stress {probe}", -history[f"{probe}_szz"][-1], theory=PRESSURE, bound=5e-4, unit="Pa", relative=True)
+        figure(f"pressure inside a crack: velocity {probe}", way * history[f"{probe}_vz"][-1], theory=PRESSURE / (8000 * 5000), bound=4e-4, unit="m/s",
+               relative=True)
+    assert np.abs(history["gas_force_z"]).max() < 1e-9 * PRESSURE * 25e-10 + 1e-12  # both sides
+    figure("pressure inside a crack: energy error over its work", np.abs(energy["total"] - energy["total"][0]).max() / history["gas_work"][-1],
+           bound=rounding(8e-10, 1.5e-6))
+    assert history["gas_work"][-1] == pytest.approx(energy["external_work"][-1], rel=1e-6)
+
+
+def test_pressure_enters_cracks_as_they_open(run, figure):
+    """Of a body that tears: none before; then it drives the faces apart."""
+    gas = {"name": "gas", "cracks": True, "pressure": 5e7}
+    sets = {"time.end": 0.3e-6, "output.fields": [], "interface.activation": "conserving", "output.interval": 1e-8}
+    plain, driven = (run(CASES / "fragments.yaml", sets={**sets, "loads": loads}) for loads in ([], [gas]))
+    history, energy = driven.history, driven.energy
+    failed = np.interp(history["time"], energy["time"], energy["failed_area"])
+    assert not history["gas_work"][failed <= 0][:-1].any() and history["gas_work"][-1] > 0.01 * energy["dissipated"][-1]
+    assert energy["failed_area"][-1] >= plain.energy["failed_area"][-1] > 0
+    worst = [np.abs(of.energy["total"] - of.energy["total"][0]).max() for of in (plain, driven)]
+    figure("pressure in cracks as they open: energy error over that without", worst[1] / worst[0], bound=1.5)
+
+
 def test_what_breaks_later_counts(run):
     """Half of the plane is open; the other half tears."""
     crack = {"where": "abs(z) < 5e-5 && abs(nz) > 0.8 && x > 0", "open": True}
@@ -59,3 +89,15 @@ def test_a_law_without_an_end_is_refused(tmp_path):
                     "time: {end: 1}\n")
     told = launch("check", case)
     assert told.returncode == 2 and "sets[0].open: true: law free has no end: its faces are never without traction\n" in told.stderr
+
+
+@pytest.mark.parametrize("load, law, message", [
+    ("{cracks: true, force: {x: 1}}", "law: linear, strength: 1, energy: 1", "loads[0].cracks: not used: it belongs to a pressure"),
+    ("{cracks: true, pressure: 1}", "law: none", "loads[0].cracks: true: nothing opens, because interface.law is none"),
+    ("{cracks: true, where: z > 3, pressure: 1}", "law: linear, strength: 1, energy: 1", "loads[0]: no face between elements is in it, where: z > 3")])
+def test_cracks_under_pressure_that_are_refused(tmp_path, load, law, message):
+    case = tmp_path / "gas.yaml"
+    case.write_text("mesh: {cells: [1, 1, 2], size: [1, 1, 2]}\nmaterial: {model: neo-hookean, young: 1, poisson: 0, density: 1}\n"
+                    f"interface: {{{law}}}\ntime: {{end: 1}}\nloads: [{load}]\n")
+    told = launch("check", case)
+    assert told.returncode == 2 and told.stderr.endswith(f"{message}\n"), told.stderr

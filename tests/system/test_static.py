@@ -34,15 +34,15 @@ def test_a_bar_hangs_at_rest(run, figure, bar, form):
     loads = [{"name": "pull", "set": "z+", "traction": {"z": pull}}, {"acceleration": {"z": fall}}]
     done = run(bar, sets={"interface": law, "loads": loads})
     theory = (pull * length + density * fall * length**2 / 2) / young
-    figure(f"hanging bar, form {form}: displacement of its end", done.history["end_uz"][0], theory=theory, bound=rounding(3e-8, 1e-3), relative=True,
+    figure(f"hanging bar, form {form}: displacement of its end", done.history["end_uz"][0], theory=theory, bound=rounding(3e-8, 1e-5), relative=True,
            why="the residual at which the search ends")
     area, a, b = 0.25e-6, pull + density * fall * length, density * fall
     stored = area / (2 * young) * (a**2 * length - a * b * length**2 + b**2 * length**3 / 3)
-    figure(f"hanging bar, form {form}: stored energy", done.energy["bulk"][0], theory=stored, bound=rounding(1e-7, 1e-3), relative=True,
+    figure(f"hanging bar, form {form}: stored energy", done.energy["bulk"][0], theory=stored, bound=rounding(1e-7, 1e-5), relative=True,
            why="the residual at which the search ends")
-    figure(f"hanging bar, form {form}: kinetic over stored energy in 1000 steps", done.energy["kinetic"].max() / stored, bound=rounding(1e-14, 1e-5),
+    figure(f"hanging bar, form {form}: kinetic over stored energy in 1000 steps", done.energy["kinetic"].max() / stored, bound=rounding(1e-14, 3e-9),
            why="the residual at which the search ends")
-    assert done.energy["external_work"][0] == 0 and done.energy["total"][0] == done.energy["bulk"][0] + done.energy["penalty"][0]
+    assert done.energy["external_work"][0] == 0 and done.energy["total"][0] == pytest.approx(done.energy["bulk"][0] + done.energy["penalty"][0], rel=rounding(1e-12, 1e-6))
     assert done.summary["static_residual"] < rounding(1e-8, 1e-3) and done.summary["static_passes"] < 600
     hold = done.history["hold_force_z"]
     assert hold[10] == pytest.approx(-area * a, rel=rounding(1e-6, 1e-2)) and hold[-1] == pytest.approx(hold[10], rel=rounding(1e-6, 1e-2))
@@ -70,7 +70,7 @@ def test_pressure_all_around(run, figure, bar):
             "material": {"model": "neo-hookean", "young": young, "poisson": poisson, "density": 2700}, "time.steps": 5, "output.interval": 1}
     history = run(bar, sets=sets).history
     for axis in "xyz":
-        figure(f"block under pressure: stress along {axis}", history[f"end_s{axis}{axis}"][0], theory=-pressure, bound=rounding(1e-7, 2e-3), relative=True,
+        figure(f"block under pressure: stress along {axis}", history[f"end_s{axis}{axis}"][0], theory=-pressure, bound=rounding(1e-7, 4e-5), relative=True,
                why="the residual at which the search ends")
 
 
@@ -115,8 +115,9 @@ def test_the_same_bits_on_any_layout_and_through_a_restart(run, bar, form):
      "start: static: what `boundary` prescribes at t = 0 does not hold the body: it can still move or turn"),
     ({"interface.form": "intrinsic", "interface.law": "xu-needleman", "interface.strength": 1e8, "interface.energy": 30}, 2,
      "start: static: needs form variational or continuous, whose forces have a potential without a history"),
-    ({"material": {"model": "j2", "young": 70e9, "poisson": 0.3, "density": 2700, "yield_stress": 1e8}}, 2,
-     "start: static: needs elastic materials: what flows or is damaged on the way would depend on the way"),
+    pytest.param({"material": {"model": "j2", "young": 70e9, "poisson": 0.3, "density": 2700, "yield_stress": 1e8}}, 2,
+                 "start: static: needs elastic materials: what flows or is damaged on the way would depend on the way",
+                 marks=pytest.mark.skipif(SINGLE, reason="j2 needs double precision")),
     ({"bodies": [{"name": "b", "shape": "plane", "motion": "prescribed", "at": [0, 0, 1], "normal": [0, 0, -1]}]}, 2,
      "start: static: cannot be found with bodies, which the solid might touch on the way"),
     ({"loads": [{"set": "z+", "traction": {"z": -9e10}}], "material.poisson": 0.2, "boundary": CLAMP, "material.model": "neo-hookean"}, 1, "start: static: no ")])

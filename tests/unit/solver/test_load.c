@@ -49,7 +49,7 @@ static void find_forces(rg_solver *s, double time) {
     rg_push push = {1, 0.5, s->velocity, s->step_velocity};
     rg_loads_set(s->loads, time, 0, 2);
     for (size_t t = 0; t < s->domain->tiles; t++) {
-        rg_loads_find(s->loads, t, s->u, s->velocity);
+        rg_loads_find(s->loads, t, s);
         rg_loads_push(s->loads, t, &push);
         rg_loads_book(s->loads, t, s->velocity);
     }
