@@ -77,6 +77,8 @@ void rg_start_rule(const rg_entry *e) {
         : (inside & (RG_HAS_DAMAGE | RG_HAS_PLASTIC)) != 0
             ? "needs elastic materials: what flows or is damaged on the way would depend on the way"
         : c->bodies > 0 ? "cannot be found with bodies, which the solid might touch on the way"
+        : c->contact.model == RG_CONTACT_GENERAL
+            ? "cannot be found with contact.model general, by which fragments might meet on the way"
         : any_open(c) && c->interface.friction > 0
             ? "needs interface.friction 0 with open faces: where they stick would depend on the way"
             : NULL;

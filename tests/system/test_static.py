@@ -120,6 +120,8 @@ def test_the_same_bits_on_any_layout_and_through_a_restart(run, bar, form):
                  marks=pytest.mark.skipif(SINGLE, reason="j2 needs double precision")),
     ({"bodies": [{"name": "b", "shape": "plane", "motion": "prescribed", "at": [0, 0, 1], "normal": [0, 0, -1]}]}, 2,
      "start: static: cannot be found with bodies, which the solid might touch on the way"),
+    ({"contact.model": "general", "interface.contact": "potential", "interface.law": "linear", "interface.strength": 1e8, "interface.energy": 30}, 2,
+     "start: static: cannot be found with contact.model general, by which fragments might meet on the way"),
     ({"loads": [{"set": "z+", "traction": {"z": -9e10}}], "material.poisson": 0.2, "boundary": CLAMP, "material.model": "neo-hookean"}, 1, "start: static: no ")])
 def test_static_starts_that_are_refused(bar, tmp_path, change, status, message):
     from conftest import overrides
