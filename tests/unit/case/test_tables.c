@@ -182,8 +182,7 @@ static void test_wrong_files(void **state) {
 
 static const char grains[] =
     "mesh: {file: bar.yaml}\nmaterial: {model: neo-hookean, young: 1, poisson: 0, density: 1}\n"
-    "materials:\n  - {name: first, where: x, model: j2, young: 2, poisson: 0.1, density: 3, yield_stress: "
-    "4}\n"
+    "materials:\n  - {name: first, where: x, model: linear-elastic, young: 2, poisson: 0.1, density: 3}\n"
     "  - {name: g, file: pulse.csv, model: neo-hookean, density: 7}\n"
     "  - {name: last, set: end, model: neo-hookean, young: 5, poisson: 0.3, density: 6}\n"
     "interface: {law: none}\ntime: {end: 1}\n";
