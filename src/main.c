@@ -15,6 +15,7 @@
 #include "case/read.h"
 #include "keys_command.h"
 #include "layout.h"
+#include "materials_command.h"
 #include "mesh_command.h"
 #include "revision.h"
 #include "run.h"
@@ -217,6 +218,9 @@ int main(int argc, char **argv) {
     }
     if (argc > 1 && strcmp(argv[1], "keys") == 0 && !asks_for_help(argc, argv)) {
         return answer(rg_keys_command(argc, argv));
+    }
+    if (argc > 1 && strcmp(argv[1], "materials") == 0 && !asks_for_help(argc, argv)) {
+        return answer(rg_materials_command(argc, argv));
     }
     /* Open MPI's own I/O layer has been reported to hang or corrupt HDF5's collective writes
      * (HDFGroup/hdf5#1227, open-mpi/ompi#12718): use ROMIO unless the user chose otherwise. */

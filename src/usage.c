@@ -7,6 +7,7 @@ static const char overview[] =
     "usage: rhegma run CASE.yaml [options]     run a case\n"
     "       rhegma check CASE.yaml [options]   say what a run would do, without running\n"
     "       rhegma keys [PREFIX]               the keys of a case file, with units, ranges, defaults\n"
+    "       rhegma materials [NAME]            solids that a case may name, with values and sources\n"
     "       rhegma mesh IN -o OUT.h5 [options] make a mesh file, or show what is in one\n"
     "       rhegma verify                      check the program on this machine against theory\n"
     "       rhegma --version | --help\n"
@@ -44,6 +45,9 @@ static const struct {
      "       rhegma keys --schema                a JSON Schema of case files, for editors. To use it, begin\n"
      "                                           a case with\n"
      "                                           # yaml-language-server: $schema=PATH\n"},
+    {"materials",
+     "usage: rhegma materials          names of solids for material.preset, one a line\n"
+     "       rhegma materials NAME     its values, with cohesive ones beside them, source and validity\n"},
 };
 
 const char *rg_usage(const char *command) {

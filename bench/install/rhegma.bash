@@ -16,12 +16,14 @@ _rhegma() {
     run) options+=" --restart --overwrite --walltime" ;;
     mesh) options="-o --unit --scale --merge --extrude --split --size --curvature --improve --set --info --case --partition --help" ;;
     keys) options="--markdown --schema --help" ;;
-    verify) options="--help" ;;
+    verify | materials) options="--help" ;;
     esac
     if [ "$COMP_CWORD" = 1 ]; then
-        COMPREPLY=($(compgen -W "run check keys verify mesh --version --help" -- "$word"))
+        COMPREPLY=($(compgen -W "run check keys materials verify mesh --version --help" -- "$word"))
     elif [[ $word == -* ]]; then
         COMPREPLY=($(compgen -W "$options" -- "$word"))
+    elif [ "$command" = materials ]; then
+        COMPREPLY=($(compgen -W "$(rhegma materials 2>/dev/null | cut -d" " -f1)" -- "$word"))
     elif [ "$command" = keys ]; then
         COMPREPLY=($(compgen -W "$(rhegma keys 2>/dev/null | grep '^[a-z]')" -- "$word"))
     else

@@ -94,6 +94,7 @@ typedef struct {
     rg_deshpande_evans deshpande_evans; /* but for poisson, density, yield_stress and single_pi */
     rg_interaction interaction;         /* c3 of the ceramic: as printed, or as one derives it */
     char *name;                         /* NULL: "material", of the one without which no case is */
+    char *preset;                       /* that filled what the case does not say; NULL: none */
 } rg_material_input;
 
 /* A material besides `material`, and where it is: one of `set` and `where`; or, in the case file alone, a CSV

@@ -103,6 +103,10 @@ void rg_initial_set_rule(rg_check *ck, const rg_node *list, int i, const char *p
 /* Puts the rows of CSV files in the place of the entries of `materials` that name them (material_table.c). */
 void rg_material_tables_expand(rg_check *ck, rg_node *root);
 
+/* Fills the blocks of `material` and `materials` that name a preset with those of its keys that they do not
+ * have and that their model uses. Reports names that are none (preset.c). */
+void rg_presets_expand(rg_check *ck, rg_node *root);
+
 void rg_face_set_rule(rg_check *ck, const rg_node *list, int i, const char *path, bool good); /* face_set.c */
 
 /* Letters, digits, _ and - alone. */

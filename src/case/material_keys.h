@@ -11,6 +11,8 @@
      .need = (needed) ? RG_NEED_REQUIRED : RG_NEED_OPTIONAL, .models = (models_),                             \
      AT(parameter[RG_PARAMETER_##NAME]), MEANS(words)},
 
+{.name = KEY("preset"), .type = RG_KEY_TEXT, ELSE("none"), AT(preset),
+ MEANS("a solid by name, as alumina-ad995, whose values hold where none are given; `rhegma materials` lists them")},
 {.name = KEY("model"), EXPLAINED(models), REQUIRED, AT(model), MEANS("of the bulk")},
 {.name = KEY("young"), .unit = "Pa", REAL, ABOVE(0), REQUIRED, ELASTIC, AT(young), MEANS("Young's modulus")},
 {.name = KEY("shear"), .unit = "Pa", REAL, ABOVE(0), REQUIRED, FLAWS(shear), MEANS("shear modulus of the intact solid")},

@@ -28,15 +28,6 @@ __attribute__((format(printf, 2, 3))) static void wrong(const table *t, const ch
     rg_problem_add(t->ck->problems, t->file->at, &subject, "%s", what);
 }
 
-static void copy_node(const rg_node *from, rg_node *to) {
-    *to = (rg_node){.kind = from->kind, .at = from->at, .key_at = from->key_at, .plain = from->plain};
-    to->key = from->key != NULL ? rg_text_copy(from->key, strlen(from->key)) : NULL;
-    to->text = from->text != NULL ? rg_text_copy(from->text, strlen(from->text)) : NULL;
-    for (int i = 0; i < from->children; i++) {
-        copy_node(&from->child[i], rg_node_append(to));
-    }
-}
-
 /* The fields of a line, without blanks around them; the caller frees each, and the list. */
 static char **split(const char *line, size_t length, int *count) {
     char **field = NULL;
@@ -113,7 +104,7 @@ static void add_row(const table *t, char **field, int row) {
         if (name && child->kind == RG_NODE_SCALAR && find_column(t, "name") < 0) {
             add_text(t, node, "name", rg_text_format("%s-%d", child->text, row), false);
         } else if (!name && child != t->file) {
-            copy_node(child, rg_node_append(node));
+            rg_node_copy(child, rg_node_append(node));
         }
     }
     for (int i = 0; i < t->columns; i++) {
@@ -192,7 +183,7 @@ void rg_material_tables_expand(rg_check *ck, rg_node *root) {
         const rg_node *file =
             item->kind == RG_NODE_MAPPING ? rg_node_find(item, "file", strlen("file")) : NULL;
         if (file == NULL) {
-            copy_node(item, rg_node_append(&all));
+            rg_node_copy(item, rg_node_append(&all));
             continue;
         }
         any = true;

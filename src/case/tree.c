@@ -51,6 +51,15 @@ rg_node *rg_node_append(rg_node *parent) {
     return node;
 }
 
+void rg_node_copy(const rg_node *from, rg_node *to) {
+    *to = (rg_node){.kind = from->kind, .at = from->at, .key_at = from->key_at, .plain = from->plain};
+    to->key = from->key != NULL ? rg_text_copy(from->key, strlen(from->key)) : NULL;
+    to->text = from->text != NULL ? rg_text_copy(from->text, strlen(from->text)) : NULL;
+    for (int i = 0; i < from->children; i++) {
+        rg_node_copy(&from->child[i], rg_node_append(to));
+    }
+}
+
 bool rg_node_is_null(const rg_node *node) {
     return node->kind == RG_NODE_SCALAR && node->plain &&
            (node->text[0] == '\0' || strcmp(node->text, "~") == 0 || strcmp(node->text, "null") == 0);

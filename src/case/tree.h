@@ -40,6 +40,9 @@ rg_node *rg_node_find(const rg_node *mapping, const char *key, size_t length);
 /* Appends an empty child and returns it; earlier pointers to children become invalid. */
 rg_node *rg_node_append(rg_node *parent);
 
+/* Makes `to`, which owns nothing, a copy of `from`. */
+void rg_node_copy(const rg_node *from, rg_node *to);
+
 /* No value at all: `key:` with nothing behind it, or null. */
 bool rg_node_is_null(const rg_node *node);
 
