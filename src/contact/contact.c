@@ -23,9 +23,7 @@ enum { ROW = 9, VALUES = ROW + 1, HALO_TAG = 11 };
 #define SKIN  2e-3
 #define REACH 0.5
 #define FAT   0.2
-
-/* And at least so many steps as long as the last one. */
-#define FAT_STEPS 24
+#define TURN  0.1 /* of the unit normals */
 
 /* A face of this rank. */
 typedef struct {
@@ -59,7 +57,7 @@ struct rg_contacts {
     rg_gid *id;                   /* [faces, then far] */
     rg_real *row;                 /* [faces, then far][VALUES] */
     double *sunk;                 /* [faces, then far]: as it came (m) */
-    double *moved;                /* [faces]: since the search, and in the last step (m) */
+    double *moved;                /* [faces]: since the search, and in the last step, over what they may */
     double *stepped;
     double fat;
     rg_halo *halo;
@@ -383,15 +381,13 @@ static void make_touches(rg_contacts *c) {
 }
 
 /* How far a face may move before the next search. */
-static double set_fat(const rg_contacts *c, const rg_exposed_face *e, double step) {
+static double set_fat(const rg_contacts *c, const rg_exposed_face *e) {
     double sum[2] = {0, (double)c->faces};
     for (size_t i = 0; i < c->faces; i++) {
         sum[0] += e[i].height;
     }
     MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPI_DOUBLE, MPI_SUM, c->comm);
-    MPI_Allreduce(MPI_IN_PLACE, &step, 1, MPI_DOUBLE, MPI_MAX, c->comm);
-    double fat = sum[1] > 0 ? FAT * sum[0] / sum[1] : 0;
-    return isfinite(step) ? fmax(fat, FAT_STEPS * step) : fat;
+    return sum[1] > 0 ? FAT * sum[0] / sum[1] : 0;
 }
 
 static double largest(const double *x, size_t count) {
@@ -403,11 +399,10 @@ static double largest(const double *x, size_t count) {
 }
 
 void rg_contacts_search(rg_contacts *c, const uint8_t *exposed, const rg_real *u) {
-    double step = largest(c->stepped, c->stepped != NULL ? c->faces : 0);
     forget(c);
     rg_exposed_face *own = expose(c, exposed, u);
-    c->fat = set_fat(c, own, step);
-    rg_search by = {c->penalty, SKIN, REACH, c->fat};
+    c->fat = set_fat(c, own);
+    rg_search by = {c->penalty, SKIN, REACH, c->fat, TURN};
     rg_candidate *p = rg_search_pairs(&by, own, c->faces, &c->pairs, c->comm);
     shared *far = make_rows(c, own, p);
     c->pair = RG_NEW(rg_contact_pair, c->pairs + 1);
@@ -437,21 +432,39 @@ static double distance2(const double *a, const double *b) {
     return rg_vector_dot(d, d);
 }
 
+/* The unit normal of corner[9]. */
+static void normal_of(const double *x, double n[3]) {
+    double one[3], two[3];
+    rg_vector_subtract(x + 3, x, one);
+    rg_vector_subtract(x + 6, x, two);
+    rg_vector_cross(one, two, n);
+    double length = sqrt(rg_vector_dot(n, n));
+    for (int k = 0; k < 3; k++) {
+        n[k] /= length;
+    }
+}
+
+/* How far a face has got from one state to another, over what it may between two searches. */
+static double way(const rg_contacts *c, const double *from, const double *to) {
+    double moved = 0, n[2][3];
+    for (size_t k = 0; k < ROW; k += 3) {
+        moved = fmax(moved, distance2(from + k, to + k));
+    }
+    normal_of(from, n[0]);
+    normal_of(to, n[1]);
+    return fmax(sqrt(moved) / c->fat, sqrt(distance2(n[0], n[1])) / TURN);
+}
+
 void rg_contacts_place(rg_contacts *c, size_t tile, const rg_real *u, const rg_real *sunk) {
     for (size_t i = c->tile_begin[tile]; i < c->tile_begin[tile + 1]; i++) {
-        double moved = 0, stepped = 0;
         size_t at = c->face[i].interface;
         double before[ROW];
         memcpy(before, c->corner + ROW * i, sizeof before);
         set_row(c, i, u);
         c->row[VALUES * i + ROW] = at == NO_INTERFACE ? 0 : sunk[at];
         set_corners(c, i);
-        for (size_t k = 0; k < ROW; k += 3) {
-            moved = fmax(moved, distance2(c->corner + ROW * i + k, c->last + ROW * i + k));
-            stepped = fmax(stepped, distance2(c->corner + ROW * i + k, before + k));
-        }
-        c->moved[i] = sqrt(moved);
-        c->stepped[i] = sqrt(stepped);
+        c->moved[i] = way(c, c->last + ROW * i, c->corner + ROW * i);
+        c->stepped[i] = way(c, before, c->corner + ROW * i);
     }
 }
 
@@ -558,7 +571,7 @@ void rg_contacts_energy(const rg_contacts *c, size_t tile, rg_exact_sum *energy)
 
 double rg_contacts_moved(const rg_contacts *c) {
     double moved = largest(c->moved, c->faces), stepped = largest(c->stepped, c->faces);
-    return (moved + 2 * stepped) / c->fat;
+    return moved + 2 * stepped;
 }
 
 int64_t rg_contacts_touching(const rg_contacts *c) {

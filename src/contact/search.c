@@ -81,39 +81,21 @@ bool rg_search_may_touch(const rg_search *by, const rg_exposed_face *a, const rg
     return a->id / RG_FACES != b->id / RG_FACES && (shared == 0 || !is_convex_edge(a, b, h));
 }
 
-/* By how much a face may turn at most while its corners move by `fat` (sine). */
-static double turn_of(const double *x, const double normal_length, double fat) {
-    double longest = 0;
-    for (int i = 0; i < 3; i++) {
-        double edge = distance2(x + 3 * i, x + 3 * ((i + 1) % 3));
-        longest = edge > longest ? edge : longest;
-    }
-    return 2 * fat * sqrt(longest) / normal_length;
-}
-
 /* A face as it is compared with others. */
 typedef struct {
     double low[3], high[3]; /* the box of its corners */
-    double normal[3], turn;
+    double normal[3];
 } shape;
 
-static shape shape_of(const rg_exposed_face *f, double fat) {
+static shape shape_of(const rg_exposed_face *f) {
     shape s;
-    double one[3], two[3];
     for (int c = 0; c < 3; c++) {
         const double *x = f->corner + c;
         double low = x[0] < x[3] ? x[0] : x[3], high = x[0] > x[3] ? x[0] : x[3];
         s.low[c] = x[6] < low ? x[6] : low;
         s.high[c] = x[6] > high ? x[6] : high;
     }
-    rg_vector_subtract(f->corner + 3, f->corner, one);
-    rg_vector_subtract(f->corner + 6, f->corner, two);
-    rg_vector_cross(one, two, s.normal);
-    double length = sqrt(rg_vector_dot(s.normal, s.normal));
-    for (int c = 0; c < 3; c++) {
-        s.normal[c] /= length;
-    }
-    s.turn = turn_of(f->corner, length, fat);
+    unit_normal(f->corner, s.normal);
     return s;
 }
 
@@ -135,10 +117,7 @@ static bool come_within(const double *n, const rg_exposed_face *a, const rg_expo
  * they may be deep along the mid-plane's normal, after both have moved. */
 static bool may_come_over(const rg_search *by, const rg_exposed_face *a, const rg_exposed_face *b,
                           const shape *s, const shape *t) {
-    double turn = s->turn + t->turn, facing = -rg_vector_dot(s->normal, t->normal), n[3];
-    if (!(turn < 0.5)) {
-        return true;
-    }
+    double turn = 2 * by->turn, facing = -rg_vector_dot(s->normal, t->normal), n[3];
     if (facing < -turn) {
         return false;
     }
@@ -166,7 +145,7 @@ typedef struct {
 /* Of all that a face may touch before the next search, the half of what lies between them. False where it is
  * outside the grid, nowhere, or torn. */
 static bool box_of(const rg_search *by, const rg_exposed_face *f, double cell, box *b) {
-    shape s = shape_of(f, 0);
+    shape s = shape_of(f);
     double now = 0, rest = 0, fat = by->fat + 0.5 * (by->skin + by->reach) * f->height;
     for (int c = 0; c < 3; c++) {
         const double *r = f->rest + c;
@@ -286,7 +265,7 @@ static void compare(const rg_search *by, double cell, const visitor *v, size_t v
     for (size_t i = 0; i < visitors; i++) {
         g[i] = (guest){.cell = v[i].cell, .id = v[i].face.id, .face = &v[i].face};
         box_of(by, g[i].face, cell, &g[i].box);
-        g[i].shape = shape_of(g[i].face, by->fat);
+        g[i].shape = shape_of(g[i].face);
     }
     qsort(g, visitors, sizeof *g, by_cell);
     for (size_t begin = 0, end; begin < visitors; begin = end) {

@@ -33,7 +33,8 @@ typedef struct {
     double penalty; /* kappa h/(lambda + 2 mu) */
     double skin;    /* of the height of an element */
     double reach;   /* of that */
-    double fat;     /* by so much each face may move before the next search (m) */
+    double fat;     /* by so much each corner may move before the next search (m), */
+    double turn;    /* and so far each unit normal */
 } rg_search;
 
 /* The pairs that a face of this rank has a part in, by the numbers of their faces. Collective; free with

@@ -13,7 +13,7 @@
 enum { FACES = 240 };
 
 static int ranks;
-static const rg_search by = {.penalty = 4, .skin = 2e-3, .reach = 0.5, .fat = 0.1};
+static const rg_search by = {.penalty = 4, .skin = 2e-3, .reach = 0.5, .fat = 0.1, .turn = 0.3};
 
 /* Triangles of edges near 1 in a box of 5, a few of them large, the same on all ranks; every sixth one flies
  * far away. */
