@@ -214,6 +214,31 @@ static void test_materials(void **state) {
     }
 }
 
+/* Polycrystals have thousands. */
+static void test_many_materials(void **state) {
+    (void)state;
+    enum { OTHERS = 1000 };
+    static char text[100 * OTHERS], whole[100 * OTHERS + 8192];
+    size_t used = (size_t)snprintf(text, sizeof text, "materials:\n");
+    for (int i = 0; i < OTHERS; i++) {
+        used += (size_t)snprintf(
+            text + used, sizeof text - used,
+            "  - {name: m%d, where: 1, model: neo-hookean, young: 1, poisson: 0, density: 1}\n", i);
+    }
+    snprintf(text + used, sizeof text - used, "interface:\n  sets: [{between: [m0, m%d]}]\n", OTHERS - 1);
+    const char *rest = strstr(base, "interface:\n");
+    snprintf(whole, sizeof whole, "%.*s%s%s", (int)(rest - base), base, text, rest + strlen("interface:\n"));
+    write_bytes(whole, strlen(whole));
+    rg_case *c = read_good(path, 0, NULL);
+    assert_int_equal(c->others, OTHERS);
+    assert_int_equal(rg_case_find_material(c, "m999"), OTHERS);
+    assert_int_equal(rg_case_find_material(c, "material"), 0);
+    assert_int_equal(rg_case_find_material(c, "m1000"), -1);
+    assert_string_equal(rg_case_material_name(c, 2), "m1");
+    assert_ptr_equal(rg_case_material(c, 2), &c->other[1].is);
+    rg_case_free(c);
+}
+
 static void test_wrong_materials(void **state) {
     (void)state;
 #define FILE_KEY ":5:21: materials[1].file: pulse.csv: "
@@ -252,10 +277,11 @@ static void test_wrong_materials(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_straight),  cmocka_unit_test(test_smooth_step),
-        cmocka_unit_test(test_smooth),    cmocka_unit_test(test_case),
-        cmocka_unit_test(test_mistakes),  cmocka_unit_test(test_wrong_files),
-        cmocka_unit_test(test_materials), cmocka_unit_test(test_wrong_materials),
+        cmocka_unit_test(test_straight),       cmocka_unit_test(test_smooth_step),
+        cmocka_unit_test(test_smooth),         cmocka_unit_test(test_case),
+        cmocka_unit_test(test_mistakes),       cmocka_unit_test(test_wrong_files),
+        cmocka_unit_test(test_materials),      cmocka_unit_test(test_wrong_materials),
+        cmocka_unit_test(test_many_materials),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }
