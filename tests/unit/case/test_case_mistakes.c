@@ -144,6 +144,11 @@ static const mistake mistakes[] = {
     {"  energy: 34\n", "  energy: 34\n  form: continuous\n  faces: 1\nmass: consistent\n",
      ":15:7: mass: consistent: couples all nodes that elements share, so that each step would have to solve "
      "with it; allowed: with form continuous: lumped\n"},
+    {"  energy: 34\n", "  energy: 34\n  contact: penalty\ncontact: {model: general}\n",
+     ":14:18: contact.model: general: the contact of interfaces must fade where faces slide off each other; "
+     "allowed: with interface.contact potential: general\n"},
+    {"  energy: 34\n", "  energy: 34\ncontact: {penalty: 3}\n",
+     ":13:11: contact.penalty: 3: not used, because contact.model is interfaces\n"},
     {"  law: linear\n", "  law: linear\n  activation: continuous\n  onset: 0.2\n",
      ":12:3: interface.onset: 0.2: not used, because interface.activation is not conserving\n"},
     {"  law: linear\n", "  law: linear\n  activation: conserving\n  onset: 0\n  contact: flux\n",

@@ -57,6 +57,8 @@ static const struct {
      "number > 0 (m2)", NULL, NULL},
     {"interface.weibull={modulus: 1, area: 1, seed: %s}", "0", "-1", "9223372036854775807", NULL,
      "interface.weibull.seed", "integer >= 0", NULL, NULL},
+    {"contact={model: general, penalty: %s}", "1e-9", "0", "1e9", NULL, "contact.penalty", "number > 0", NULL,
+     NULL},
     {"viscosity.linear=%s", "0", "-1e-9", "1e9", NULL, "viscosity.linear", "number >= 0", NULL, NULL},
     {"viscosity.quadratic=%s", "0", "-1e-9", "1e9", NULL, "viscosity.quadratic", "number >= 0", NULL, NULL},
     {"time.end=%s", "1e-9", "0", "1e300", NULL, "time.end", "number > 0 (s)", NULL, NULL},
