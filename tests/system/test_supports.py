@@ -107,7 +107,7 @@ def test_lines_at_an_angle(run, figure, form):
     assert axes.energy["bulk"].max() > 1e-9
     for name in ("kinetic", "bulk", "external_work"):
         apart = np.abs(lines.energy[name] - axes.energy[name]).max() / np.abs(axes.energy[name]).max()
-        figure(f"lines at an angle against axes, form {form}: {name}", apart, bound=rounding(2e-13, 1e-3), why=ROUNDING)
+        figure(f"lines at an angle against axes, form {form}: {name}", apart, bound=rounding(2e-13, 1e-6), why=ROUNDING)
 
 
 def test_entries_that_take_turns(run, figure):
