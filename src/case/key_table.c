@@ -312,7 +312,7 @@ static const rg_key face_set_keys[] = {
      .offset = offsetof(rg_face_set, where),
      MEANS("faces where it is not 0, by their middle and unit normal, of either sign")},
     {.name = "between", .type = RG_KEY_TEXTS, ELSE("set or where"), SOME_OF, .offset = offsetof(rg_face_set, between),
-     .offset_count = offsetof(rg_face_set, names), MEANS("names of the materials on both sides, or one twice; [any]: between any two volume sets or materials, as the boundaries of grains")},
+     .offset_count = offsetof(rg_face_set, names), MEANS("names of the materials on both sides, or one twice; any: between any two volume sets or materials, as the boundaries of grains")},
     {.name = "law", EXPLAINED(breakings), ELSE("interface"), .offset = offsetof(rg_face_set, breaking),
      MEANS("whether they can break")},
     {.name = "open", .type = RG_KEY_BOOL, ELSE("false"), .offset = offsetof(rg_face_set, open),

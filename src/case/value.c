@@ -215,6 +215,13 @@ static bool read_items(rg_check *ck, const rg_key *key, const rg_node *node, con
     return good;
 }
 
+/* The word any stands for a list of it. */
+static bool read_texts(rg_check *ck, const rg_key *key, const rg_node *node, const char *path, char *base) {
+    rg_node item = *node, list = {.kind = RG_NODE_LIST, .at = node->at, .children = 1, .child = &item};
+    bool any = node->kind == RG_NODE_SCALAR && strcmp(node->text, "any") == 0;
+    return read_items(ck, key, any ? &list : node, path, base, sizeof(char *), read_text);
+}
+
 static bool read_reals(rg_check *ck, const rg_key *key, const rg_node *node, const char *path, char *base) {
     if (!read_items(ck, key, node, path, base, sizeof(double), read_real_item)) {
         return false;
@@ -318,7 +325,7 @@ bool rg_value_read(rg_check *ck, const rg_key *key, const rg_node *node, const c
     case RG_KEY_TEXT:
         return read_text(ck, key, node, path, value);
     case RG_KEY_TEXTS:
-        return read_items(ck, key, node, path, base, sizeof(char *), read_text);
+        return read_texts(ck, key, node, path, base);
     case RG_KEY_REALS:
         return read_reals(ck, key, node, path, base);
     case RG_KEY_EXPR:

@@ -177,7 +177,7 @@ def test_polycrystal(run, tmp_path_factory, grains, cells):
     case.write_text(json.dumps({
         "mesh": {"file": "grains.h5"}, "material": {**glass, "young": 70e9},
         "materials": [{**glass, "name": "g", "file": "grains.csv"}],
-        "interface": {"law": "linear", "strength": 1e9, "energy": 10, "sets": [{"between": ["any"], "strength": 1e6}]},
+        "interface": {"law": "linear", "strength": 1e9, "energy": 10, "sets": [{"between": "any", "strength": 1e6}]},
         "initial": {"velocity": {"x": "1e4*x"}}, "boundary": [], "time": {"end": 1, "steps": 30}, "output": {"fields": ["material", "crack"]}}))
     one, two = run(case), run(case, ranks=2, threads=2)
     assert one.summary["state_hash"] == two.summary["state_hash"]

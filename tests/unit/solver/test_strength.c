@@ -409,7 +409,7 @@ static void test_named(void **state) {
 static void test_grains(void **state) {
     (void)state;
     const char *const set[] = {
-        "interface.sets=[{between: [any], strength: 200e6}, {between: [any], where: z > 0, "
+        "interface.sets=[{between: any, strength: 200e6}, {between: [any], where: z > 0, "
         "strength: 100e6}]"};
     rg_case *c = read_case(1, set);
     rg_mesh *mesh = rg_mesh_of_case(c);
