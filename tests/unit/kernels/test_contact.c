@@ -85,17 +85,17 @@ static void test_reference(void **state) {
         sets[s]->contact(&args, 0, PAIRS);
         for (size_t i = 0; i < PAIRS; i++) {
             double energy = expected.energy[i], kappa = expected.pair[i].stiffness;
-            if (!(fabs(found.energy[i] - energy) <= 2e-16 * kappa)) {
+            if (!(fabs(found.energy[i] - energy) <= 4e-17 * kappa)) {
                 fail_msg("%s: energy %.17g instead of %.17g", sets[s]->name, found.energy[i], energy);
             }
-            if (!(fabs(found.depth[i] - expected.depth[i]) <= 1e-14)) {
+            if (!(fabs(found.depth[i] - expected.depth[i]) <= 2e-15)) {
                 fail_msg("%s: depth %.17g instead of %.17g", sets[s]->name, found.depth[i],
                          expected.depth[i]);
             }
             touching += energy > 0;
             for (int k = 0; energy > 0 && found.energy[i] > 0 && k < 18; k++) {
                 double one = found.force[i][k], two = expected.force[i][k];
-                if (!(fabs(one - two) <= 2e-14 * kappa)) {
+                if (!(fabs(one - two) <= 4e-16 * kappa)) {
                     fail_msg("%s: force %d of pair %zu is %.17g instead of %.17g", sets[s]->name, k, i, one,
                              two);
                 }
@@ -129,7 +129,7 @@ static void test_gradient(void **state) {
         for (size_t i = 0; i < PAIRS; i++) {
             if (expected.energy[i] > 0) {
                 double slope = (up[i] - found.energy[i]) / (2 * h), size = expected.pair[i].stiffness;
-                off += !(fabs(slope + expected.force[i][k]) <= 1e-9 * size);
+                off += !(fabs(slope + expected.force[i][k]) <= 1e-10 * size);
                 all++;
             }
         }
@@ -156,8 +156,8 @@ static void test_momenta(void **state) {
             }
         }
         for (int c = 0; found.energy[i] > 0 && c < 3; c++) {
-            assert_true(fabs(sum[c]) <= 1e-14 * fmax(size, 1e-2 * found.pair[i].stiffness));
-            assert_true(fabs(moment[c]) <= 1e-14 * fmax(size, 1e-2 * found.pair[i].stiffness));
+            assert_true(fabs(sum[c]) <= 4e-15 * fmax(size, 1e-2 * found.pair[i].stiffness));
+            assert_true(fabs(moment[c]) <= 4e-15 * fmax(size, 1e-2 * found.pair[i].stiffness));
         }
     }
 }
@@ -176,9 +176,9 @@ static void test_exchange(void **state) {
     set->contact(&exchanged, 0, PAIRS);
     for (size_t i = 0; i < PAIRS; i++) {
         double kappa = expected.pair[i].stiffness;
-        assert_true(fabs(expected.energy[i] - found.energy[i]) <= 1e-16 * kappa);
+        assert_true(fabs(expected.energy[i] - found.energy[i]) <= 2e-17 * kappa);
         for (int k = 0; expected.energy[i] > 0 && found.energy[i] > 0 && k < 18; k++) {
-            assert_true(fabs(expected.force[i][k] - found.force[i][(k + 9) % 18]) <= 1e-14 * kappa);
+            assert_true(fabs(expected.force[i][k] - found.force[i][(k + 9) % 18]) <= 2e-16 * kappa);
         }
     }
 }
@@ -219,9 +219,9 @@ static void test_cut(void **state) {
     }
     assert_true(energy[0] > 1e-4);
     for (int k = 1; k < 3; k++) {
-        assert_true(fabs(energy[k] - energy[0]) < 1e-14 * energy[0]);
+        assert_true(fabs(energy[k] - energy[0]) < 1e-15 * energy[0]);
         for (int c = 0; c < 9; c++) {
-            assert_true(fabs(force[k][c] - force[0][c]) < 1e-16);
+            assert_true(fabs(force[k][c] - force[0][c]) < 1e-17);
         }
     }
 }
