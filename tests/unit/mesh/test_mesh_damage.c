@@ -180,11 +180,11 @@ static void test_header(void **state) {
         const char *said;
     } cases[] = {
         {"version", 1, ""},
-        {"version", 0, "version: 0, but this program reads versions 1 to 2\n"},
+        {"version", 0, "version: 0, but this program reads versions 1 to 3\n"},
         {"version", 2,
          "surface_combinations: cannot be read: can't locate attribute in name index; the file is "
          "damaged or not a mesh file\n"},
-        {"version", 3, "version: 3, but this program reads versions 1 to 2\n"},
+        {"version", 4, "version: 4, but this program reads versions 1 to 3\n"},
         {"version", -1, "version: -1 is not between 0 and 9223372036854775807\n"},
         {"elements", 0, "elements: 0 is not between 1 and 1099511627776\n"},
         {"elements", 1099511627777, "elements: 1099511627777 is not between 1 and 1099511627776\n"},
@@ -286,7 +286,7 @@ static void test_element_values(void **state) {
         {"face", 806, -2, "face: value -2 of element 1057 is not between -1 and 3\n"},
         {"set", 806, 6, "set: value 6 of element 1057 is not between -1 and 5\n"},
         {"set", 806, -2, "set: value -2 of element 1057 is not between -1 and 5\n"},
-        {"set", 806, 5, ""},
+        {"set", 806, 5, "set: elements 1257 and 1057 have the face between them in different sets\n"},
         {"set", 806, -1, ""},
         {"region", 201, 2, "region: value 2 of element 1057 is not between -1 and 1\n"},
         {"region", 201, -2, "region: value -2 of element 1057 is not between -1 and 1\n"},
