@@ -77,9 +77,9 @@ def test_dissipates_little_more_than_the_flat_plane(bar, figure, mesh, bound):
            theory=1e6 * TOUGHNESS * AREA, unit="uJ", bound=bound, relative=True)
 
 
-@pytest.mark.parametrize("mesh", MESHES)
-def test_energy_balance(bar, figure, mesh):
-    figure(f"spall, {mesh}: energy error", bar(mesh).summary["energy_error_rel"], bound=1e-4)
+@pytest.mark.parametrize("mesh, bound", [("regular", 1e-4), ("jittered", 6e-5)])
+def test_energy_balance(bar, figure, mesh, bound):
+    figure(f"spall, {mesh}: energy error", bar(mesh).summary["energy_error_rel"], bound=bound)
 
 
 @pytest.mark.parametrize("mass, steps, energy, dissipated, first", [("consistent", 633, 4.5e-5, 5.501, 0.22877), ("scaled", 494, 9.2e-5, 5.465, 0.23085)])
@@ -87,9 +87,9 @@ def test_steps_and_what_they_give(run, figure, mass, steps, energy, dissipated, 
     """With either mass; the numbers are what is found, held as closely as rounding lets them be told."""
     spall = run(example("spall.yaml"), threads=2, sets={"mass": mass, "output.fields": []})
     name = f"spall, {mass} mass"
-    figure(f"{name}: steps", spall.summary["steps"], theory=steps, unit="steps", bound=2)
+    figure(f"{name}: steps", spall.summary["steps"], theory=steps, unit="steps", bound=2, why="a number of steps, of which rounding decides the last")
     figure(f"{name}: energy error", spall.summary["energy_error_rel"], bound=2 * energy)
-    figure(f"{name}: dissipated", 1e6 * spall.summary["dissipated_J"], theory=5.44, unit="uJ", bound=3 * (dissipated - 5.44))
+    figure(f"{name}: dissipated", 1e6 * spall.summary["dissipated_J"], theory=5.44, unit="uJ", bound=2.9 * (dissipated - 5.44))
     figure(f"{name}: first fracture", 1e6 * spall.summary["first_fracture_time_s"], theory=1e6 * MEETING, unit="us",
            bound=2 * (first - 1e6 * MEETING))
     figure(f"{name}: stress at the probe, first plateau", 1e-6 * plateau(spall.history), theory=1e-6 * STRESS, unit="MPa",
