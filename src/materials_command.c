@@ -4,7 +4,6 @@
 
 #include "base/error.h"
 #include "case/preset.h"
-#include "case/problem.h"
 #include "usage.h"
 
 static int complain(const char *what, const char *argument) {
@@ -13,11 +12,7 @@ static int complain(const char *what, const char *argument) {
 }
 
 static int unknown(const char *name) {
-    const char *names[RG_PRESETS + 1] = {NULL};
-    for (int i = 0; i < RG_PRESETS; i++) {
-        names[i] = rg_preset_list[i].name;
-    }
-    const char *nearest = rg_nearest(name, names);
+    const char *nearest = rg_preset_nearest(name);
     fprintf(stderr, "rhegma: materials: %s: no such preset%s%s%s\n", name,
             nearest != NULL ? "; did you mean '" : "", nearest != NULL ? nearest : "",
             nearest != NULL ? "'?" : "; rhegma materials lists them");

@@ -60,31 +60,27 @@ const rg_preset *rg_preset_find(const char *name) {
     return NULL;
 }
 
+const char *rg_preset_nearest(const char *name) {
+    const char *names[RG_PRESETS + 1] = {NULL};
+    for (int i = 0; i < RG_PRESETS; i++) {
+        names[i] = rg_preset_list[i].name;
+    }
+    return rg_nearest(name, names);
+}
+
 /* ---- in a case ---- */
 
 static void complain(rg_check *ck, const rg_node *node, const char *path) {
-    const char *names[RG_PRESETS + 1] = {NULL};
     char allowed[400] = "", value[64], *key = rg_text_format("%spreset", path);
     for (int i = 0; i < RG_PRESETS; i++) {
-        names[i] = rg_preset_list[i].name;
-        rg_text_add(allowed, sizeof allowed, "%s%s", i > 0 ? ", " : "", names[i]);
+        rg_text_add(allowed, sizeof allowed, "%s%s", i > 0 ? ", " : "", rg_preset_list[i].name);
     }
     rg_subject subject = {.key = key,
                           .value = rg_node_line(node, value, sizeof value),
                           .allowed = allowed,
-                          .nearest = node->kind == RG_NODE_SCALAR ? rg_nearest(node->text, names) : NULL};
+                          .nearest = node->kind == RG_NODE_SCALAR ? rg_preset_nearest(node->text) : NULL};
     rg_problem_add(ck->problems, node->at, &subject, "no such preset (rhegma materials lists them)");
     rg_free(key);
-}
-
-/* Bits of the models that a key of a material belongs to; 0: all. */
-static unsigned models_of(const char *key) {
-    for (int i = 0; i < rg_material_table.keys; i++) {
-        if (strcmp(rg_material_table.key[i].name, key) == 0) {
-            return rg_material_table.key[i].models;
-        }
-    }
-    return 0;
 }
 
 static unsigned model_bit(const rg_node *model) {
@@ -103,7 +99,7 @@ static void fill(rg_node *block, const rg_preset *p, rg_place at) {
     unsigned bit = model_bit(model != NULL ? model : rg_node_find(&values, "model", strlen("model")));
     for (int i = 0; i < values.children; i++) {
         rg_node *value = &values.child[i];
-        unsigned models = models_of(value->key);
+        unsigned models = rg_key_find(&rg_material_table, value->key)->models; /* 0: all */
         if (rg_node_find(block, value->key, strlen(value->key)) == NULL &&
             (models == 0 || (models & bit) != 0)) {
             value->at = value->key_at = at;

@@ -17,6 +17,9 @@ extern const rg_preset rg_preset_list[RG_PRESETS];
 /* The one of that name; NULL: none has it. */
 const rg_preset *rg_preset_find(const char *name);
 
+/* The name that was probably meant, or NULL. */
+const char *rg_preset_nearest(const char *name);
+
 /* All presets, one a line; or one with values, sources and a block to copy. */
 void rg_presets_print(FILE *out);
 void rg_preset_print(const rg_preset *p, FILE *out);

@@ -175,25 +175,21 @@ static int corner_of(const face *f, int i) {
     return f->turned && i > 0 ? 3 - i : i;
 }
 
+static void copy_corners(const double *corner, const face *f, double *rest) {
+    for (int i = 0; i < 3; i++) {
+        memcpy(rest + 3 * i, corner + 3 * rg_face_node[f->face][corner_of(f, i)], 3 * sizeof *rest);
+    }
+}
+
+/* Corners in an order in which they run round the outward normal. */
 static void set_rest(const rg_contacts *c, face *f, double *rest) {
     const double *corner = c->domain->corner + 12 * (size_t)f->slot;
-    double out[3], across[3], one[3], two[3], along = 0;
+    double out[3], normal[3];
     rg_surface_area(corner, f->face, out);
-    for (int pass = 0; pass < 2; pass++) {
-        for (int i = 0; i < 3; i++) {
-            memcpy(rest + 3 * i, corner + 3 * rg_face_node[f->face][corner_of(f, i)], 3 * sizeof *rest);
-        }
-        for (int k = 0; k < 3; k++) {
-            one[k] = rest[3 + k] - rest[k];
-            two[k] = rest[6 + k] - rest[k];
-        }
-        for (int k = 0; k < 3; k++) {
-            int a = (k + 1) % 3, b = (k + 2) % 3;
-            across[k] = one[a] * two[b] - one[b] * two[a];
-            along += pass == 0 ? across[k] * out[k] : 0;
-        }
-        f->turned = along < 0;
-    }
+    copy_corners(corner, f, rest);
+    rg_vector_normal(rest, normal);
+    f->turned = rg_vector_dot(normal, out) < 0;
+    copy_corners(corner, f, rest);
 }
 
 static void set_row(const rg_contacts *c, size_t i, const rg_real *u) {
@@ -426,33 +422,15 @@ void rg_contacts_search(rg_contacts *c, const uint8_t *exposed, const rg_real *u
 
 /* ---- Steps ---- */
 
-static double distance2(const double *a, const double *b) {
-    double d[3];
-    rg_vector_subtract(a, b, d);
-    return rg_vector_dot(d, d);
-}
-
-/* The unit normal of corner[9]. */
-static void normal_of(const double *x, double n[3]) {
-    double one[3], two[3];
-    rg_vector_subtract(x + 3, x, one);
-    rg_vector_subtract(x + 6, x, two);
-    rg_vector_cross(one, two, n);
-    double length = sqrt(rg_vector_dot(n, n));
-    for (int k = 0; k < 3; k++) {
-        n[k] /= length;
-    }
-}
-
 /* How far a face has got from one state to another, over what it may between two searches. */
 static double way(const rg_contacts *c, const double *from, const double *to) {
     double moved = 0, n[2][3];
     for (size_t k = 0; k < ROW; k += 3) {
-        moved = fmax(moved, distance2(from + k, to + k));
+        moved = fmax(moved, rg_vector_distance2(from + k, to + k));
     }
-    normal_of(from, n[0]);
-    normal_of(to, n[1]);
-    return fmax(sqrt(moved) / c->fat, sqrt(distance2(n[0], n[1])) / TURN);
+    rg_vector_normal(from, n[0]);
+    rg_vector_normal(to, n[1]);
+    return fmax(sqrt(moved) / c->fat, sqrt(rg_vector_distance2(n[0], n[1])) / TURN);
 }
 
 void rg_contacts_place(rg_contacts *c, size_t tile, const rg_real *u, const rg_real *sunk) {

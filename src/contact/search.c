@@ -20,23 +20,6 @@ enum { AXIS = 20 }; /* cells number from -2^AXIS to 2^AXIS along each axis */
 
 /* ---- Two faces ---- */
 
-static double distance2(const double *a, const double *b) {
-    double d[3];
-    rg_vector_subtract(a, b, d);
-    return rg_vector_dot(d, d);
-}
-
-static void unit_normal(const double *x, double n[3]) {
-    double one[3], two[3];
-    rg_vector_subtract(x + 3, x, one);
-    rg_vector_subtract(x + 6, x, two);
-    rg_vector_cross(one, two, n);
-    double length = sqrt(rg_vector_dot(n, n));
-    for (int c = 0; c < 3; c++) {
-        n[c] /= length;
-    }
-}
-
 /* How many corners of the undeformed faces are the same points. */
 static int corners_shared(const rg_exposed_face *a, const rg_exposed_face *b) {
     int shared = 0;
@@ -50,7 +33,7 @@ static int corners_shared(const rg_exposed_face *a, const rg_exposed_face *b) {
 /* How far the middle of x is above the plane of `of`, over 3. */
 static double middle_over(const double *of, const double *x) {
     double n[3], r[3], sum = 0;
-    unit_normal(of, n);
+    rg_vector_normal(of, n);
     for (int i = 0; i < 3; i++) {
         rg_vector_subtract(x + 3 * i, of, r);
         sum += rg_vector_dot(n, r);
@@ -95,7 +78,7 @@ static shape shape_of(const rg_exposed_face *f) {
         s.low[c] = x[6] < low ? x[6] : low;
         s.high[c] = x[6] > high ? x[6] : high;
     }
-    unit_normal(f->corner, s.normal);
+    rg_vector_normal(f->corner, s.normal);
     return s;
 }
 
@@ -206,7 +189,7 @@ static size_t visit(const rg_search *by, const rg_exposed_face *f, double cell, 
 static double cell_size(const rg_search *by, const rg_exposed_face *face, size_t faces, MPI_Comm comm) {
     double sum[2] = {0, (double)faces};
     for (size_t i = 0; i < faces; i++) {
-        sum[0] += sqrt(distance2(face[i].rest, face[i].rest + 3));
+        sum[0] += sqrt(rg_vector_distance2(face[i].rest, face[i].rest + 3));
     }
     MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPI_DOUBLE, MPI_SUM, comm);
     return sum[1] > 0 ? 2 * sum[0] / sum[1] + 2 * by->fat : 1;
@@ -277,6 +260,18 @@ static void compare(const rg_search *by, double cell, const visitor *v, size_t v
     rg_free(g);
 }
 
+/* Sends `count` items of `size` bytes to their ranks and frees them, with `to`; returns what arrived. */
+static void *swap(void *leaving, int *to, size_t size, size_t count, size_t *arrived, MPI_Comm comm) {
+    rg_exchange *x = rg_exchange_make(to, count, comm);
+    void *mine = rg_alloc(x->arriving + 1, size);
+    rg_exchange_send(x, size, leaving, mine);
+    *arrived = x->arriving;
+    rg_exchange_free(x);
+    rg_free(to);
+    rg_free(leaving);
+    return mine;
+}
+
 /* The visitors of this rank's cells. */
 static visitor *gather(const rg_search *by, double cell, const rg_exposed_face *face, size_t faces,
                        size_t *arrived, MPI_Comm comm) {
@@ -294,14 +289,7 @@ static visitor *gather(const rg_search *by, double cell, const rg_exposed_face *
     for (size_t i = 0; i < count; i++) {
         to[i] = (int)(rg_mix((uint64_t)leaving[i].cell) % (uint64_t)ranks);
     }
-    rg_exchange *x = rg_exchange_make(to, count, comm);
-    visitor *v = RG_NEW(visitor, x->arriving + 1);
-    rg_exchange_send(x, sizeof *v, leaving, v);
-    *arrived = x->arriving;
-    rg_exchange_free(x);
-    rg_free(to);
-    rg_free(leaving);
-    return v;
+    return swap(leaving, to, sizeof *leaving, count, arrived, comm);
 }
 
 static int by_faces(const void *a, const void *b) {
@@ -326,13 +314,7 @@ static rg_candidate *deliver(const found *f, size_t *pairs, MPI_Comm comm) {
             to[count++] = p->face[k].rank;
         }
     }
-    rg_exchange *x = rg_exchange_make(to, count, comm);
-    rg_candidate *mine = RG_NEW(rg_candidate, x->arriving + 1);
-    rg_exchange_send(x, sizeof *mine, leaving, mine);
-    *pairs = x->arriving;
-    rg_exchange_free(x);
-    rg_free(to);
-    rg_free(leaving);
+    rg_candidate *mine = swap(leaving, to, sizeof *leaving, count, pairs, comm);
     qsort(mine, *pairs, sizeof *mine, by_faces);
     return mine;
 }

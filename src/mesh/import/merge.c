@@ -19,12 +19,6 @@ static int by_place(const void *a, const void *b) {
     return order != 0 ? order : (p->row > q->row) - (p->row < q->row);
 }
 
-static double distance(const double *a, const double *b) {
-    double d[3];
-    rg_vector_subtract(a, b, d);
-    return sqrt(rg_vector_dot(d, d));
-}
-
 /* The row at the end of the chain, which becomes shorter. */
 static size_t end_of(size_t *twin, size_t row) {
     while (twin[row] != row) {
@@ -58,7 +52,7 @@ rg_merged rg_merge(size_t rows, const double *x, double reach, size_t *twin) {
     for (size_t i = 0; i < count; i++) {
         for (size_t j = i + 1; j < count && p[j].along - p[i].along <= reach + rounding * fabs(p[j].along);
              j++) {
-            double apart = distance(x + 3 * p[i].row, x + 3 * p[j].row);
+            double apart = sqrt(rg_vector_distance2(x + 3 * p[i].row, x + 3 * p[j].row));
             if (apart <= reach) {
                 join(twin, p[i].row, p[j].row);
                 found.farthest = fmax(found.farthest, apart);

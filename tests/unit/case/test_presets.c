@@ -36,6 +36,12 @@ static void test_other_models(void **state) {
     assert_true(c->material.young == 3.24e9 && c->material.parameter[RG_PARAMETER_YIELD_STRESS] == 60e6);
     rg_case_free(c);
     expect_messages(1, flows, ":2:11: material.yield_stress: missing; allowed: number > 0 (Pa)\n");
+    static const char *const cracks[] = {
+        "material={preset: pmma, model: deshpande-evans, shear: 1e9, flaw_radius: 19e-6, flaw_density: 1e12, "
+        "toughness: 3e6, yield_stress: 4e9}"};
+    c = read_good(path, 1, cracks);
+    assert_true(c->material.young == 0 && c->material.poisson == 0.35 && c->material.density == 1190);
+    rg_case_free(c);
 #endif
 }
 

@@ -374,6 +374,37 @@ static rg_mesh *mesh_with_sets(const rg_case *c) {
     return mesh;
 }
 
+/* A face between elements a and b, its middle at height z: which set it is of, 0 of none. */
+typedef int set_of_face(rg_gid a, rg_gid b, double z);
+
+/* Counts faces by their set; each has its set's strength, over that of the case. */
+static void count_faces(const rg_solver *s, const rg_mesh *mesh, set_of_face *set_of, size_t *seen) {
+    static const double strength[] = {1, 0.5, 0.25, 2};
+    for (size_t t = 0; t < s->domain->tiles; t++) {
+        const rg_tile *tile = &s->domain->tile[t];
+        for (size_t i = tile->ibegin * RG_LANES; i < tile->iend * RG_LANES; i++) {
+            int32_t link = s->domain->side[0][i];
+            face f = face_of(s, tile, i);
+            if (f.area > 0) {
+                rg_gid a = s->domain->id[tile->begin * RG_LANES + (size_t)link / RG_FACES];
+                rg_gid b = mesh->neighbour[4 * a + link % RG_FACES];
+                int which = set_of(a, b, f.middle[2]);
+                assert_true(fabs(f.strength - strength[which]) < 1e-6);
+                seen[which]++;
+            }
+        }
+    }
+}
+
+static int named(rg_gid a, rg_gid b, double z) {
+    rg_gid key = a * a + b * b;
+    return key % 3 != 0 ? 0 : z > 0 ? 3 : key % 2 == 0 ? 2 : 1;
+}
+
+static int grains(rg_gid a, rg_gid b, double z) {
+    return a / 7 % 3 == b / 7 % 3 ? 0 : z > 0 ? 2 : 1;
+}
+
 static void test_named(void **state) {
     (void)state;
     const char *const set[] = {
@@ -384,21 +415,7 @@ static void test_named(void **state) {
     rg_part *part = rg_part_distribute(mesh, 96, MPI_COMM_SELF);
     rg_solver *s = rg_solver_make_from_part(c, part, MPI_COMM_SELF);
     size_t seen[4] = {0};
-    for (size_t t = 0; t < s->domain->tiles; t++) {
-        const rg_tile *tile = &s->domain->tile[t];
-        for (size_t i = tile->ibegin * RG_LANES; i < tile->iend * RG_LANES; i++) {
-            int32_t link = s->domain->side[0][i];
-            face f = face_of(s, tile, i);
-            if (f.area > 0) {
-                rg_gid a = s->domain->id[tile->begin * RG_LANES + (size_t)link / RG_FACES];
-                rg_gid b = mesh->neighbour[4 * a + link % RG_FACES], key = a * a + b * b;
-                int which = key % 3 != 0 ? 0 : f.middle[2] > 0 ? 3 : key % 2 == 0 ? 2 : 1;
-                static const double strength[] = {1, 0.5, 0.25, 2};
-                assert_true(fabs(f.strength - strength[which]) < 1e-6);
-                seen[which]++;
-            }
-        }
-    }
+    count_faces(s, mesh, named, seen);
     assert_true(seen[0] > 0 && seen[1] > 0 && seen[2] > 0 && seen[3] > 0);
     rg_solver_free(s);
     rg_mesh_free(mesh);
@@ -423,21 +440,7 @@ static void test_grains(void **state) {
     rg_materials_assign(c, part, MPI_COMM_SELF);
     rg_solver *s = rg_solver_make_from_part(c, part, MPI_COMM_SELF);
     size_t seen[3] = {0};
-    for (size_t t = 0; t < s->domain->tiles; t++) {
-        const rg_tile *tile = &s->domain->tile[t];
-        for (size_t i = tile->ibegin * RG_LANES; i < tile->iend * RG_LANES; i++) {
-            int32_t link = s->domain->side[0][i];
-            face f = face_of(s, tile, i);
-            if (f.area > 0) {
-                rg_gid a = s->domain->id[tile->begin * RG_LANES + (size_t)link / RG_FACES];
-                rg_gid b = mesh->neighbour[4 * a + link % RG_FACES];
-                int which = a / 7 % 3 == b / 7 % 3 ? 0 : f.middle[2] > 0 ? 2 : 1;
-                static const double strength[] = {1, 0.5, 0.25};
-                assert_true(fabs(f.strength - strength[which]) < 1e-6);
-                seen[which]++;
-            }
-        }
-    }
+    count_faces(s, mesh, grains, seen);
     assert_true(seen[0] > 0 && seen[1] > 0 && seen[2] > 0);
     rg_solver_free(s);
     rg_mesh_free(mesh);
