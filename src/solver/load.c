@@ -217,11 +217,13 @@ static double open_share(const rg_loads *all, const entry *e, const rg_tile *t, 
 
 static void find_face_forces(const rg_loads *all, entry *e, const rg_tile *t, const rg_solver *s) {
     double share = all->load[e->load].input->cracks ? open_share(all, e, t, s) : 1;
-    if (share > 0) {
-        face_forces(all, e, s->u);
+    if (share <= 0) {
+        memset(e->force, 0, RG_FNODES * sizeof *e->force);
+        return;
     }
-    for (int i = 0; share < 1 && i < 3 * RG_FNODES; i++) {
-        e->force[i / 3][i % 3] = share > 0 ? share * e->force[i / 3][i % 3] : 0;
+    face_forces(all, e, s->u);
+    for (int i = 0; i < 3 * RG_FNODES; i++) {
+        e->force[i / 3][i % 3] *= share;
     }
 }
 
