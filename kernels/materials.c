@@ -24,8 +24,8 @@ int rg_material_exists(rg_material_model model) {
     return here[model];
 }
 
-/* Only the ceramic knows rates. */
 void rg_material_prepare(rg_material *m, double dt) {
+    m->dt = dt;
     if (m->model == RG_MATERIAL_DESHPANDE_EVANS) {
         m->of.deshpande_evans.constants = rg_de_prepare(&m->of.deshpande_evans.parameters, dt);
     }

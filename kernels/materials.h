@@ -54,27 +54,34 @@ typedef enum { RG_MATERIALS(RG_MATERIAL_ENUM) RG_MATERIAL_MODELS } rg_material_m
     RG_MATERIAL_BIT_##NAME = 1 << RG_MATERIAL_##NAME,
 enum { RG_MATERIALS(RG_MATERIAL_BIT) };
 
+/* What a parameter may be. */
+typedef enum {
+    RG_NEEDED,   /* given, > 0 */
+    RG_FROM_0,   /* >= 0; 0 where it is not given */
+    RG_ANY_SIGN, /* any number; 0 where it is not given */
+} rg_parameter_range;
+
 /* Parameters besides density, elastic constants and those of the ceramic alone: name of the enum, key in the
- * block of a material, unit, whether it is needed (then > 0, else >= 0, and 0 where it is not given), models
- * that use it, meaning. */
+ * block of a material, unit, range, models that use it, meaning. */
 #define RG_MATERIAL_PARAMETERS(X)                                                                            \
-    X(YIELD_STRESS, "yield_stress", "Pa", true, RG_MATERIAL_BIT_J2 | RG_MATERIAL_BIT_DESHPANDE_EVANS,        \
+    X(YIELD_STRESS, "yield_stress", "Pa", RG_NEEDED, RG_MATERIAL_BIT_J2 | RG_MATERIAL_BIT_DESHPANDE_EVANS,   \
       "yield stress before any plastic strain")                                                              \
-    X(HARDENING, "hardening", "Pa", false, RG_MATERIAL_BIT_J2,                                               \
+    X(HARDENING, "hardening", "Pa", RG_FROM_0, RG_MATERIAL_BIT_J2,                                           \
       "slope of the yield stress over plastic strain")                                                       \
-    X(SATURATION_STRESS, "saturation_stress", "Pa", false, RG_MATERIAL_BIT_J2,                               \
+    X(SATURATION_STRESS, "saturation_stress", "Pa", RG_FROM_0, RG_MATERIAL_BIT_J2,                           \
       "yield stress to which hardening of Voce's kind goes up, not below yield_stress; goes with "           \
       "saturation_rate")                                                                                     \
-    X(SATURATION_RATE, "saturation_rate", NULL, false, RG_MATERIAL_BIT_J2,                                   \
+    X(SATURATION_RATE, "saturation_rate", NULL, RG_FROM_0, RG_MATERIAL_BIT_J2,                               \
       "how fast it goes there: as 1 - exp(-saturation_rate times plastic strain)")
 
-#define RG_PARAMETER_ENUM(NAME, key, unit, needed, models, meaning) RG_PARAMETER_##NAME,
+#define RG_PARAMETER_ENUM(NAME, key, unit, range, models, meaning) RG_PARAMETER_##NAME,
 enum { RG_MATERIAL_PARAMETERS(RG_PARAMETER_ENUM) RG_PARAMETERS };
 
 /* A material as a kernel takes it. */
 typedef struct {
     double lambda, mu; /* Lame constants of the undeformed, undamaged solid (Pa) */
     double density;    /* reference density (kg/m^3) */
+    double dt;         /* step for which it was prepared (s) */
     rg_material_model model;
     union {
         rg_de_material deshpande_evans;
@@ -92,7 +99,7 @@ unsigned rg_material_inside(rg_material_model model);
 /* Whether this build has the model's kernels. */
 int rg_material_exists(rg_material_model model);
 
-/* Readies a material, parameters set, for steps of `dt` (s), which is > 0. */
+/* Readies a material, parameters set, for steps of `dt` (s), which is > 0: of a model that knows rates. */
 void rg_material_prepare(rg_material *m, double dt);
 
 #endif

@@ -6,9 +6,10 @@
 /* clang-format off */
 #define AT(member)    .of_material = true, .input = INPUT, .offset = INPUT + offsetof(rg_material_input, member)
 #define FLAWS(member) CERAMIC, AT(deshpande_evans.member)
-#define PARAMETER(NAME, key, unit_, needed, models_, words)                                                   \
-    {.name = KEY(key), .unit = (unit_), REAL, .low = 0, .low_open = (needed), .high = INFINITY,                  \
-     .need = (needed) ? RG_NEED_REQUIRED : RG_NEED_OPTIONAL, .models = (models_),                             \
+#define PARAMETER(NAME, key, unit_, range, models_, words)                                                    \
+    {.name = KEY(key), .unit = (unit_), REAL, .low = (range) == RG_ANY_SIGN ? -INFINITY : 0,                  \
+     .low_open = (range) == RG_NEEDED, .high = INFINITY,                                                      \
+     .need = (range) == RG_NEEDED ? RG_NEED_REQUIRED : RG_NEED_OPTIONAL, .models = (models_),                 \
      AT(parameter[RG_PARAMETER_##NAME]), MEANS(words)},
 
 {.name = KEY("preset"), .type = RG_KEY_TEXT, ELSE("none"), AT(preset),
