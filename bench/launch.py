@@ -72,24 +72,32 @@ def call(command, *, accept=(0,), show=False, **environment):
     return process
 
 
-def run(case, out, sets=None, overrides=(), *, launcher=(), build=None, quiet=True, **keywords):
+def run(case, out, sets=None, overrides=(), *, launcher=(), build=None, quiet=True, begin=(), **keywords):
     """Runs a case to its end, with `sets` as {"a.b": value} and the user's own "a.b=value" after them; `build`: directory of
-    another program, `launcher`: words in front of it, else as `call`."""
+    another program, `launcher`: words in front of it, `begin`: options that say how it begins and where, else as `call`."""
     binary = program() if build is None else pathlib.Path(build) / "rhegma"
     words = [word for text in overrides for word in ("--set", text)]
-    return call([*launcher, binary, "run", case, "-o", out, *(["-q"] if quiet else []), *options(sets), *words], **keywords)
+    return call([*launcher, binary, "run", case, *(begin or ("-o", out)), *(["-q"] if quiet else []), *options(sets), *words], **keywords)
 
 
-def run_once(case, out, sets=None, overrides=(), **keywords):
-    """The same, unless a run of these values is there already. Returns the seconds that it took, also of an earlier time."""
+def run_once(case, out, sets=None, overrides=(), *, resume=False, **keywords):
+    """The same, unless a run of these values is there already. Returns the seconds that it took, also of an earlier time.
+    `resume`: goes on from the checkpoint of one that was interrupted."""
     record, asked = out.parent / f"{out.name}.run", [str(case), *options(sets), *overrides]
     try:
         before = read_mapping(record, json.loads)
     except BadInput:
         before = {}
-    if before.get("asked") == asked and (out / "summary.json").exists():
+    same = before.get("asked") == asked
+    if same and "seconds" in before and (out / "summary.json").exists():
         return before["seconds"]
-    record.unlink(missing_ok=True)
+    if resume:
+        left = any((out / "checkpoints").glob("*"))
+        keywords["begin"] = ("--restart", out) if same and left else ("-o", out, "--overwrite")
+        out.parent.mkdir(parents=True, exist_ok=True)
+        record.write_text(json.dumps({"asked": asked}) + "\n")
+    else:
+        record.unlink(missing_ok=True)
     begin = time.monotonic()
     run(case, out, sets, overrides, **keywords)
     seconds = time.monotonic() - begin
