@@ -17,6 +17,7 @@
 #include "restart/restart.h"
 #include "restart/schedule.h"
 #include "solver/balance.h"
+#include "solver/opening.h"
 #include "solver/step_limiter.h"
 #include "solver/setup.h"
 #include "solver/step.h"
@@ -227,6 +228,7 @@ static bool save(run *r) {
  * known that the next can be reached. Returns whether to go on. */
 static bool advance(run *r, double *other) {
     rg_solver *s = r->solver;
+    rg_openings_take(s);
     bool last = done(r), due = output_due(r) || last;
     bool frame = frame_due(r) || (due && r->input->output.times == 0), out = due || frame,
          fresh = out || look_due(r);

@@ -27,6 +27,15 @@ bool rg_boundaries_meet(const rg_boundary *a, const rg_boundary *b) {
     return !ends_before(a, b) && !ends_before(b, a);
 }
 
+bool rg_case_opens(const rg_case *c) {
+    for (int i = 0; i < c->interface.sets; i++) {
+        if (c->interface.set[i].opens_at > 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
 bool rg_face_set_is_any(const rg_face_set *set) {
     return set->names == 1 && strcmp(set->between[0], "any") == 0;
 }

@@ -118,7 +118,8 @@ typedef struct {
     char *
         *between; /* names of the materials on both sides; or "any" alone: volume sets or materials differ */
     rg_breaking breaking;
-    bool open; /* broken from the start */
+    bool open;       /* broken from the start, or from ... */
+    double opens_at; /* ... this time on (s); 0: from the start */
     /* Numbers, or where the expression beside them is no number that: of these faces (Pa, J/m^2); without an
      * expression the interface's. */
     double strength, energy, beta, friction;
@@ -259,6 +260,9 @@ bool rg_boundary_is_placed(const rg_boundary *b);
 
 /* Whether two entries act at the same time. */
 bool rg_boundaries_meet(const rg_boundary *a, const rg_boundary *b);
+
+/* Whether faces open at a time. */
+bool rg_case_opens(const rg_case *c);
 
 /* Whether a set selects the faces between any two volume sets or materials. */
 bool rg_face_set_is_any(const rg_face_set *set);

@@ -72,6 +72,11 @@ static void check_open(rg_check *ck, const rg_node *item, const rg_face_set *set
     if (set->open && ck->c->interface.law == RG_LAW_FREE) {
         refuse(ck, item, path, "open", "law free has no end: its faces are never without traction");
     }
+    if (!set->open) {
+        refuse(ck, item, path, "at", "not used without open: true");
+    } else if (ck->form && ck->c->interface.form == RG_FORM_INTRINSIC) {
+        refuse(ck, item, path, "at", "form intrinsic has no DG terms that would hold the faces until then");
+    }
 }
 
 static void check_shear(rg_check *ck, const rg_node *item, const rg_face_set *set, const char *path) {

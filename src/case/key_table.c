@@ -317,6 +317,8 @@ static const rg_key face_set_keys[] = {
      MEANS("whether they can break")},
     {.name = "open", .type = RG_KEY_BOOL, ELSE("false"), .offset = offsetof(rg_face_set, open),
      MEANS("true: a crack from the start, whose faces press and rub where they are closed; nothing was dissipated there")},
+    {.name = "at", .unit = "s", REAL, ABOVE(0), ELSE("the start"), .offset = offsetof(rg_face_set, opens_at),
+     MEANS("the open faces hold, whatever pulls at them, and open at the first step from this time on; what the crack's DG terms stored is booked as `unresolved`")},
     {.name = "strength", .unit = "Pa", FACE, ABOVE(0), ELSE("interface.strength"), OF_SET(strength),
      MEANS("tensile strength of these faces")},
     {.name = "energy", .unit = "J/m2", FACE, ABOVE(0), ELSE("interface.energy"), OF_SET(energy),

@@ -256,7 +256,7 @@ static rg_energy energy_of(const rg_solver *s, const double *v) {
                    .cohesive = part[RG_E_COHESIVE],
                    .contact = part[RG_E_CONTACT],
                    .dissipated = part[RG_E_DISSIPATED],
-                   .unresolved = part[RG_E_UNRESOLVED],
+                   .unresolved = part[RG_E_UNRESOLVED] + s->openings.released,
                    .plastic = v[RELEASED + RG_RELEASED_PLASTIC],
                    .damage = v[RELEASED + RG_RELEASED_DAMAGE],
                    .viscous = v[VISCOUS],

@@ -18,7 +18,8 @@ typedef struct {
     double viscous;     /* dissipated by bulk viscosity (J) */
     double friction;    /* dissipated where closed cracks slide (J); what they store while they stick is
                          * part of contact */
-    double unresolved;  /* set free where points switched, beyond what their law can take (J) */
+    double unresolved;  /* set free where points switched, beyond what their law can take, and where faces
+                         * opened because their time had come (J) */
     double radiated;    /* taken out of the body by absorbing sides (J) */
     double half_kick;   /* dt^2/8 a . M a: by so much what a central difference keeps is below the sum (J) */
     double external;    /* work done by prescribed motions and loads (J) */

@@ -11,6 +11,7 @@
 #include "mesh/info.h"
 #include "output/snapshot.h"
 #include "partition/material.h"
+#include "solver/opening.h"
 
 #define MOST_STEPS 1e15
 
@@ -251,6 +252,13 @@ void rg_estimate_print(const rg_solver *s, const rg_estimate *e, FILE *out) {
         rg_loads_describe(s->loads, i, words, sizeof words);
         fprintf(out, "load           %s%s%s\n", c->load[i].name != NULL ? c->load[i].name : "",
                 c->load[i].name != NULL ? ": " : "", words);
+    }
+    for (int i = 0; i < c->interface.sets; i++) {
+        if (c->interface.set[i].opens_at > 0) {
+            char words[80];
+            rg_opening_describe(s, i, words, sizeof words);
+            fprintf(out, "opening        %s\n", words);
+        }
     }
     if (c->start == RG_START_STATIC) {
         fprintf(out, "start          static: the run finds the equilibrium first, a pass over all forces an "

@@ -161,14 +161,18 @@ void rg_summary_print(const rg_summary *m, const rg_solver *s, const rg_ledger *
         fprintf(out, "; %.2g of all that was dissipated, %.4g J", rg_ledger_share(l), l->last.spent);
     }
     fputc('\n', out);
-    if (l->last.unresolved > 0) {
+    if (s->openings.released != 0) {
+        fprintf(out, "%.3g J came free where faces opened at their time\n", s->openings.released);
+    }
+    double unresolved = l->last.unresolved - s->openings.released;
+    if (unresolved > 0) {
         fprintf(out,
                 "%.3g J came free where faces broke beyond what their law can take: the mesh does not "
                 "resolve them\n",
-                l->last.unresolved);
-    } else if (l->last.unresolved < 0) {
+                unresolved);
+    } else if (unresolved < 0) {
         fprintf(out, "%.3g J were lent to contact and friction of faces that broke under pressure\n",
-                -l->last.unresolved);
+                -unresolved);
     }
     if (isfinite(m->first_fracture)) {
         fprintf(out, "first fracture at %.5g s; failed %.4g m2, broken %.4g m2, dissipated %.4g J\n",

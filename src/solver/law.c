@@ -105,6 +105,22 @@ static void open_faces(rg_solver *s) {
     }
 }
 
+void rg_law_open_until(rg_solver *s, double time) {
+    for (size_t k = 0; k < s->model->openings; k++) {
+        const rg_opening *o = &s->model->opening[k];
+        if (o->at > time) {
+            continue;
+        }
+        s->model->scale[o->face / RG_LANES * 2 * RG_LANES + o->face % RG_LANES] = 0;
+        if (s->broken[o->face] == 0) { /* else a checkpoint has it so */
+            open_face(s, &s->domain->tile[o->tile], o->face);
+            for (int q = 0; q < RG_POINTS; q++) {
+                *rg_crack_value(s, o->face, q, RG_CRACK_TIME) = (rg_real)s->time;
+            }
+        }
+    }
+}
+
 void rg_law_start(rg_solver *s) {
     open_faces(s);
     if (s->model->law.form != RG_FORM_INTRINSIC) {

@@ -22,6 +22,9 @@ size_t rg_crack_stride(const rg_cohesive *law);
  * has open are fully separated. */
 void rg_law_start(rg_solver *s);
 
+/* Opens the faces of which the case says that they open by this time. */
+void rg_law_open_until(rg_solver *s, double time);
+
 /* Bound on the stiffness of opening and of sliding where the law starts with a slope (Pa/m). */
 void rg_law_stiffness(const rg_cohesive *law, double slope[2]);
 

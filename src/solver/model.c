@@ -28,9 +28,11 @@ rg_model *rg_model_make(const rg_case *c) {
 void rg_model_free(rg_model *m) {
     if (m != NULL) {
         rg_free((void *)m->material);
-        rg_free((void *)m->scale);
+        rg_free(m->scale);
         rg_free((void *)m->beta);
         rg_free((void *)m->friction);
+        rg_free((void *)m->opening);
+        rg_free((void *)m->opening_area);
         rg_free(m);
     }
 }

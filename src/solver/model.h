@@ -6,14 +6,25 @@
 #include "case/case.h"
 #include "kernels.h"
 
+/* A face that the case opens at a time; as in the law's strengths, tile-boundary faces are there twice. */
+typedef struct {
+    size_t tile, face; /* interface, of that tile */
+    int set;           /* of interface.sets */
+    double at;         /* s */
+} rg_opening;
+
 typedef struct {
     int materials;
     const rg_material *material; /* [materials], at rest */
     rg_gradient gradient;
     rg_cohesive law;
-    const rg_real *scale;           /* layout as in rg_interface_args; NULL: all faces alike */
+    rg_real *scale;                 /* layout as in rg_interface_args; NULL: all faces alike. Of a face that
+                                       opens at a time infinite before, 0 after */
     const rg_real *beta, *friction; /* likewise */
     double stiffest; /* largest ratio of strength to critical opening, over that of the law; 1: all alike */
+    size_t openings;
+    const rg_opening *opening;  /* [openings] */
+    const double *opening_area; /* [interface.sets]: of reference, on all ranks (m^2); NULL: nowhere any */
     size_t crack_stride, history_stride; /* values of a block of crack and history: as many as the longest
                                             needs */
 } rg_model;

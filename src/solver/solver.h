@@ -35,6 +35,12 @@ typedef struct {
     rg_real *force, *traction, *iforce, *turn, *ghost; /* layout.h */
 } rg_workspace;
 
+/* What a checkpoint holds of faces that open at a time. */
+typedef struct {
+    double until;    /* those that were to open by then have (s) */
+    double released; /* energy that was set free (J) */
+} rg_openings;
+
 typedef struct rg_solver rg_solver;
 typedef struct rg_stepper rg_stepper;
 
@@ -79,6 +85,7 @@ struct rg_solver {
     double time, dt;       /* of the current state (s); dt is the step that led to it */
     double dt_next;        /* step that leads on, once kicked */
     int64_t step;
+    rg_openings openings;       /* of faces that open at a time (solver/opening.h) */
     double opening_rate;        /* largest on all ranks (1/s) */
     double stiffening_anywhere; /* largest on all ranks; infinite if not finite */
 

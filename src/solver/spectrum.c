@@ -291,7 +291,11 @@ static rg_model linear_model(const rg_model *of, double stiffest, state which, r
         material[i].model = RG_MATERIAL_NEO_HOOKEAN;
     }
     m.material = material;
-    m.scale = m.beta = m.friction = NULL;
+    m.scale = NULL;
+    m.beta = m.friction = NULL;
+    m.opening = NULL;
+    m.opening_area = NULL;
+    m.openings = 0;
     m.history_stride = m.crack_stride = 0;
     m.law.slope *= stiffest;
     m.law.opening = 1;

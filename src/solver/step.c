@@ -483,6 +483,7 @@ void rg_solver_resume(rg_solver *s) {
     const rg_domain *d = s->domain;
     memset(s->active, 0, d->iblocks);
     memset(s->cracked, 0, d->blocks);
+    rg_law_open_until(s, s->openings.until);
     for (size_t i = 0; i < d->iblocks * RG_LANES; i++) {
         s->active[i / RG_LANES] |= s->broken[i] != 0;
     }

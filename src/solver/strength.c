@@ -12,6 +12,8 @@
 /* What a face has. */
 typedef struct {
     bool breaks, open;
+    int set;                                 /* whose they are; -1: the interface's */
+    double opens_at;                         /* s; 0: an open face is so from the start */
     double strength, energy, beta, friction; /* before they differ at random (Pa, J/m^2) */
     double modulus, area;                    /* of Weibull's distribution (m^2); modulus 0: none */
     int64_t seed;
@@ -183,6 +185,8 @@ static properties find_properties(search *look, const rg_tile *t, size_t face, c
     bool random = set->modulus > 0;
     return (properties){.breaks = set->breaking != RG_BREAKING_NEVER,
                         .open = set->open,
+                        .set = number,
+                        .opens_at = set->opens_at,
                         .strength = value[STRENGTH],
                         .energy = value[ENERGY],
                         .beta = value[BETA],
@@ -202,11 +206,12 @@ static void apply_weibull(const properties *p, rg_keep keep, const double *x[RG_
     f->opening /= keep == RG_KEEP_ENERGY ? w : 1;
 }
 
-/* Of a face that never breaks the strength is infinite, of one that is open 0. */
+/* Of a face that never breaks the strength is infinite, also of one that opens at a time; of one that is open
+ * it is 0. */
 static factors factors_of(const search *look, const properties *p, const double *x[RG_FCORNERS],
                           double area) {
     const rg_cohesive *law = &look->s->model->law;
-    if (!p->breaks) {
+    if (!p->breaks || p->opens_at > 0) {
         return (factors){INFINITY, 1};
     }
     if (p->open) {
@@ -224,7 +229,14 @@ static factors factors_of(const search *look, const properties *p, const double 
 typedef struct {
     rg_real *scale, *beta, *friction;
     double stiffest; /* as in rg_model, of this rank */
+    rg_opening *opening;
+    size_t openings;
 } fields;
+
+static void add_opening(fields *to, const rg_opening *o) {
+    to->opening = rg_realloc(to->opening, to->openings + 1, sizeof *o);
+    to->opening[to->openings++] = *o;
+}
 
 static void fill_face(search *look, const rg_tile *t, size_t i, fields *to) {
     double normal[3], area = rg_interface_area(look->s->domain, i, normal);
@@ -246,6 +258,9 @@ static void fill_face(search *look, const rg_tile *t, size_t i, fields *to) {
     }
     if (to->friction != NULL) {
         to->friction[i] = (rg_real)p.friction;
+    }
+    if (p.breaks && p.open && p.opens_at > 0) {
+        add_opening(to, &(rg_opening){(size_t)(t - look->s->domain->tile), i, p.set, p.opens_at});
     }
     if (p.breaks && !p.open) {
         to->stiffest = fmax(to->stiffest, f.strength / f.opening);
@@ -295,6 +310,26 @@ static void refuse_bad_values(search *look) {
                                                              : "positive";
     rg_fatal(RG_USAGE, "%s: interface%s.%s: %s is not %s at (%g, %g, %g)", c->path, place, key[which],
              rg_expr_text(at[which]), wrong, bad->x[0], bad->x[1], bad->x[2]);
+}
+
+/* On all ranks, of each set (m^2). */
+static double *opening_areas(const rg_solver *s, const fields *of) {
+    int sets = s->input->interface.sets;
+    rg_exact_sum *sum = RG_NEW(rg_exact_sum, (size_t)sets);
+    double *area = RG_NEW(double, (size_t)sets);
+    for (size_t k = 0; k < of->openings; k++) {
+        double normal[3];
+        const rg_opening *o = &of->opening[k];
+        if (s->domain->counted[o->face]) {
+            rg_exact_add(&sum[o->set], rg_interface_area(s->domain, o->face, normal));
+        }
+    }
+    rg_exact_allreduce(sum, sets, s->comm);
+    for (int i = 0; i < sets; i++) {
+        area[i] = rg_exact_value(&sum[i]);
+    }
+    rg_free(sum);
+    return area;
 }
 
 static bool is_expression(const rg_expr *e) {
@@ -352,6 +387,9 @@ void rg_strength_make(const rg_solver *s, rg_model *m) {
     refuse_empty_sets(&look);
     rg_free(look.claimed);
     m->scale = to.scale;
+    m->opening = to.opening;
+    m->openings = to.openings;
+    m->opening_area = rg_case_opens(c) ? opening_areas(s, &to) : NULL;
     m->beta = to.beta;
     m->friction = to.friction;
     MPI_Allreduce(&to.stiffest, &m->stiffest, 1, MPI_DOUBLE, MPI_MAX, s->comm);

@@ -94,6 +94,25 @@ def test_a_law_without_an_end_is_refused(tmp_path):
     assert told.returncode == 2 and "sets[0].open: true: law free has no end: its faces are never without traction\n" in told.stderr
 
 
+@pytest.mark.parametrize("of, message", [
+    ("law: linear, strength: 1, energy: 1, sets: [{where: 1, at: 2}]", "interface.sets[0].at: 2: not used without open: true"),
+    ("law: linear, strength: 1, energy: 1, sets: [{where: z > 7, open: true, at: 2}]", "interface.sets[0]: no face is in it, where: z > 7"),
+    ("law: bilinear, form: intrinsic, strength: 1, energy: 1, sets: [{where: 1, open: true, at: 2}]",
+     "interface.sets[0].at: 2: form intrinsic has no DG terms that would hold the faces until then")])
+def test_openings_that_are_refused(tmp_path, of, message):
+    case = tmp_path / "open.yaml"
+    case.write_text(f"mesh: {{cells: [1, 1, 2], size: [1, 1, 2]}}\nmaterial: {{model: neo-hookean, young: 1, poisson: 0, density: 1}}\ninterface: {{{of}}}\ntime: {{end: 1}}\n")
+    told = launch("check", case)
+    assert told.returncode == 2 and told.stderr.endswith(f"{message}\n"), told.stderr
+
+
+def test_check_tells_what_opens(tmp_path):
+    case = tmp_path / "open.yaml"
+    case.write_text("mesh: {cells: [1, 1, 2], size: [1, 1, 2]}\nmaterial: {model: neo-hookean, young: 1, poisson: 0, density: 1}\ntime: {end: 1}\n"
+                    "interface: {law: linear, strength: 1, energy: 1, sets: [{where: abs(nz) > 0.9, open: true, at: 2.5}]}\n")
+    assert "opening        of 1 m2 at 2.5 s\n" in launch("check", case).stdout
+
+
 @pytest.mark.parametrize("load, law, message", [
     ("{cracks: true, force: {x: 1}}", "law: linear, strength: 1, energy: 1", "loads[0].cracks: not used: it belongs to a pressure"),
     ("{cracks: true, pressure: 1}", "law: none", "loads[0].cracks: true: nothing opens, because interface.law is none"),
@@ -104,3 +123,43 @@ def test_cracks_under_pressure_that_are_refused(tmp_path, load, law, message):
                     f"interface: {{{law}}}\ntime: {{end: 1}}\nloads: [{load}]\n")
     told = launch("check", case)
     assert told.returncode == 2 and told.stderr.endswith(f"{message}\n"), told.stderr
+
+
+# ---- Faces that open at a time ----
+
+STATIC = {**BAR, "start": "static", "boundary": [{"set": side, "component": side[0], "displacement": 0} for side in ("x-", "y-", "z-")],
+          "loads": [{"set": "z+", "traction": {"z": PRESSURE}}], "time": {"end": 1, "safety": 0.9, "steps": 200}, "output.interval": 1}
+RESTING = {"where": "abs(z - 1e-3) < 1e-6 && abs(nz) > 0.9", "open": True, "at": 5e-8}
+
+
+def test_a_resting_crack_is_released(run, figure):
+    """A bar at rest under tension is cut at a time: two waves of v = stress/(rho c) unload it, and two thirds of its energy move by then."""
+    law = {"law": "linear", "strength": 1e10, "energy": 1e3, "beta_s": 2, "contact": "penalty", "sets": [RESTING]}
+    done = run(example("spall.yaml"), sets={**STATIC, "interface": law})
+    energy, history, stored = done.energy, done.history, PRESSURE**2 / 200e9 / 2 * 5e-5**2 * 2e-3
+    held, since = energy["time"] < RESTING["at"], energy["time"][-1] - RESTING["at"]
+    figure("resting crack: kinetic over stored energy before it opens", energy["kinetic"][held].max() / stored, bound=rounding(1e-16, 1e-8),
+           why="the residual at which the search for the equilibrium ends")
+    figure("resting crack: kinetic energy of its two waves", energy["kinetic"][-1], theory=PRESSURE**2 * 5e-5**2 * since / (8000 * 5000), bound=0.002, unit="J", relative=True)
+    figure("resting crack: stress behind them", max(abs(history[f"{probe}_szz"][-1]) for probe in ("near", "far")) / PRESSURE, bound=0.15)
+    figure("resting crack: energy error", np.abs(energy["total"] - energy["total"][0]).max() / stored, bound=rounding(3e-14, 3e-6))
+    assert not energy["broken_area"].any() and done.summary["first_fracture_time_s"] is None
+    assert done.frames()[-1]["crack/time_of_failure"] == pytest.approx(energy["time"][~held][0], rel=1e-6)
+
+
+@pytest.mark.parametrize("form", ["variational", "continuous"])
+def test_what_an_opening_sets_free_is_booked(run, figure, form):
+    """Of a block in waves, cut in two halves in tension; by how much the sum changes beside that."""
+    opened = [{"where": f"abs(z - 2e-4) < 3e-5 && abs(nz) > 0.7 && {half}", "open": True, "at": at} for half, at in (("x > 5e-5", 3e-8), ("x < 5e-5", 3.5e-8))]
+    law = {"law": "linear", "strength": 1e12, "energy": 1e3, "beta_s": 2, "contact": "penalty", "form": form, "sets": opened}
+    if form == "continuous":
+        law["faces"] = "abs(nz) > 0.7"
+    sets = {**BAR, "mesh": {"cells": [2, 2, 8], "size": [1e-4, 1e-4, 4e-4], "jitter": 0.1}, "material": {**BAR["material"], "poisson": 0.3}, "interface": law, "loads": [],
+            "time": {"end": 1, "safety": 0.8, "steps": 60},
+            "initial": {"velocity": {"x": "20*z/4e-4", "z": "5e4*z*(1 + 3e3*x)"}}, "output": {"fields": [], "interval": 1}}
+    energy = run(example("spall.yaml"), sets=sets).energy
+    freed = np.diff(energy["unresolved"])
+    at = np.flatnonzero(freed)
+    assert len(at) == 2 and (energy["time"][at] < (3e-8, 3.5e-8)).all() and (energy["time"][at + 1] >= (3e-8, 3.5e-8)).all()
+    figure(f"block that is cut in waves, form {form}: change of the total where it opens, of what came free", np.abs(np.diff(energy["total"])[at] / freed[at]).max(),
+           bound=rounding(1e-11, 0.02), why=ROUNDING)

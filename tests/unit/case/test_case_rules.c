@@ -515,6 +515,7 @@ static const mistake materials[] = {
      "one "
      "twice: material, tin, zinc\n"
      ":20:7: interface.sets[6]: 8: not a mapping of keys; allowed: list of {set, where, between, law, open, "
+     "at, "
      "strength, energy, beta, friction, weibull}\n"},
     {"output:\n",
      "output:\n"
