@@ -358,7 +358,7 @@ static const rg_key other_material_keys[] = {
 
 static const rg_key boundary_keys[] = {
     {.name = "name", .type = RG_KEY_TEXT, ELSE("no columns"), BOUNDARY(name),
-     MEANS("column prefix in history.csv of the force that holds it, on the solid, and its work: letters, digits, _ and -")},
+     MEANS("column prefix in history.csv of the force that holds it, on the solid, its moment about the origin and its work: letters, digits, _ and -")},
     {.name = "set", .type = RG_KEY_TEXT, .choice = box_sets, ELSE("where"), BOUNDARY(set),
      MEANS("a side of the box, or a surface set of the mesh file")},
     {.name = "where", .type = RG_KEY_EXPR, ELSE("set"), .no_time = true, .normal = true, BOUNDARY(where),
@@ -390,7 +390,7 @@ static const rg_key boundary_keys[] = {
 /* Of traction, pressure, force and acceleration it has one. */
 static const rg_key load_keys[] = {
     {.name = "name", .type = RG_KEY_TEXT, ELSE("no columns"), LOAD(name),
-     MEANS("column prefix of its force and work in history.csv: letters, digits, _ and -")},
+     MEANS("column prefix of its force, moment about the origin and work in history.csv: letters, digits, _ and -")},
     {.name = "set", .type = RG_KEY_TEXT, .choice = box_sets, ELSE("where"), LOAD(set),
      MEANS("a side of the box, or a surface set of the mesh file; not of an acceleration")},
     {.name = "where", .type = RG_KEY_EXPR, ELSE("set; of an acceleration the whole body"), .no_time = true, .normal = true, LOAD(where),

@@ -17,7 +17,7 @@
 enum {
     VALUES = 12,
     BODY = 9,
-    OUTSIDE = 4,
+    OUTSIDE = 7,
     CAPACITY = 256
 }; /* per probe, body, item of the account and sample;
       samples between two flushes */
@@ -27,7 +27,8 @@ static const char *const column[VALUES] = {"ux",  "uy",  "uz",  "vx",  "vy",  "v
 
 static const char *const body_column[BODY] = {"x", "y", "z", "vx", "vy", "vz", "fx", "fy", "fz"};
 
-static const char *const outside_column[OUTSIDE] = {"force_x", "force_y", "force_z", "work"};
+static const char *const outside_column[OUTSIDE] = {"force_x",  "force_y",  "force_z", "moment_x",
+                                                    "moment_y", "moment_z", "work"};
 
 struct rg_probes {
     MPI_Comm comm;
@@ -200,7 +201,8 @@ static void sample_account(const rg_probes *p, double *out) {
         const rg_account_item *item = &p->account->item[i];
         if (item->name != NULL) {
             memcpy(out, item->force, sizeof item->force);
-            out[3] = item->work_now;
+            memcpy(out + 3, item->moment, sizeof item->moment);
+            out[OUTSIDE - 1] = item->work_now;
             out += OUTSIDE;
         }
     }

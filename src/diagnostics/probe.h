@@ -1,5 +1,6 @@
 /* What is recorded every step, in history.csv: displacement, velocity and stress at the probes; position,
- * velocity of rigid bodies, and the solid's force on them; force and work of loads that have a name. */
+ * velocity of rigid bodies, and the solid's force on them; force, moment and work of loads and supports that
+ * have a name. */
 #ifndef RG_PROBE_H
 #define RG_PROBE_H
 

@@ -261,7 +261,7 @@ void rg_absorbing_damp(rg_absorbing *a, size_t tile, const rg_push *push) {
 }
 
 void rg_absorbing_book(const rg_absorbing *a, size_t tile, const rg_real *velocity) {
-    rg_account_entry sum = {{0, 0, 0}, 0, 0};
+    rg_account_entry sum = {.before = 0};
     if (a->tile_begin[tile] == a->tile_begin[tile + 1]) {
         return;
     }

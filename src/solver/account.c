@@ -5,8 +5,10 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "base/vector.h"
+#include "domain/element.h"
 
-enum { FORCE, BEFORE = 3, AFTER, VALUES };
+enum { FORCE, MOMENT = 3, BEFORE = 6, AFTER, VALUES };
 
 rg_account *rg_account_make(MPI_Comm comm) {
     rg_account *a = RG_NEW(rg_account, 1);
@@ -26,10 +28,25 @@ void rg_account_open(rg_account *a, int threads) {
     a->total = RG_NEW(rg_exact_sum, (size_t)(a->count * VALUES) + 1);
 }
 
+void rg_account_add_force(rg_account_entry *entry, const rg_domain *d, size_t slot, int node,
+                          const rg_real *u, const double force[3]) {
+    double x[3], moment[3];
+    rg_node_position(d->corner + 12 * slot, node, x);
+    for (int c = 0; c < 3; c++) {
+        x[c] += u[rg_node_index(slot, node, c)];
+    }
+    rg_vector_cross(x, force, moment);
+    for (int c = 0; c < 3; c++) {
+        entry->force[c] += force[c];
+        entry->moment[c] += moment[c];
+    }
+}
+
 void rg_account_book(rg_account *a, int item, const rg_account_entry *entry) {
     rg_exact_sum *sum = a->sum + (omp_get_thread_num() * a->count + item) * VALUES;
     for (int c = 0; c < 3; c++) {
         rg_exact_add(&sum[FORCE + c], entry->force[c]);
+        rg_exact_add(&sum[MOMENT + c], entry->moment[c]);
     }
     rg_exact_add(&sum[BEFORE], entry->before);
     rg_exact_add(&sum[AFTER], entry->after);
@@ -51,6 +68,7 @@ void rg_account_close(rg_account *a) {
         rg_exact_sum *total = a->total + i * VALUES;
         for (int c = 0; c < 3; c++) {
             item->force[c] = rg_exact_value(&total[FORCE + c]);
+            item->moment[c] = rg_exact_value(&total[MOMENT + c]);
         }
         item->work_now = item->work + rg_exact_value(&total[BEFORE]);
         item->work = item->work_now + rg_exact_value(&total[AFTER]);

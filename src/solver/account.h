@@ -13,19 +13,22 @@
 #include <mpi.h>
 
 #include "base/exact_sum.h"
+#include "domain/domain.h"
 #include "solver/state.h"
 
 typedef struct {
     const char *name; /* column prefix in history.csv; NULL: it has none there */
     /* From here to the end doubles only: a checkpoint takes them as a row. */
-    double work;     /* up to the middle of the next step (J) */
-    double work_now; /* up to the present time */
-    double force[3]; /* at the present time (N) */
+    double work;      /* up to the middle of the next step (J) */
+    double work_now;  /* up to the present time */
+    double force[3];  /* at the present time (N) */
+    double moment[3]; /* of it about the origin, at places of the deformed solid (N m) */
 } rg_account_item;
 
 /* What an item did in a part of the solid, at a step. */
 typedef struct {
     double force[3];      /* N */
+    double moment[3];     /* about the origin (N m) */
     double before, after; /* work in the half steps (J) */
 } rg_account_entry;
 
@@ -41,6 +44,10 @@ typedef struct {
 rg_account *rg_account_make(MPI_Comm comm);
 int rg_account_add(rg_account *a, const char *name);
 void rg_account_open(rg_account *a, int threads);
+
+/* Adds a force on a node to an entry, with its moment where the node is by now. */
+void rg_account_add_force(rg_account_entry *entry, const rg_domain *d, size_t slot, int node,
+                          const rg_real *u, const double force[3]);
 
 /* Adds to an item. Threads call it at once. */
 void rg_account_book(rg_account *a, int item, const rg_account_entry *entry);

@@ -349,9 +349,9 @@ static double correct(const entry *e, const pattern *p, const double *target, rg
 }
 
 /* The force and work of those boundaries of an entry that have a name. */
-static void book(const rg_constraints *k, const entry *e, const double impulse[RG_NODES]) {
+static void book(const rg_constraints *k, const entry *e, const rg_real *u, const double impulse[RG_NODES]) {
     for (int i = 0; i < e->pattern->constrained; i++) {
-        rg_account_entry sum = {{0, 0, 0}, 0, 0};
+        rg_account_entry sum = {.before = 0};
         int boundary = e->boundary[i];
         bool told = k->supports->item[boundary] < 0;
         for (int j = 0; j < i; j++) {
@@ -361,7 +361,9 @@ static void book(const rg_constraints *k, const entry *e, const double impulse[R
             if (e->boundary[j] == boundary) {
                 double force = impulse[j] / k->supports->dt_kick,
                        before = 0.5 * k->supports->dt_last * force * e->is.before[j];
-                sum.force[e->component] += force;
+                const double along[3] = {e->component == 0 ? force : 0, e->component == 1 ? force : 0,
+                                         e->component == 2 ? force : 0};
+                rg_account_add_force(&sum, k->domain, (size_t)e->slot, e->pattern->node[j], u, along);
                 sum.before += before;
                 sum.after += 0.5 * impulse[j] * (e->is.before[j] + e->is.target[j]) - before;
             }
@@ -372,8 +374,8 @@ static void book(const rg_constraints *k, const entry *e, const double impulse[R
     }
 }
 
-void rg_constraints_kick(rg_constraints *k, size_t tile, rg_real *velocity, rg_real *now) {
-    rg_oblique_kick(k->oblique, tile, velocity, now);
+void rg_constraints_kick(rg_constraints *k, size_t tile, const rg_real *u, rg_real *velocity, rg_real *now) {
+    rg_oblique_kick(k->oblique, tile, u, velocity, now);
     for (size_t n = k->tile_begin[tile]; n < k->tile_begin[tile + 1]; n++) {
         entry *e = &k->entry[n];
         const pattern *p = pattern_now(k, e);
@@ -383,7 +385,7 @@ void rg_constraints_kick(rg_constraints *k, size_t tile, rg_real *velocity, rg_r
         }
         e->is.work += correct(e, p, e->is.target, velocity, impulse);
         if (k->supports->named) {
-            book(k, e, impulse);
+            book(k, e, u, impulse);
         }
         memcpy(e->is.before, e->is.target, sizeof e->is.before);
         for (int i = 0; p != e->pattern && i < e->pattern->constrained; i++) {

@@ -43,7 +43,7 @@ void rg_constraints_set(rg_constraints *k, double time, double dt_last, double d
 
 /* Corrects the velocities of tile `tile` after its kick; before that those at the present time, unless `now`
  * is NULL. Both are whole fields. Keeps account of the work, and of the force of what has a name. */
-void rg_constraints_kick(rg_constraints *k, size_t tile, rg_real *velocity, rg_real *now);
+void rg_constraints_kick(rg_constraints *k, size_t tile, const rg_real *u, rg_real *velocity, rg_real *now);
 
 /* What has a prescribed displacement gets it after the drift of tile `tile`. */
 void rg_constraints_drift(rg_constraints *k, size_t tile, rg_real *u);

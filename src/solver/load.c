@@ -63,8 +63,12 @@ static int nodes(const entry *e) {
     return e->face >= 0 ? RG_FNODES : RG_NODES;
 }
 
+static int node_of(const entry *e, int a) {
+    return e->face >= 0 ? rg_face_node[e->face][a] : a;
+}
+
 static size_t index_of(const entry *e, int a, int c) {
-    return rg_node_index((size_t)e->slot, e->face >= 0 ? rg_face_node[e->face][a] : a, c);
+    return rg_node_index((size_t)e->slot, node_of(e, a), c);
 }
 
 static double mass_of(const rg_loads *all, const entry *e) {
@@ -273,26 +277,29 @@ void rg_loads_push(const rg_loads *all, size_t tile, const rg_push *push) {
     }
 }
 
-static void add_entry(const rg_loads *all, const entry *e, const rg_real *velocity, rg_account_entry *sum) {
+static void add_entry(const rg_loads *all, const entry *e, const rg_real *u, const rg_real *velocity,
+                      rg_account_entry *sum) {
     double mass = e->force != NULL ? 0 : mass_of(all, e);
-    for (int c = 0; c < 3; c++) {
-        sum->force[c] += mass * all->load[e->load].value[c];
-        for (int a = 0; e->force != NULL && a < nodes(e); a++) {
-            sum->force[c] += e->force[a][c];
+    for (int a = 0; a < nodes(e); a++) {
+        double force[3];
+        for (int c = 0; c < 3; c++) {
+            force[c] =
+                e->force != NULL ? e->force[a][c] : mass * all->row_sum[a] * all->load[e->load].value[c];
         }
+        rg_account_add_force(sum, all->surface.domain, (size_t)e->slot, node_of(e, a), u, force);
     }
     sum->before += e->before;
     sum->after += 0.5 * all->dt_next * power(all, e, velocity);
 }
 
-void rg_loads_book(const rg_loads *all, size_t tile, const rg_real *velocity) {
+void rg_loads_book(const rg_loads *all, size_t tile, const rg_real *u, const rg_real *velocity) {
     size_t i = all->tile_begin[tile], end = all->tile_begin[tile + 1];
     while (i < end) {
         int16_t which = all->entry[i].load;
-        rg_account_entry sum = {{0, 0, 0}, 0, 0};
+        rg_account_entry sum = {.before = 0};
         for (; i < end && all->entry[i].load == which; i++) {
             if (all->load[which].acts) {
-                add_entry(all, &all->entry[i], velocity, &sum);
+                add_entry(all, &all->entry[i], u, velocity, &sum);
             }
         }
         if (all->load[which].acts) {

@@ -44,8 +44,8 @@ void rg_loads_find(rg_loads *l, size_t tile, const struct rg_solver *s);
 /* Kicks the velocities of a tile. After its kick. */
 void rg_loads_push(const rg_loads *l, size_t tile, const rg_push *push);
 
-/* The work of the half step to come, by the complete velocity, and the account. */
-void rg_loads_book(const rg_loads *l, size_t tile, const rg_real *velocity);
+/* The work of the half step to come, by the complete velocity, and the account of a displacement. */
+void rg_loads_book(const rg_loads *l, size_t tile, const rg_real *u, const rg_real *velocity);
 
 /* Load i in words: "traction on 2.5e-09 m2". */
 void rg_loads_describe(const rg_loads *l, int i, char *words, size_t size);

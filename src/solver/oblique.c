@@ -382,19 +382,18 @@ static double correct(const rg_oblique *o, const entry *e, bool present, rg_real
 
 /* The force and work of those boundaries of an entry that have a name: rows of a boundary follow each other.
  */
-static void book(const rg_oblique *o, const entry *e, const double *impulse) {
+static void book(const rg_oblique *o, const entry *e, const rg_real *u, const double *impulse) {
     const rg_supports *s = o->supports;
     const row *r = o->row + e->first;
     const memory *is = memory_of(e);
     for (int i = 0; i < e->rows;) {
         int boundary = r[i].boundary;
-        rg_account_entry sum = {{0, 0, 0}, 0, 0};
+        rg_account_entry sum = {.before = 0};
         for (; i < e->rows && r[i].boundary == boundary; i++) {
             double force = e->mass * impulse[i] / s->dt_kick,
                    before = 0.5 * s->dt_last * force * is[i].before;
-            for (int c = 0; c < 3; c++) {
-                sum.force[c] += force * r[i].along[c];
-            }
+            const double vector[3] = {force * r[i].along[0], force * r[i].along[1], force * r[i].along[2]};
+            rg_account_add_force(&sum, s->domain, (size_t)e->slot, r[i].node, u, vector);
             sum.before += before;
             sum.after += 0.5 * e->mass * impulse[i] * (is[i].before + is[i].target) - before;
         }
@@ -404,7 +403,7 @@ static void book(const rg_oblique *o, const entry *e, const double *impulse) {
     }
 }
 
-void rg_oblique_kick(rg_oblique *o, size_t tile, rg_real *velocity, rg_real *now) {
+void rg_oblique_kick(rg_oblique *o, size_t tile, const rg_real *u, rg_real *velocity, rg_real *now) {
     for (size_t n = o->tile_begin[tile]; n < o->tile_begin[tile + 1]; n++) {
         entry *e = &o->entry[n];
         double impulse[MOST_ROWS];
@@ -413,7 +412,7 @@ void rg_oblique_kick(rg_oblique *o, size_t tile, rg_real *velocity, rg_real *now
         }
         e->work[0] += correct(o, e, false, velocity, impulse);
         if (o->supports->named) {
-            book(o, e, impulse);
+            book(o, e, u, impulse);
         }
         for (int i = 0; i < e->rows; i++) {
             memory_of(e)[i].before = along(e, &o->row[e->first + (size_t)i], velocity);

@@ -26,7 +26,7 @@ bool rg_oblique_has(const rg_oblique *o, size_t slot);
 /* As those of solver/constraint.h; `start` returns how many places are prescribed off the initial ones. */
 int64_t rg_oblique_start(rg_oblique *o, const rg_real *u, const rg_real *velocity);
 void rg_oblique_set(rg_oblique *o, double time, double dt);
-void rg_oblique_kick(rg_oblique *o, size_t tile, rg_real *velocity, rg_real *now);
+void rg_oblique_kick(rg_oblique *o, size_t tile, const rg_real *u, rg_real *velocity, rg_real *now);
 void rg_oblique_drift(rg_oblique *o, size_t tile, rg_real *u);
 void rg_oblique_work(const rg_oblique *o, rg_exact_sum *work);
 void rg_oblique_place(rg_oblique *o, rg_real *u);

@@ -165,8 +165,8 @@ static void tile_complete(rg_solver *s, size_t tile, const rg_workspace *w, cons
     if (p->constrain) {
         rg_push damp = {p->dt, 0.5 * s->dt, p->velocity, step_velocity_of(s, tile, p)};
         rg_absorbing_damp(s->absorbing, tile, &damp);
-        rg_constraints_kick(s->constraints, tile, p->velocity, step_velocity_of(s, tile, p));
-        rg_loads_book(s->loads, tile, p->velocity);
+        rg_constraints_kick(s->constraints, tile, s->u, p->velocity, step_velocity_of(s, tile, p));
+        rg_loads_book(s->loads, tile, s->u, p->velocity);
         rg_absorbing_book(s->absorbing, tile, p->velocity);
     }
     if (s->watched[tile] && p->constrain) {

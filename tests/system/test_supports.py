@@ -127,6 +127,25 @@ def test_entries_that_take_turns(run, figure):
     assert energy["external_work"][-1] == pytest.approx(work[-1], rel=1e-6)
 
 
+@pytest.mark.parametrize("form", ["variational", "continuous"])
+def test_moments_turn_the_body(run, figure, form):
+    """Of all loads and supports together, about the origin: the angular momentum changes by them alone. Prescribed velocities
+    that are linear in time are those of the step to rounding."""
+    law = {"law": "none", "form": form, **({"beta_s": 2, "penalty": "isotropic"} if form == "variational" else {})}
+    sets = {"interface": law, "time.steps": 150, "output.interval": 1,
+            "boundary": [{"name": "hold", "set": "y+", "component": "x", "velocity": "2e5*t"}, {"name": "roll", "where": "nx > 0.5", "direction": [0, 1, 2], "velocity": "3e5*t"}]}
+    done = run(LOADS, sets=sets)
+    energy, history = done.energy, done.history
+    halves = 0.5 * np.diff(history["time"])
+    names = ("pull", "press", "push", "fall", "hold", "roll")
+    assert len(halves) == 150 and all(np.abs(history[f"{name}_moment_z"]).max() > 0 for name in names)
+    for axis in "xyz":
+        moment = sum(history[f"{name}_moment_{axis}"] for name in names)
+        change = np.cumsum(halves * (moment[1:] + moment[:-1]))
+        apart = np.abs(energy[f"angular_{axis}"][1:] - energy[f"angular_{axis}"][0] - change).max()
+        figure(f"moments of loads and supports, form {form}: angular momentum about {axis}", apart / np.abs(change).max(), bound=rounding(2e-14, 1e-5), why=ROUNDING)
+
+
 REFUSED = """mesh: {{cells: [1, 1, 1], size: [1, 1, 1]}}
 material: {{model: neo-hookean, young: 1, poisson: 0, density: 1}}
 interface: {{{law}}}

@@ -51,7 +51,7 @@ static void find_forces(rg_solver *s, double time) {
     for (size_t t = 0; t < s->domain->tiles; t++) {
         rg_loads_find(s->loads, t, s);
         rg_loads_push(s->loads, t, &push);
-        rg_loads_book(s->loads, t, s->velocity);
+        rg_loads_book(s->loads, t, s->u, s->velocity);
     }
     rg_account_close(s->account);
     for (size_t i = 0; i < s->domain->blocks * RG_NODE_BLOCK; i++) {
@@ -125,6 +125,7 @@ static void test_closed_surface(void **state) {
         expect_near(force[k], 0, 1e-14 * size);
         expect_near(moment[k], 0, 1e-14 * size * 6e-3);
         expect_near(s->account->item[0].force[k], force[k], 1e-14 * size);
+        expect_near(s->account->item[0].moment[k], moment[k], 1e-14 * size * 6e-3);
     }
     rg_solver_free(s);
     rg_case_free(c);
@@ -259,11 +260,16 @@ static void test_traction(void **state) {
             expect_near(force[k], known[k], 3e-15 * size);
             expect_near(moment[k], turn[k], 1e-14 * size * 6e-3);
             expect_near(s->account->item[0].force[k], known[k], 3e-15 * size);
+            expect_near(s->account->item[0].moment[k], turn[k], 1e-14 * size * 6e-3);
         }
         set_affine(s);
         find_forces(s, 1);
         resultant(s, force, turn, &size);
         expect_near(force[0], known[0], 3e-15 * size);
+        assert_true(fabs(turn[0] - moment[0]) > 1e-3 * size * 6e-3); /* of the deformed body */
+        for (int k = 0; k < 3; k++) {
+            expect_near(s->account->item[0].moment[k], turn[k], 1e-14 * size * 6e-3);
+        }
         find_forces(s, 3); /* the second alone: middle of z- at (2e-3, 0.5e-3, 0) */
         memset(s->u, 0, s->domain->blocks * RG_NODE_BLOCK * sizeof *s->u);
         resultant(s, force, moment, &size);
