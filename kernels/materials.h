@@ -17,6 +17,10 @@ enum {
     RG_TAKES_YOUNG = 8, /* by Young's modulus and Poisson's ratio */
 };
 
+/* Constants of an elastic solid of any symmetry: the upper triangle of its stiffness, row by row, in Voigt's
+ * order 11 22 33 23 13 12 with shear strains 2 e_23, 2 e_13, 2 e_12. */
+enum { RG_STIFFNESS = 21 };
+
 /* History of a point of material/j2.h. Zero is the virgin material. */
 enum {
     RG_J2_STRAIN = 0, /* ep, accumulated equivalent plastic strain */
@@ -31,7 +35,9 @@ enum {
     X(linear_elastic, LINEAR_ELASTIC, "linear-elastic", "for small strains and small rotations alone", 0,    \
       RG_TAKES_YOUNG)                                                                                        \
     X(st_venant_kirchhoff, ST_VENANT_KIRCHHOFF, "st-venant-kirchhoff",                                       \
-      "elastic at moderate strains and any rotation", 0, RG_TAKES_YOUNG)
+      "elastic at moderate strains and any rotation", 0, RG_TAKES_YOUNG)                                     \
+    X(anisotropic, ANISOTROPIC, "anisotropic",                                                               \
+      "a crystal or a composite: the same with a stiffness of any symmetry, along axes of its own", 0, 0)
 /* ... and those that exist in double precision only */
 #define RG_MATERIALS_DOUBLE(X)                                                                               \
     X(deshpande_evans, DESHPANDE_EVANS, "deshpande-evans",                                                   \
@@ -77,14 +83,23 @@ typedef enum {
 #define RG_PARAMETER_ENUM(NAME, key, unit, range, models, meaning) RG_PARAMETER_##NAME,
 enum { RG_MATERIAL_PARAMETERS(RG_PARAMETER_ENUM) RG_PARAMETERS };
 
+/* An anisotropic solid, in the axes of the mesh. Of the acoustic tensor of each direction the largest
+ * eigenvalue: the most and the least of all directions (Pa). */
+typedef struct {
+    double stiffness[RG_STIFFNESS];
+    double stiffest, softest;
+} rg_anisotropic;
+
 /* A material as a kernel takes it. */
 typedef struct {
-    double lambda, mu; /* Lame constants of the undeformed, undamaged solid (Pa) */
+    double lambda, mu; /* Lame constants of the undeformed, undamaged solid (Pa); of an anisotropic one the
+                          means over all orientations of its stiffness (Voigt's) */
     double density;    /* reference density (kg/m^3) */
     double dt;         /* step for which it was prepared (s) */
     rg_material_model model;
     union {
         rg_de_material deshpande_evans;
+        rg_anisotropic anisotropic;
         double parameter[RG_PARAMETERS]; /* of all others */
     } of;
 } rg_material;

@@ -19,6 +19,7 @@ typedef struct {
 #define CERAMIC   RG_MATERIAL_DESHPANDE_EVANS
 #define LINEAR    RG_MATERIAL_LINEAR_ELASTIC
 #define KIRCHHOFF RG_MATERIAL_ST_VENANT_KIRCHHOFF
+#define CRYSTAL   RG_MATERIAL_ANISOTROPIC
 #define J2        RG_MATERIAL_J2
 
 static const kernel_case cases[] = {
@@ -31,6 +32,7 @@ static const kernel_case cases[] = {
      0,
      {.gradient = RG_GRADIENT_LIFTED, .model = KIRCHHOFF},
      BENCH_ROUGH},
+    {"anisotropic", RG_COST_BULK, 0, {.gradient = RG_GRADIENT_LIFTED, .model = CRYSTAL}, BENCH_ROUGH},
     {"J2 elastic",
      RG_COST_BULK,
      0,

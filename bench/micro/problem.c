@@ -144,6 +144,14 @@ static rg_material make_material(rg_material_model model) {
     rg_material m = {.model = model, .lambda = LAMBDA, .mu = MU, .density = DENSITY};
     if (model == RG_MATERIAL_DESHPANDE_EVANS) {
         m.of.deshpande_evans.parameters = rg_deshpande_evans_alumina();
+    } else if (model == RG_MATERIAL_ANISOTROPIC) { /* no constant is 0, which may be how it is multiplied */
+        for (int i = 0, at = 0; i < 6; i++) {
+            for (int j = i; j < 6; j++, at++) {
+                double isotropic = i < 3 && j < 3 ? LAMBDA + (i == j ? 2 * MU : 0) : i == j ? MU : 0;
+                m.of.anisotropic.stiffness[at] = isotropic + 0.1 * MU * sin(1 + 7 * at);
+            }
+        }
+        m.of.anisotropic.softest = m.of.anisotropic.stiffest = LAMBDA + 2 * MU;
     } else {
         m.of.parameter[RG_PARAMETER_YIELD_STRESS] = 1e9;
         m.of.parameter[RG_PARAMETER_HARDENING] = 2e9;

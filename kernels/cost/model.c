@@ -61,6 +61,12 @@ enum {
     GREEN_STRESS = 1 + 6 + 3 + 9 * (1 + DOT),
     GREEN_STIFFENING = 3 * 2 + 1 + FMA + 1 + FMA,
     GREEN_ENERGY = 3 * (DOT + 1) + 2 + FMA,
+    /* any symmetry: six strains in Voigt's notation, six sums of six; S + H S; bound; energy */
+    VOIGT_STRAIN = 6 * (1 + DOT + 1) + 3,
+    VOIGT_STRESS = 6 * (1 + 5 * FMA),
+    VOIGT_PIOLA = 9 * (1 + DOT),
+    VOIGT_STIFFENING = 3 * (1 + FMA) + 3 * 2 + 1 + 1 + FMA,
+    VOIGT_ENERGY = 1 + 5 * FMA + 1 + FMA,
 };
 
 /* All up to the gradients at the four points. */
@@ -81,6 +87,8 @@ static double point_flops(const rg_cost_variant *v) {
         return JACOBIAN + LINEAR_STRESS + VALID + FMA;
     case RG_MATERIAL_ST_VENANT_KIRCHHOFF:
         return JACOBIAN + GREEN_STRAIN + GREEN_STRESS + GREEN_STIFFENING + VALID + FMA;
+    case RG_MATERIAL_ANISOTROPIC:
+        return JACOBIAN + VOIGT_STRAIN + VOIGT_STRESS + VOIGT_PIOLA + VOIGT_STIFFENING + VALID + FMA;
     case RG_MATERIAL_DESHPANDE_EVANS:
         return rg_ceramic_flops(v) + FMA + released;
     case RG_MATERIAL_J2:
@@ -97,6 +105,8 @@ static double state_flops(const rg_cost_variant *v) {
         return LINEAR_ENERGY + FMA + (v->cauchy ? JACOBIAN + LINEAR_STRESS + CAUCHY : 0);
     case RG_MATERIAL_ST_VENANT_KIRCHHOFF:
         return GREEN_STRAIN + GREEN_ENERGY + FMA + (v->cauchy ? JACOBIAN + GREEN_STRESS + CAUCHY : 0);
+    case RG_MATERIAL_ANISOTROPIC:
+        return VOIGT_STRAIN + VOIGT_STRESS + VOIGT_ENERGY + (v->cauchy ? JACOBIAN + VOIGT_PIOLA + CAUCHY : 0);
     case RG_MATERIAL_DESHPANDE_EVANS:
         return rg_ceramic_state_flops(v) + FMA + (v->cauchy ? 3 + CAUCHY : 0);
     case RG_MATERIAL_J2:

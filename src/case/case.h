@@ -87,9 +87,17 @@ typedef struct {
     double from, until;               /* it acts in between (s); until 0: without end */
 } rg_load_input;
 
+/* An anisotropic solid: its stiffness, or in its place constants of a solid with three planes of symmetry,
+ * whose order is that of base/stiffness.h; all 0 what is not given. Its axes: two of them, or angles. */
+typedef struct {
+    double stiffness[RG_STIFFNESS], young[3], poisson[3], shear[3]; /* Pa */
+    double axis[2][3], angles[3];                                   /* of any length; degrees */
+} rg_anisotropic_input;
+
 typedef struct {
     rg_material_model model;
     double young, poisson, density;
+    rg_anisotropic_input anisotropic;
     double parameter[RG_PARAMETERS];    /* materials.h */
     rg_deshpande_evans deshpande_evans; /* but for poisson, density, yield_stress and single_pi */
     rg_interaction interaction;         /* c3 of the ceramic: as printed, or as one derives it */

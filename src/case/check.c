@@ -138,7 +138,8 @@ static void check_entry(rg_check *ck, const rg_key *key, const rg_node *list, co
     const rg_node *node = &list->child[i];
     bool good = false;
     if (key->entry == &rg_material_table) {
-        ck->material = (rg_material_check){.path = dotted, .of = &ck->c->other[i].is, .flaws = true};
+        ck->material = (rg_material_check){
+            .path = dotted, .of = &ck->c->other[i].is, .flaws = true, .constants = true, .block = node};
     }
     if (node->kind == RG_NODE_MAPPING) {
         good = check_table(ck, key->entry, node, dotted, entries + (size_t)i * key->entry->size);
@@ -218,8 +219,13 @@ static rg_usage usage_of(const rg_check *ck, const rg_key *key) {
     return (key->models >> ck->material.of->model & 1U) != 0 ? RG_USED : RG_UNUSED;
 }
 
-static bool check_key(const scan *s, const rg_key *key, const rg_node *node, const char *path, void *base) {
-    rg_usage usage = usage_of(s->ck, key);
+static bool check_key(const scan *s, const rg_key *as_model, const rg_node *node, const char *path,
+                      void *base) {
+    rg_usage usage = usage_of(s->ck, as_model);
+    if (usage == RG_UNSURE && as_model->as != NULL) {
+        return false; /* what it has to be is not known */
+    }
+    const rg_key here = rg_key_here(as_model, base), *key = &here;
     if (key->group == RG_GROUP_LAW && usage == RG_USED && !rg_key_used(key, base)) {
         usage = RG_UNUSED;
     }
@@ -239,10 +245,33 @@ static bool check_key(const scan *s, const rg_key *key, const rg_node *node, con
                                     : rg_value_read(s->ck, key, node, path, base);
 }
 
+/* Notes the keys of an anisotropic solid; at the last of them they are looked at together. */
+static void learn_constants(rg_check *ck, size_t at, const rg_node *node, bool good) {
+    static const size_t keys[RG_CONSTANTS] = {
+        [RG_OF_YOUNG] = offsetof(rg_material_input, young),
+        [RG_OF_POISSON] = offsetof(rg_material_input, poisson),
+        [RG_OF_SHEAR] = offsetof(rg_material_input, deshpande_evans.shear),
+        [RG_OF_STIFFNESS] = offsetof(rg_material_input, anisotropic.stiffness),
+        [RG_OF_AXIS_1] = offsetof(rg_material_input, anisotropic.axis[0]),
+        [RG_OF_AXIS_2] = offsetof(rg_material_input, anisotropic.axis[1]),
+        [RG_OF_ANGLES] = offsetof(rg_material_input, anisotropic.angles)};
+    rg_material_check *m = &ck->material;
+    for (int i = 0; i < RG_CONSTANTS; i++) {
+        if (at == keys[i]) {
+            m->constant[i] = node;
+            m->constants = m->constants && good;
+        }
+    }
+    if (at == keys[RG_OF_ANGLES] && m->constants && m->model && m->of->model == RG_MATERIAL_ANISOTROPIC) {
+        rg_anisotropic_rule(ck);
+    }
+}
+
 /* What the value of a key of a material says about others. */
 static void learn_material(rg_check *ck, const rg_key *key, const rg_node *node, bool good) {
     size_t at = key->offset - key->input;
     rg_material_check *m = &ck->material;
+    learn_constants(ck, at, node, good);
     if (at == offsetof(rg_material_input, model)) {
         m->model = good;
         ck->models = ck->models && good;
@@ -345,7 +374,12 @@ static bool check_table(rg_check *ck, const rg_key_table *table, const rg_node *
 
 void rg_case_check(rg_check *ck, const rg_node *root) {
     ck->box = ck->models = true;
-    ck->material = (rg_material_check){.path = "material.", .of = &ck->c->material, .flaws = true};
+    ck->material = (rg_material_check){
+        .path = "material.",
+        .of = &ck->c->material,
+        .flaws = true,
+        .constants = true,
+        .block = root->kind == RG_NODE_MAPPING ? rg_node_find(root, "material", strlen("material")) : NULL};
     if (root->kind == RG_NODE_MAPPING) {
         int before = ck->problems->count;
         check_table(ck, &rg_case_table, root, "", ck->c);

@@ -7,15 +7,30 @@
 
 typedef enum { RG_USED, RG_UNUSED, RG_UNSURE /* what decides is itself wrong */ } rg_usage;
 
+/* Keys of an anisotropic solid. */
+enum {
+    RG_OF_YOUNG,
+    RG_OF_POISSON,
+    RG_OF_SHEAR,
+    RG_OF_STIFFNESS,
+    RG_OF_AXIS_1,
+    RG_OF_AXIS_2,
+    RG_OF_ANGLES,
+    RG_CONSTANTS
+};
+
 /* The block of a material that is being checked. */
 typedef struct {
     const char *path; /* "material." or that of an entry of materials with a dot behind it */
     rg_material_input *of;
-    bool model;                /* its model is good */
-    bool flaws;                /* what the initial damage follows from is good */
-    const rg_node *density;    /* its flaw_density; NULL: not there */
-    bool saturates;            /* its saturation_stress is good */
-    const rg_node *saturation; /* its saturation_stress; NULL: not there */
+    bool model;                            /* its model is good */
+    bool flaws;                            /* what the initial damage follows from is good */
+    const rg_node *density;                /* its flaw_density; NULL: not there */
+    const rg_node *block;                  /* itself; NULL: not there */
+    const rg_node *constant[RG_CONSTANTS]; /* of an anisotropic solid: its keys; NULL: not there */
+    bool constants;                        /* those are good so far */
+    bool saturates;                        /* its saturation_stress is good */
+    const rg_node *saturation;             /* its saturation_stress; NULL: not there */
 } rg_material_check;
 
 typedef struct {
@@ -60,6 +75,7 @@ void rg_model_rule(rg_check *ck, const rg_node *node);
 void rg_saturation_rule(rg_check *ck, const rg_node *node);
 void rg_flaw_rule(rg_check *ck);
 void rg_material_name_rule(rg_check *ck, const rg_node *node);
+void rg_anisotropic_rule(rg_check *ck); /* anisotropic.c: which keys go together, stable, axes */
 void rg_fields_rule(rg_check *ck, const rg_key *key, const rg_node *node);
 /* Reports output times after the end of the run. */
 void rg_times_rule(rg_check *ck, const rg_node *node);

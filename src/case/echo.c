@@ -24,7 +24,7 @@ static void write_text(FILE *out, const char *text) {
 }
 
 static void write_numbers(FILE *out, const rg_key *key, const void *value) {
-    fputs(key->count == 3 ? "[" : "", out);
+    fputs(key->count > 1 ? "[" : "", out);
     for (int i = 0; i < key->count; i++) {
         fputs(i > 0 ? ", " : "", out);
         if (key->type == RG_KEY_INTEGER) {
@@ -33,7 +33,7 @@ static void write_numbers(FILE *out, const rg_key *key, const void *value) {
             fprintf(out, "%.17g", ((const double *)value)[i]);
         }
     }
-    fputs(key->count == 3 ? "]" : "", out);
+    fputs(key->count > 1 ? "]" : "", out);
 }
 
 static void write_reals(FILE *out, const double *value, int count) {
@@ -94,7 +94,8 @@ static void write_interval(FILE *out, const rg_case *c) {
     }
 }
 
-void rg_key_write(FILE *out, const rg_key *key, const void *base) {
+void rg_key_write(FILE *out, const rg_key *as_model, const void *base) {
+    const rg_key here = rg_key_here(as_model, base), *key = &here;
     const void *value = (const char *)base + key->offset;
     int choice = 0;
     switch (key->type) {
@@ -146,11 +147,12 @@ static bool has_interval(const rg_case *c) {
 
 /* Absent numbers are 0. */
 static bool is_zero(const rg_key *key, const char *value) {
-    static const char zero[3 * sizeof(double)];
+    static const char zero[RG_STIFFNESS * sizeof(double)];
     return memcmp(value, zero, (size_t)key->count * sizeof(double)) == 0; /* an int64_t is as large */
 }
 
-bool rg_key_present(const rg_key *key, const void *base) {
+bool rg_key_present(const rg_key *as_model, const void *base) {
+    const rg_key here = rg_key_here(as_model, base), *key = &here;
     int choice = 0;
     const char *value = (const char *)base + key->offset;
     if (!rg_key_used(key, base)) {

@@ -16,9 +16,12 @@
 
 /* "number > 0 and < 0.5", "integer >= 1" */
 static void range_words(const rg_key *key, char *text, size_t size) {
-    const char *list = key->type == RG_KEY_REALS ? "ascending list, each " : "[x, y, z], each ";
-    rg_text_add(text, size, "%s%s", key->count == 1 ? "" : list,
-                key->type == RG_KEY_INTEGER ? "integer" : "number");
+    if (key->type == RG_KEY_REALS) {
+        rg_text_add(text, size, "ascending list, each ");
+    } else if (key->count > 1) {
+        rg_text_add(text, size, "[%s], each ", key->entries != NULL ? key->entries : "x, y, z");
+    }
+    rg_text_add(text, size, "%s", key->type == RG_KEY_INTEGER ? "integer" : "number");
     if (isfinite(key->low)) {
         rg_text_add(text, size, " %s %g", key->low_open ? ">" : ">=", key->low);
     }
@@ -107,6 +110,12 @@ static void type_words(const rg_key *key, char *text, size_t size) {
 const char *rg_key_allowed(const rg_key *key, char *text, size_t size) {
     text[0] = '\0';
     type_words(key, text, size);
+    if (key->as != NULL) {
+        char models[160];
+        rg_models_words(&(rg_key){.models = key->as_models}, models, sizeof models);
+        rg_text_add(text, size, "; of %s ", models);
+        type_words(key->as, text, size);
+    }
     if (key->unit != NULL) {
         rg_text_add(text, size, " (%s)", key->unit);
     }
@@ -184,6 +193,22 @@ bool rg_group_used(rg_key_group group, const rg_case *c) {
 /* The material in the structure `base` whose block has the key. */
 static const rg_material_input *material_of(const rg_key *key, const void *base) {
     return (const rg_material_input *)(const void *)((const char *)base + key->input);
+}
+
+rg_key rg_key_here(const rg_key *key, const void *base) {
+    rg_key here = *key;
+    if (key->as != NULL && (key->as_models >> material_of(key, base)->model & 1U) != 0) {
+        here = *key->as;
+        here.name = key->name;
+        here.unit = key->unit;
+        here.meaning = key->meaning;
+        here.of_material = true;
+        here.models = key->models;
+        here.input = key->input;
+        here.offset += key->input;
+    }
+    here.as = NULL;
+    return here;
 }
 
 bool rg_key_used(const rg_key *key, const void *base) {

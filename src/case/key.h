@@ -62,7 +62,7 @@ typedef enum { RG_NO_ALTERNATIVE, RG_EXACTLY_ONE, RG_AT_LEAST_ONE } rg_key_alter
 
 struct rg_key_table;
 
-typedef struct {
+typedef struct rg_key {
     const char *name;    /* dotted path within the mapping that the table describes */
     const char *unit;    /* NULL if it has none */
     const char *meaning; /* a sentence without capital and full stop */
@@ -75,7 +75,10 @@ typedef struct {
     bool of_material;                  /* in the block of a material */
     size_t input;                      /* of one that is: offset of its rg_material_input in the structure */
     unsigned models;                   /* materials.h: bits of the models that use it; 0: all */
-    int count;                         /* numbers: 1 or 3 */
+    unsigned as_models;                /* ... of those that take something else by it: */
+    const struct rg_key *as;           /* that; its offset is within rg_material_input */
+    int count;                         /* numbers */
+    const char *entries;               /* of more than one: their names; NULL: x, y, z */
     double low, high;                  /* numbers: range */
     bool low_open, high_open;          /* range without its ends */
     bool no_time, no_place;            /* expression without t; without x, y, z */
@@ -106,6 +109,9 @@ extern const rg_key_table rg_case_table, rg_material_table, rg_boundary_table, r
 
 /* What a value of the key must be, in words. Returns `text`. */
 const char *rg_key_allowed(const rg_key *key, char *text, size_t size);
+
+/* The key as the model of its material in the structure `base` takes it. */
+rg_key rg_key_here(const rg_key *key, const void *base);
 
 /* The models that use the key, in words. */
 void rg_models_words(const rg_key *key, char *text, size_t size);

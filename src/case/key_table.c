@@ -24,8 +24,11 @@
     .need = RG_NEED_DEFAULT, .fallback_of = rg_default_##key, .absent = RG_DEFAULT_WORDS_##key
 #define BOX          .group = RG_GROUP_BOX
 #define GROUP(name)  .group = RG_GROUP_##name
-#define ELASTIC      .models = 0 RG_MATERIALS(TAKES_YOUNG)
+#define ELASTIC      .models = RG_MATERIAL_BIT_ANISOTROPIC RG_MATERIALS(TAKES_YOUNG)
 #define CERAMIC      .models = RG_MATERIAL_BIT_DESHPANDE_EVANS
+#define EVERY_MODEL  .models = (1U << RG_MATERIAL_MODELS) - 1
+#define ALONG_AXES   .models = RG_MATERIAL_BIT_ANISOTROPIC
+#define OF_AXES(key) .as_models = RG_MATERIAL_BIT_ANISOTROPIC, .as = &(key)
 #define MAY_CHANGE   .may_change = true /* on a restart */
 #define ONE_OF       .alternative = RG_EXACTLY_ONE
 #define SOME_OF      .alternative = RG_AT_LEAST_ONE
@@ -153,6 +156,12 @@ static const char *const fragments_meaning[] = {
     {.name = path "rotation.axis", REAL3, ANY, ELSE("required with a speed"), .offset = (at_) + offsetof(rg_initial, axis), \
      MEANS("about which it turns, by the right hand: of any length")},                                       \
     {.name = path "rotation.at", .unit = "m", REAL3, ANY, ELSE("0, 0, 0"), .offset = (at_) + offsetof(rg_initial, at), MEANS("a point of the axis")},
+
+/* Of a material with axes. */
+#define OF_MATERIAL(member) .offset = offsetof(rg_material_input, anisotropic.member)
+static const rg_key young_of_axes = {REAL3, .entries = "E1, E2, E3", ABOVE(0), OPTIONAL, OF_MATERIAL(young)};
+static const rg_key poisson_of_axes = {REAL3, .entries = "nu23, nu13, nu12", ANY, OPTIONAL, OF_MATERIAL(poisson)};
+static const rg_key shear_of_axes = {REAL3, .entries = "G23, G13, G12", ABOVE(0), OPTIONAL, OF_MATERIAL(shear)};
 
 static const rg_key case_keys[] = {
     {.name = "defaults", INTEGER, FROM_TO(0, RG_DEFAULTS), DEFAULT(1), MAY_CHANGE, CASE(defaults),
@@ -343,7 +352,7 @@ static const rg_key other_material_keys[] = {
     {.name = "where", .type = RG_KEY_EXPR, ELSE("set or file"), ONE_OF, .no_time = true, .offset = offsetof(rg_other_material, where),
      MEANS("elements at whose centroid this is not 0")},
     {.name = "file", .type = RG_KEY_TEXT, ELSE("set or where"), ONE_OF, .offset = offsetof(rg_other_material, file),
-     MEANS("CSV file beside the case with a material in each row: its first line names the columns, set and any keys of a material; what it does not say is as here; the names are NAME-1, NAME-2, ... or those of a column name")},
+     MEANS("CSV file beside the case with a material in each row: its first line names the columns, set and any keys of a material, orientation.angles as angle_1, angle_2, angle_3; what it does not say is as here; the names are NAME-1, NAME-2, ... or those of a column name")},
 #define KEY(word) word
 #define INPUT     offsetof(rg_other_material, is)
 #include "case/material_keys.h"

@@ -65,6 +65,29 @@ static int find_column(const table *t, const char *name) {
 
 /* ---- header and rows ---- */
 
+/* Columns of orientation.angles, all or none. */
+static const char *const angle_column[3] = {"angle_1", "angle_2", "angle_3"};
+
+static bool is_angle(const char *column) {
+    return strncmp(column, "angle_", 6) == 0 && column[6] >= '1' && column[6] <= '3' && column[7] == '\0';
+}
+
+static bool check_angles(const table *t) {
+    int columns = 0;
+    for (int k = 0; k < 3; k++) {
+        columns += find_column(t, angle_column[k]) >= 0;
+    }
+    if (columns % 3 != 0) {
+        wrong(t, "of the columns angle_1, angle_2, angle_3 there are but %d", columns);
+        return false;
+    }
+    if (columns > 0 && rg_node_find(t->item, "orientation", strlen("orientation")) != NULL) {
+        wrong(t, "orientation is given beside the file's columns of angles");
+        return false;
+    }
+    return true;
+}
+
 static bool check_header(const table *t) {
     for (int i = 0; i < t->columns; i++) {
         if (find_column(t, t->column[i]) != i) {
@@ -81,7 +104,7 @@ static bool check_header(const table *t) {
         wrong(t, "its first line names the columns, and there is no column 'set'");
         return false;
     }
-    return true;
+    return check_angles(t);
 }
 
 static void add_text(const table *t, rg_node *node, const char *key, char *text, bool plain) {
@@ -92,6 +115,27 @@ static void add_text(const table *t, rg_node *node, const char *key, char *text,
                        .key = rg_text_copy(key, strlen(key)),
                        .text = text,
                        .plain = plain};
+}
+
+/* orientation: {angles: [..., ..., ...]} */
+static void add_angles(const table *t, rg_node *node, char **field) {
+    rg_node *orientation = rg_node_append(node);
+    *orientation = (rg_node){.kind = RG_NODE_MAPPING,
+                             .at = t->file->at,
+                             .key_at = t->file->key_at,
+                             .key = rg_text_copy("orientation", strlen("orientation"))};
+    rg_node *angles = rg_node_append(orientation);
+    *angles = (rg_node){.kind = RG_NODE_LIST,
+                        .at = t->file->at,
+                        .key_at = t->file->key_at,
+                        .key = rg_text_copy("angles", strlen("angles"))};
+    for (int k = 0; k < 3; k++) {
+        const char *text = field[find_column(t, angle_column[k])];
+        *rg_node_append(angles) = (rg_node){.kind = RG_NODE_SCALAR,
+                                            .at = t->file->at,
+                                            .text = rg_text_copy(text, strlen(text)),
+                                            .plain = true};
+    }
 }
 
 /* An entry of row `row`, from 1 on: what the entry of the case says of all, and what the row says. */
@@ -109,9 +153,12 @@ static void add_row(const table *t, char **field, int row) {
     }
     for (int i = 0; i < t->columns; i++) {
         bool word = strcmp(t->column[i], "set") == 0 || strcmp(t->column[i], "name") == 0;
-        if (field[i][0] != '\0') {
+        if (field[i][0] != '\0' && !is_angle(t->column[i])) {
             add_text(t, node, t->column[i], rg_text_copy(field[i], strlen(field[i])), !word);
         }
+    }
+    if (find_column(t, angle_column[0]) >= 0) {
+        add_angles(t, node, field);
     }
 }
 

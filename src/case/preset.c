@@ -99,7 +99,8 @@ static void fill(rg_node *block, const rg_preset *p, rg_place at) {
     unsigned bit = model_bit(model != NULL ? model : rg_node_find(&values, "model", strlen("model")));
     for (int i = 0; i < values.children; i++) {
         rg_node *value = &values.child[i];
-        unsigned models = rg_key_find(&rg_material_table, value->key)->models; /* 0: all */
+        const rg_key *key = rg_key_find(&rg_material_table, value->key);
+        unsigned models = key->models & ~key->as_models; /* 0: all */
         if (rg_node_find(block, value->key, strlen(value->key)) == NULL &&
             (models == 0 || (models & bit) != 0)) {
             value->at = value->key_at = at;

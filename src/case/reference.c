@@ -41,7 +41,7 @@ static void add_condition(const rg_key *key, char *text, size_t size) {
     } else if (words[key->group] != NULL) {
         rg_text_add(text, size, "; %s", words[key->group]);
     }
-    if (key->models != 0) {
+    if (key->models != 0 && key->models != (1U << RG_MATERIAL_MODELS) - 1) {
         char names[256];
         rg_models_words(key, names, sizeof names);
         rg_text_add(text, size, "; of %s", names);

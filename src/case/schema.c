@@ -208,11 +208,11 @@ static void put_single(writer *w, const rg_key *key) {
     }
 }
 
-/* How many entries a list has: three numbers, some, or any number of them. */
+/* How many entries a list has: so many numbers, some, or any number of them. */
 static void put_length(writer *w, const rg_key *key) {
-    if (key->count == 3) {
-        put_number(w, "minItems", 3);
-        put_number(w, "maxItems", 3);
+    if (key->count > 1) {
+        put_number(w, "minItems", key->count);
+        put_number(w, "maxItems", key->count);
     } else if (key->type == RG_KEY_TEXTS || key->type == RG_KEY_REALS) {
         put_number(w, "minItems", 1);
     } else if (key->type == RG_KEY_FLAGS) {
@@ -231,11 +231,9 @@ static void describe(writer *w, const rg_key *key) {
     rg_free(text);
 }
 
-static void put_key(writer *w, const char *name, const rg_key *key) {
-    bool list = key->count == 3 || key->type == RG_KEY_FLAGS || key->type == RG_KEY_TEXTS ||
+static void put_value(writer *w, const rg_key *key) {
+    bool list = key->count > 1 || key->type == RG_KEY_FLAGS || key->type == RG_KEY_TEXTS ||
                 key->type == RG_KEY_REALS || key->type == RG_KEY_LIST;
-    open_group(w, name, '{');
-    describe(w, key);
     if (list) {
         put_text(w, "type", "array");
         put_length(w, key);
@@ -244,6 +242,23 @@ static void put_key(writer *w, const char *name, const rg_key *key) {
         close_group(w, '}');
     } else {
         put_single(w, key);
+    }
+}
+
+static void put_key(writer *w, const char *name, const rg_key *key) {
+    open_group(w, name, '{');
+    describe(w, key);
+    if (key->as != NULL) { /* some models take the one, some the other */
+        const rg_key *const either[2] = {key, key->as};
+        open_group(w, "anyOf", '[');
+        for (int i = 0; i < 2; i++) {
+            open_group(w, NULL, '{');
+            put_value(w, either[i]);
+            close_group(w, '}');
+        }
+        close_group(w, ']');
+    } else {
+        put_value(w, key);
     }
     close_group(w, '}');
 }
@@ -300,8 +315,12 @@ static void put_if(writer *w, const char *name, const char *word, bool also_abse
     close_group(w, '}');
 }
 
+/* What a model takes by `as` is not required. */
 static effect of_model(const void *model, const rg_key *key) {
-    return key->models == 0 ? NO_SAY : (key->models >> *(const int *)model & 1U) != 0 ? IS_USED : IS_UNUSED;
+    unsigned bit = 1U << *(const int *)model;
+    return key->models == 0 || (key->as_models & bit) != 0 ? NO_SAY
+           : (key->models & bit) != 0                      ? IS_USED
+                                                           : IS_UNUSED;
 }
 
 static void put_models(writer *w, const rg_key_table *table, const char *section) {

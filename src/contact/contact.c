@@ -9,6 +9,7 @@
 
 #include "base/mem.h"
 #include "base/vector.h"
+#include "partition/material.h"
 #include "domain/element.h"
 
 /* A face travels as its u^ and by how much it has sunk. */
@@ -110,7 +111,7 @@ static double largest_omega2(const rg_contacts *c) {
             if (rg_surface_has(d, slot, k)) {
                 double normal[3], area = rg_surface_area(d->corner + 12 * slot, k, normal);
                 const rg_material *m = &c->material[d->material[slot / RG_LANES]];
-                double kappa = c->penalty * (m->lambda + 2 * m->mu) / rg_surface_height(d, slot, k);
+                double kappa = c->penalty * rg_material_modulus(m) / rg_surface_height(d, slot, k);
                 sum += 2 * kappa * area * c->eigenvalue / rg_element_mass(d, c->material, slot);
             }
         }
@@ -242,7 +243,7 @@ static rg_exposed_face *expose(rg_contacts *c, const uint8_t *exposed, const rg_
                                  .rank = c->rank,
                                  .row = (int32_t)i,
                                  .former = f->interface != NO_INTERFACE,
-                                 .modulus = m->lambda + 2 * m->mu,
+                                 .modulus = rg_material_modulus(m),
                                  .height = rg_surface_height(d, slot, f->face)};
         set_rest(c, f, e[i].rest);
         set_row(c, i, u);

@@ -7,6 +7,7 @@
 #include "base/vector.h"
 #include "layout.h"
 #include "mesh/gid_map.h"
+#include "partition/material.h"
 
 typedef struct {
     rg_domain *domain;
@@ -32,8 +33,9 @@ static bool has_interface(const builder *b, const rg_element *e, int f) {
     return e->neighbour[f] >= 0 && (b->joined == NULL || (b->joined[e - b->element[0]] >> f & 1) == 0);
 }
 
-/* Whether the area vector of face f points away from the element: then that is the minus side. */
-static bool is_minus(const rg_element *e, int f, double edge[2][3], double *area) {
+/* Whether the area vector of face f points away from the element: then that is the minus side; with the unit
+ * vector along it. */
+static bool is_minus(const rg_element *e, int f, double edge[2][3], double normal[3], double *area) {
     const double *x[3];
     for (int k = 0, n = 0; k < 4; k++) {
         if (k != f) {
@@ -46,6 +48,9 @@ static bool is_minus(const rg_element *e, int f, double edge[2][3], double *area
     rg_vector_subtract(e->x[f], x[0], opposite);
     rg_vector_cross(edge[0], edge[1], cross);
     *area = 0.5 * sqrt(rg_vector_dot(cross, cross));
+    for (int k = 0; k < 3; k++) {
+        normal[k] = cross[k] / (2 * *area);
+    }
     return rg_vector_dot(cross, opposite) < 0;
 }
 
@@ -55,12 +60,14 @@ static bool is_minus(const rg_element *e, int f, double edge[2][3], double *area
  * is on the minus side. */
 static bool set_geometry(const builder *b, size_t i, const rg_element *e, int f) {
     const rg_interface_material *m = b->material;
-    double edge[2][3], area;
-    bool minus = is_minus(e, f, edge, &area);
+    double edge[2][3], n[3], area, lambda[2], mu[2];
+    bool minus = is_minus(e, f, edge, n, &area);
     double h = 3 * fmin(e->volume, e->other_volume[f]) / area;
-    const rg_material *own = &m->material[e->material], *other = &m->material[e->beside[f]];
-    double lambda = 0.5 * (own->lambda + other->lambda), mu = 0.5 * (own->mu + other->mu);
-    double normal = lambda + 2 * mu, shear = m->penalty == RG_PENALTY_ELASTIC ? mu : normal;
+    rg_material_face(&m->material[e->material], n, &lambda[0], &mu[0]);
+    rg_material_face(&m->material[e->beside[f]], n, &lambda[1], &mu[1]);
+    double across = 0.5 * (mu[0] + mu[1]), along = 0.5 * (lambda[0] + lambda[1]) + 2 * across;
+    bool elastic = m->penalty == RG_PENALTY_ELASTIC;
+    double normal = elastic ? along : fmax(along, across), shear = elastic ? across : normal;
     rg_real *g = b->domain->igeom;
     for (int k = 0; k < 6; k++) {
         g[rg_igeom_index(i, RG_IGEOM_EDGE + k)] = (rg_real)edge[k / 3][k % 3];

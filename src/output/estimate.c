@@ -198,7 +198,12 @@ static void print_material(const rg_solver *s, const rg_estimate *e, int i, FILE
     fprintf(out, "material       %s%s%s\n", name, rg_material_word(m->model),
             m->model == RG_MATERIAL_LINEAR_ELASTIC ? ": for small strains and rotations alone" : "");
     double fastest = rg_material_dilatational(m);
-    fprintf(out, "wave speeds    dilatational %.1f m/s, shear %.1f m/s\n", fastest, rg_material_shear(m));
+    if (m->model == RG_MATERIAL_ANISOTROPIC) {
+        fprintf(out, "wave speeds    %.1f to %.1f m/s, by direction and kind\n", rg_material_slowest(m),
+                fastest);
+    } else {
+        fprintf(out, "wave speeds    dilatational %.1f m/s, shear %.1f m/s\n", fastest, rg_material_shear(m));
+    }
     if (fastest < SLOWEST_WAVE || fastest > FASTEST_WAVE) {
         fprintf(
             out,

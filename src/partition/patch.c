@@ -8,6 +8,7 @@
 #include "base/mem.h"
 #include "base/vector.h"
 #include "mesh/gid_map.h"
+#include "partition/material.h"
 
 enum {
     CORE = 1000, /* elements around the worst one before others join: on a regular mesh no element is worse
@@ -40,7 +41,7 @@ static double face_area_squared(const rg_element *e, int f) {
 
 /* Modulus and density of material `m` over those of the first one: exactly 1 where there is but one. */
 static double modulus(const rg_material *material, int m) {
-    return (material[m].lambda + 2 * material[m].mu) / (material->lambda + 2 * material->mu);
+    return rg_material_modulus(&material[m]) / rg_material_modulus(material);
 }
 
 static double density(const rg_material *material, int m) {

@@ -6,14 +6,16 @@
 #include "base/dense.h"
 #include "base/mem.h"
 #include "domain/element.h"
+#include "partition/material.h"
 #include "solver/selection.h"
 
 enum { MOST = 3 * RG_NODES }; /* damped components of an element */
 
-/* An absorbing face: normal and the impedances rho c times its area over the element's mass (1/s). */
+/* An absorbing face: its impedance Z, rho c of waves along its normal, times its area over the element's
+ * mass, xx yy zz yz xz xy (1/s). */
 typedef struct {
     int8_t face;
-    double normal[3], along, across;
+    double impedance[6];
 } side;
 
 /* An element with damped nodes. Matrices are over its mass. */
@@ -57,9 +59,9 @@ static int position(const entry *e, int node) {
     return i;
 }
 
-/* Z = along n n + across (1 - n n) */
 static double impedance(const side *s, int c, int d) {
-    return (s->along - s->across) * s->normal[c] * s->normal[d] + (c == d ? s->across : 0);
+    static const int place[3][3] = {{0, 5, 4}, {5, 1, 3}, {4, 3, 2}};
+    return s->impedance[place[c][d]];
 }
 
 /* Adds factor C to the lower triangle of a matrix of the damped nodes. */
@@ -158,17 +160,14 @@ static void damping_times(const rg_absorbing *a, const entry *e, const double *w
             at[i] = 3 * position(e, rg_face_node[s->face][i]);
         }
         for (int i = 0; i < RG_FNODES; i++) {
-            double v[3] = {0, 0, 0}, along = 0;
+            double v[3] = {0, 0, 0};
             for (int j = 0; j < RG_FNODES; j++) {
                 for (int c = 0; c < 3; c++) {
                     v[c] += a->face_mass[i][j] * w[at[j] + c];
                 }
             }
-            for (int c = 0; c < 3; c++) {
-                along += v[c] * s->normal[c];
-            }
-            for (int c = 0; c < 3; c++) {
-                out[at[i] + c] += s->across * v[c] + (s->along - s->across) * along * s->normal[c];
+            for (int c = 0; c < 9; c++) {
+                out[at[i] + c / 3] += impedance(s, c / 3, c % 3) * v[c % 3];
             }
         }
     }
@@ -305,10 +304,12 @@ static void add_side(const rg_absorbing *a, entry *e, int face) {
     const rg_material *m = &a->surface.material[d->material[(size_t)e->slot / RG_LANES]];
     side *s = &e->side[e->sides++];
     s->face = (int8_t)face;
-    double area = rg_surface_area(d->corner + 12 * (size_t)e->slot, face, s->normal);
+    double normal[3], area = rg_surface_area(d->corner + 12 * (size_t)e->slot, face, normal);
     double per_mass = area / (double)d->geom[rg_geom_index((size_t)e->slot, RG_GEOM_VOLUME)];
-    s->along = per_mass * sqrt((m->lambda + 2 * m->mu) / m->density);
-    s->across = per_mass * sqrt(m->mu / m->density);
+    rg_material_impedance(m, normal, s->impedance);
+    for (int k = 0; k < 6; k++) {
+        s->impedance[k] *= per_mass;
+    }
 }
 
 static entry make_entry(const rg_absorbing *a, size_t slot, unsigned faces, unsigned nodes) {

@@ -9,6 +9,7 @@
 #include "base/mem.h"
 #include "base/first_bad.h"
 #include "base/vector.h"
+#include "partition/material.h"
 #include "solver/initial.h"
 #include "domain/element.h"
 #include "quadrature.h"
@@ -106,7 +107,7 @@ static size_t list_faces(rg_bodies *b, bool *const touching[], size_t tile, rg_c
             if (out != NULL) {
                 double normal[3];
                 const rg_material *m = &b->surface.material[d->material[slot / RG_LANES]];
-                double modulus = m->lambda + 2 * m->mu;
+                double modulus = rg_material_modulus(m);
                 double kappa = b->body[body].input->penalty * modulus / rg_surface_height(d, slot, face);
                 out[count] = (rg_contact_face){
                     .slot = (rg_lid)slot,

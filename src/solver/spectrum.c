@@ -280,15 +280,18 @@ static rg_gid limiting_element(const linear_operator *op, const lanczos *known, 
 typedef enum { INTACT, CLOSED, COHESIVE, STATES } state;
 static const char *const state_name[] = {"intact", "broken and closed", "cohesive and closed"};
 
-/* The linear model of a state of the faces: all materials neo-Hookean of the same elastic constants, linear
- * at rest; faces alike, as the stiffest ones. One block of crack state serves all. */
+/* The linear model of a state of the faces: all materials neo-Hookean of the same elastic constants, or
+ * anisotropic, which is linear at rest; faces alike, as the stiffest ones. One block of crack state serves
+ * all. */
 static rg_model linear_model(const rg_model *of, double stiffest, state which, rg_material *material) {
     rg_model m = *of;
     double slope[2];
     rg_law_stiffness(&of->law, slope);
     for (int i = 0; i < m.materials; i++) {
         material[i] = of->material[i];
-        material[i].model = RG_MATERIAL_NEO_HOOKEAN;
+        if (material[i].model != RG_MATERIAL_ANISOTROPIC) {
+            material[i].model = RG_MATERIAL_NEO_HOOKEAN;
+        }
     }
     m.material = material;
     m.scale = NULL;
@@ -355,7 +358,7 @@ static linear_operator make_operator(rg_solver *s) {
             shortest = time;
             op.material = m;
             op.height = h[i];
-            op.scale = (m->lambda + 2 * m->mu) / m->density / (h[i] * h[i]);
+            op.scale = rg_material_modulus(m) / m->density / (h[i] * h[i]);
         }
     }
     rg_free(h);

@@ -164,19 +164,22 @@ def polycrystal(path, grains, cells):
 
 @pytest.mark.parametrize("grains, cells", [(20, 4), (1000, 9)])
 def test_polycrystal(run, tmp_path_factory, grains, cells):
-    """A material for each grain, and boundaries of grains that are weaker: the same bits on any ranks."""
+    """A material for each grain, stiffer from one to the next or turned anyhow, and boundaries of grains that are weaker: the
+    same bits on any ranks."""
     folder = tmp_path_factory.mktemp("grains")
     tets, grain = polycrystal(folder / "grains.vtk", grains, cells)
     names_of = sorted(set(grain))
     file, _ = convert(folder / "grains.vtk", folder / "grains.h5", "--unit", "mm")
     assert names(file, "volume") == [f"grain.{g}" for g in names_of] and len(names_of) > 0.8 * grains
     glass = {"model": "neo-hookean", "poisson": 0.2, "density": 2500}
-    rows = [f"g{g}, grain.{g}, {70e9 * (1 + g / grains)}" for g in names_of]
-    (folder / "grains.csv").write_text("\n".join(["name, set, young", *rows]))
+    crystal = {"model": "anisotropic", "density": 2500, "stiffness": [80e9, 20e9, 20e9, 0, 0, 0, 80e9, 20e9, 0, 0, 0, 80e9, 0, 0, 0, 45e9, 0, 0, 45e9, 0, 45e9]}
+    kind, heading = (glass, "young") if grains == 20 else (crystal, "angle_1, angle_2, angle_3")
+    rows = [f"g{g}, grain.{g}, " + (f"{70e9 * (1 + g / grains)}" if kind is glass else f"{g}, {7 * g}, {-31 * g}") for g in names_of]
+    (folder / "grains.csv").write_text("\n".join([f"name, set, {heading}", *rows]))
     case = folder / "grains.yaml"
     case.write_text(json.dumps({
         "mesh": {"file": "grains.h5"}, "material": {**glass, "young": 70e9},
-        "materials": [{**glass, "name": "g", "file": "grains.csv"}],
+        "materials": [{**kind, "name": "g", "file": "grains.csv"}],
         "interface": {"law": "linear", "strength": 1e9, "energy": 10, "sets": [{"between": "any", "strength": 1e6}]},
         "initial": {"velocity": {"x": "1e4*x"}}, "boundary": [], "time": {"end": 1, "steps": 30}, "output": {"fields": ["material", "crack"]}}))
     one, two = run(case), run(case, ranks=2, threads=2)

@@ -179,7 +179,9 @@ static const mistake mistakes[] = {
      ":18:11: output.fields: damage: material.model has no such field\n"
      ":18:11: output.fields: regime: material.model has no such field\n"},
     {"  poisson: 0.21\n", "  poisson: 0.21\n  shear: 146e9\n  friction: -1\n",
-     ":8:3: material.shear: 146e9" CERAMIC ":9:3: material.friction: -1" CERAMIC},
+     ":8:3: material.shear: 146e9: not used, because material.model is neo-hookean; it belongs to "
+     "anisotropic, "
+     "deshpande-evans\n:9:3: material.friction: -1" CERAMIC},
     {"output:\n", "output:\n  fields: crack\n", ":18:11: output.fields: crack: not a list; " FIELDS "\n"},
     {"mesh:\n", "mesh:\n  file: a.msh\n",
      ":2:9: mesh.file: a.msh: cannot be read: No such file or directory; "

@@ -72,7 +72,7 @@ static input *make_input(double size, uint64_t order) {
     for (size_t k = 0; k < INPUT_EBLOCKS * RG_NODE_BLOCK; k++)
         in->u[k] *= size;
     input_break(in, 0.1);
-    in->material.model = model;
+    input_set_model(in, model);
     if (model == RG_MATERIAL_DESHPANDE_EVANS)
         in->material.of.deshpande_evans.parameters = rg_deshpande_evans_alumina();
     else

@@ -240,6 +240,7 @@ static void free_call(call *c) {
 #define CERAMIC   RG_MATERIAL_DESHPANDE_EVANS
 #define LINEAR    RG_MATERIAL_LINEAR_ELASTIC
 #define KIRCHHOFF RG_MATERIAL_ST_VENANT_KIRCHHOFF
+#define CRYSTAL   RG_MATERIAL_ANISOTROPIC
 #define J2        RG_MATERIAL_J2
 
 /* Every kernel with every flag. */
@@ -266,6 +267,10 @@ static const struct {
      RG_COST_BULK_STATE,
      {.model = KIRCHHOFF, .cauchy = true},
      {-0.3, 1.1}},
+    {"anisotropic", RG_COST_BULK, {.model = CRYSTAL}, {-0.2, 1.3}},
+    {"anisotropic lifted", RG_COST_BULK, {.gradient = RG_GRADIENT_LIFTED, .model = CRYSTAL}, {-0.2, 1.1}},
+    {"anisotropic state, energy", RG_COST_BULK_STATE, {.model = CRYSTAL}, {-0.2, -0.1}},
+    {"anisotropic state, stress", RG_COST_BULK_STATE, {.model = CRYSTAL, .cauchy = true}, {-0.1, 0.0}},
     {"ceramic at rest", RG_COST_BULK, {.gradient = RG_GRADIENT_LIFTED, .model = CERAMIC}, {-1.6, -0.5}},
     {"ceramic quiet", RG_COST_BULK, {.model = CERAMIC, .advance = true}, {-0.8, 0.6}},
     {"ceramic cracking",

@@ -287,7 +287,7 @@ static rg_material_model model = RG_MATERIAL_NEO_HOOKEAN; /* of the inputs made 
 
 static input *make_broken(input_kind kind, rg_cohesive law, uint64_t order, double probability) {
     input *in = input_make(kind, law, 7, order);
-    in->material.model = model;
+    input_set_model(in, model);
     input_break(in, probability);
     return in;
 }

@@ -44,7 +44,7 @@ typedef struct {
 } body;
 
 static body body_make(const rg_kernels *set, input *in) {
-    in->material.model = model;
+    input_set_model(in, model);
     return (body){
         .set = set,
         .in = in,

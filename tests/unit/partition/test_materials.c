@@ -11,6 +11,8 @@
 #include <cmocka.h>
 
 #include "base/mem.h"
+#include "base/principal.h"
+#include "base/stiffness.h"
 #include "partition/material.h"
 
 static void assert_near(double found, double expected) {
@@ -87,6 +89,145 @@ static void test_plastic_wave(void **state) {
     }
 }
 
+/* ---- an anisotropic solid ---- */
+
+static const rg_anisotropic_input copper = {.stiffness = {168.4e9, 121.4e9, 121.4e9, 0, 0,       0, 168.4e9,
+                                                          121.4e9, 0,       0,       0, 168.4e9, 0, 0,
+                                                          0,       75.4e9,  0,       0, 75.4e9,  0, 75.4e9}};
+
+static rg_material crystal(const rg_anisotropic_input *in) {
+    return rg_material_make(
+        &(rg_material_input){.model = RG_MATERIAL_ANISOTROPIC, .density = 8960, .anisotropic = *in});
+}
+
+static void assert_close(double found, double expected, double tolerance) {
+    if (!(fabs(found - expected) <= tolerance)) {
+        fail_msg("%.17g instead of %.17g", found, expected);
+    }
+}
+
+static void assert_same_stiffness(const rg_material *a, const rg_material *b) {
+    for (int k = 0; k < RG_STIFFNESS; k++) {
+        assert_close(a->of.anisotropic.stiffness[k], b->of.anisotropic.stiffness[k], 2e-3);
+    }
+}
+
+/* By Young's moduli that are all alike it is the isotropic solid, face by face. */
+static void test_isotropic(void **state) {
+    const rg_anisotropic_input in = {.young = {210e9, 210e9, 210e9},
+                                     .poisson = {0.3, 0.3, 0.3},
+                                     .shear = {210e9 / 2.6, 210e9 / 2.6, 210e9 / 2.6},
+                                     .angles = {20, 50, -70}};
+    const rg_material m = crystal(&in),
+                      other = rg_material_make(&(rg_material_input){
+                          .model = RG_MATERIAL_NEO_HOOKEAN, .young = 210e9, .poisson = 0.3, .density = 8960});
+    const double n[3] = {0.48, -0.6, 0.64};
+    double lambda, mu, z[6], expected[6];
+    (void)state;
+    assert_close(m.lambda, other.lambda, 1e-14 * other.lambda);
+    assert_close(m.mu, other.mu, 1e-14 * other.mu);
+    assert_close(rg_material_modulus(&m), rg_material_modulus(&other), 1e-14 * other.mu);
+    assert_close(m.of.anisotropic.softest, rg_material_modulus(&other), 1e-14 * other.mu);
+    rg_material_face(&m, n, &lambda, &mu);
+    assert_close(lambda, other.lambda, 2e-14 * other.mu);
+    assert_close(mu, other.mu, 2e-14 * other.mu);
+    rg_material_impedance(&m, n, z);
+    rg_material_impedance(&other, n, expected);
+    for (int k = 0; k < 6; k++) {
+        assert_close(z[k], expected[k], 1e-11);
+    }
+    assert_close(rg_material_slowest(&m), rg_material_shear(&other), 1e-3);
+    rg_material_face(&other, n, &lambda, &mu);
+    assert_true(lambda == other.lambda && mu == other.mu);
+}
+
+/* The same axes as directions and as angles; those of a quarter turn about z by hand. */
+static void test_axes(void **state) {
+    const double degree = acos(-1) / 180, p = 30 * degree, t = 40 * degree, q = -100 * degree;
+    rg_anisotropic_input one = copper, other = copper;
+    (void)state;
+    for (int i = 0, at = 0; i < 6; i++) { /* of no symmetry */
+        for (int j = i; j < 6; j++, at++) {
+            one.stiffness[at] += 1e9 * (at + 1);
+        }
+    }
+    memcpy(other.stiffness, one.stiffness, sizeof one.stiffness);
+    /* Axes of x y z turned by phi1 about z, then by Phi about the new x, then by phi2 about the new z. */
+    const double x[3] = {cos(p), sin(p), 0}, y[3] = {-sin(p) * cos(t), cos(p) * cos(t), sin(t)};
+    for (int k = 0; k < 3; k++) {
+        one.axis[0][k] = 3 * (cos(q) * x[k] + sin(q) * y[k]);
+        one.axis[1][k] = 0.1 * (cos(q) * y[k] - sin(q) * x[k]) + 7 * one.axis[0][k]; /* not across */
+    }
+    other.angles[0] = 30;
+    other.angles[1] = 40;
+    other.angles[2] = -100;
+    rg_material a = crystal(&one), b = crystal(&other);
+    assert_same_stiffness(&a, &b);
+    memset(one.axis, 0, sizeof one.axis);
+    one.axis[0][1] = 1; /* its 1 is y, its 2 is -x */
+    one.axis[1][0] = -1;
+    a = crystal(&one);
+    assert_close(a.of.anisotropic.stiffness[6], one.stiffness[0], 1e-4);   /* 22 from 11 */
+    assert_close(a.of.anisotropic.stiffness[7], one.stiffness[2], 1e-4);   /* 23 from 13 */
+    assert_close(a.of.anisotropic.stiffness[5], -one.stiffness[10], 1e-4); /* 11,12 from 22,12 */
+}
+
+/* What stands for a face is no less than the acoustic tensor, and touches it along [100]; impedances squared
+ * are that tensor over the density. */
+static void test_faces(void **state) {
+    rg_anisotropic_input in = copper;
+    (void)state;
+    for (int k = 0; k < 200; k++) {
+        static const int first[6] = {0, 1, 2, 1, 0, 0}, second[6] = {0, 1, 2, 2, 2, 1};
+        in.angles[0] = 37.0 * k;
+        in.angles[1] = 101.0 * k;
+        const rg_material m = crystal(&in);
+        const double u = -0.995 + 0.01 * k, r = sqrt(1 - u * u), n[3] = {r * cos(k), r * sin(k), u};
+        double A[6], value[3], lambda, mu, z[6];
+        rg_stiffness_acoustic(m.of.anisotropic.stiffness, n, A);
+        rg_material_impedance(&m, n, z);
+        for (int c = 0; c < 6; c++) {
+            static const int at[3][3] = {{0, 5, 4}, {5, 1, 3}, {4, 3, 2}};
+            double square = 0;
+            for (int j = 0; j < 3; j++) {
+                square += z[at[first[c]][j]] * z[at[j][second[c]]];
+            }
+            assert_close(square * 8960, A[c], 5e-15 * 2e11);
+        }
+        rg_material_face(&m, n, &lambda, &mu);
+        for (int c = 0; c < 6; c++) { /* what stands for it, less the tensor */
+            A[c] = (lambda + mu) * n[first[c]] * n[second[c]] + (c < 3 ? mu : 0) - A[c];
+        }
+        rg_principal(A, value);
+        assert_true(value[2] > -1e-4 && value[0] < 0.35 * rg_material_modulus(&m));
+    }
+    const rg_material m = crystal(&copper);
+    double lambda, mu;
+    rg_material_face(&m, (const double[3]){0, 1, 0}, &lambda, &mu);
+    assert_close(lambda + 2 * mu, 168.4e9, 1e-3);
+    assert_close(mu, 75.4e9, 1e-3);
+}
+
+/* Grains of one crystal, and then one of another. */
+static void test_grains(void **state) {
+    rg_other_material other[2] = {
+        {.is = {.model = RG_MATERIAL_ANISOTROPIC, .density = 8960, .anisotropic = copper}},
+        {.is = {.model = RG_MATERIAL_ANISOTROPIC, .density = 8960, .anisotropic = copper}}};
+    other[0].is.anisotropic.angles[1] = 45;
+    other[1].is.anisotropic.stiffness[0] = 200e9;
+    rg_case c = {.material = {.model = RG_MATERIAL_ANISOTROPIC, .density = 8960, .anisotropic = copper},
+                 .others = 2,
+                 .other = other};
+    (void)state;
+    rg_material *all = rg_materials_of_case(&c);
+    for (int i = 0; i < 3; i++) {
+        rg_material alone = rg_material_make(rg_case_material(&c, i));
+        assert_memory_equal(&all[i].of.anisotropic, &alone.of.anisotropic, sizeof alone.of.anisotropic);
+    }
+    assert_close(all[1].of.anisotropic.stiffest, (168.4e9 + 2 * 121.4e9 + 4 * 75.4e9) / 3, 1e5);
+    rg_free(all);
+}
+
 /* ---- fields ---- */
 
 static void test_of_case(void **state) {
@@ -133,8 +274,9 @@ static void test_fields(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_elastic), cmocka_unit_test(test_ceramic), cmocka_unit_test(test_plastic_wave),
-        cmocka_unit_test(test_of_case), cmocka_unit_test(test_fields),
+        cmocka_unit_test(test_elastic),      cmocka_unit_test(test_isotropic), cmocka_unit_test(test_axes),
+        cmocka_unit_test(test_faces),        cmocka_unit_test(test_grains),    cmocka_unit_test(test_ceramic),
+        cmocka_unit_test(test_plastic_wave), cmocka_unit_test(test_of_case),   cmocka_unit_test(test_fields),
     };
     int failed = cmocka_run_group_tests_name("materials", tests, NULL, NULL);
     return failed + (rg_alloc_blocks() > 0); /* all is given back */

@@ -124,13 +124,24 @@ static inline void name_models(char *text, size_t size, int inside) {
     }
 }
 
+/* Those that take Young's modulus, an anisotropic one three of them. */
+static inline void name_young_models(char *text, size_t size, int bits) {
+    const char *join = "";
+    for (rg_material_model m = 0; m < RG_MATERIAL_MODELS; m++) {
+        if (m == RG_MATERIAL_ANISOTROPIC || ((int)rg_material_inside(m) & bits) != 0) {
+            rg_text_add(text, size, "%s%s", join, rg_material_word(m));
+            join = ", ";
+        }
+    }
+}
+
 /* What stands for names of the registries in the messages below. */
 static const struct {
     const char *mark;
     void (*name)(char *text, size_t size, int bits);
     int bits;
 } named[] = {{"$MODELS", name_models, 0},
-             {"$ELASTIC_MODELS", name_models, RG_TAKES_YOUNG},
+             {"$ELASTIC_MODELS", name_young_models, RG_TAKES_YOUNG},
              {"$LAWS", name_laws, 0},
              {"$RIGID_LAWS", name_laws, RG_FORMS_DG},
              {"$SLOPED_LAWS", name_laws, RG_FORMS_INTRINSIC},

@@ -333,6 +333,18 @@ static void allocate(input *in) {
     in->cracked = input_alloc(INPUT_EBLOCKS);
 }
 
+/* Of no symmetry, some 30 % off the isotropic stiffness. */
+static void set_stiffness(rg_material *m) {
+    rg_anisotropic *a = &m->of.anisotropic;
+    for (int i = 0, at = 0; i < 6; i++)
+        for (int j = i; j < 6; j++, at++) {
+            double isotropic = i < 3 && j < 3 ? m->lambda + (i == j) * 2 * m->mu : (i == j) * m->mu;
+            a->stiffness[at] = isotropic + 0.3 * m->mu * sin(1 + 7 * at);
+        }
+    a->stiffest = 1.5 * (m->lambda + 2 * m->mu);
+    a->softest = 0.7 * (m->lambda + 2 * m->mu);
+}
+
 /* A solid's own parameters, of which none is 0: stresses as fractions of the shear modulus. */
 static void set_parameters(rg_material *m) {
 #define UNIT(NAME, key, unit, ...) unit,
@@ -341,6 +353,12 @@ static void set_parameters(rg_material *m) {
         bool stress = units[k] != NULL && strcmp(units[k], "Pa") == 0;
         m->of.parameter[k] = (0.2 + 0.05 * k) * (stress ? m->mu : 1);
     }
+}
+
+void input_set_model(input *in, rg_material_model model) {
+    in->material.model = model;
+    if (model == RG_MATERIAL_ANISOTROPIC)
+        set_stiffness(&in->material);
 }
 
 input *input_make(input_kind kind, rg_cohesive law, uint64_t seed, uint64_t order) {

@@ -47,6 +47,9 @@ typedef struct {
 /* Allocates and fills everything but cracks: no point broken, tractions of each interface's class. */
 input *input_make(input_kind kind, rg_cohesive law, uint64_t seed, uint64_t order);
 
+/* Makes its material one of that model, with parameters of its own that count. */
+void input_set_model(input *in, rg_material_model model);
+
 void input_free(input *in);
 
 /* Breaks each point of the mesh with the given probability, in its regime. Under flux contact some broken
