@@ -13,6 +13,7 @@ know, so that a wrong value shows as one.
 """
 
 import dataclasses
+import hashlib
 import html
 import importlib.util
 import json
@@ -63,6 +64,21 @@ def areas(crack):
     """Of the faces of a crack surface, as rhegma.crack gives it."""
     a, b, c = np.moveaxis(crack["points"], 1, 0)
     return np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2
+
+
+def rayleigh_speed(material):
+    """Root of 4 a b = (1 + b^2)^2, a^2 = 1 - (v/c_d)^2, b^2 = 1 - (v/c_s)^2, by halving."""
+    cd, cs = material.dilatational_speed, material.shear_speed
+    low, high = 0.5 * cs, cs
+
+    def rayleigh(v):
+        a, b = math.sqrt(1 - (v / cd) ** 2), math.sqrt(1 - (v / cs) ** 2)
+        return 4 * a * b - (1 + b * b) ** 2
+
+    for _ in range(60):
+        middle = (low + high) / 2
+        low, high = (middle, high) if rayleigh(middle) > 0 else (low, middle)
+    return low
 
 
 @dataclasses.dataclass(frozen=True)
@@ -134,6 +150,12 @@ def make_mesh(setup, path):
                 OMP_NUM_THREADS="1")
 
 
+def fingerprints(setup):
+    """Of what a run comes from: the case, the geometry, the program."""
+    files = [path for path in (setup.file, setup.geometry, launch.program()) if path is not None and path.is_file()]
+    return [hashlib.sha256(path.read_bytes()).hexdigest() for path in files]
+
+
 def run(setup, out, layout):
     """Runs to the end, goes on with what was interrupted, or takes what is there: rhegma.Run and its seconds."""
     sets = {"checkpoint.wall_time": 120, **setup.sets}
@@ -143,7 +165,7 @@ def run(setup, out, layout):
         sets["mesh.file"] = str(mesh)
     own = {text.partition("=")[0] for text in layout.overrides}  # the program takes a key once
     sets = {key: value for key, value in sets.items() if key not in own}
-    return rhegma.run_once(setup.file, out, sets, layout.overrides, resume=True, accept=(0, 1),
+    return rhegma.run_once(setup.file, out, sets, layout.overrides, resume=True, also=fingerprints(setup), accept=(0, 1),
                            launcher=launch.ranks_launcher(layout.ranks), OMP_NUM_THREADS=str(layout.threads))
 
 

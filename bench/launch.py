@@ -80,10 +80,10 @@ def run(case, out, sets=None, overrides=(), *, launcher=(), build=None, quiet=Tr
     return call([*launcher, binary, "run", case, *(begin or ("-o", out)), *(["-q"] if quiet else []), *options(sets), *words], **keywords)
 
 
-def run_once(case, out, sets=None, overrides=(), *, resume=False, **keywords):
+def run_once(case, out, sets=None, overrides=(), *, resume=False, also=(), **keywords):
     """The same, unless a run of these values is there already. Returns the seconds that it took, also of an earlier time.
-    `resume`: goes on from the checkpoint of one that was interrupted."""
-    record, asked = out.parent / f"{out.name}.run", [str(case), *options(sets), *overrides]
+    `resume`: goes on from the checkpoint of one that was interrupted; `also`: what must be the same besides, as text."""
+    record, asked = out.parent / f"{out.name}.run", [str(case), *options(sets), *overrides, *also]
     try:
         before = read_mapping(record, json.loads)
     except BadInput:

@@ -149,6 +149,18 @@ def test_meshes_are_made_of_the_values_and_once(bar, tmp_path, monkeypatch):
     assert len([words for words, _ in bar.calls if "mesh" in words]) == 3
 
 
+def test_a_run_of_another_case_or_program_is_made_anew(bar, tmp_path, monkeypatch):
+    bar()
+    monkeypatch.setenv("RHEGMA", str(tmp_path / "program"))
+    (tmp_path / "program").write_text("1")
+    for path in (tmp_path / "program", tmp_path / "examples/bar/bar.yaml"):
+        for _ in range(2):
+            assert start(monkeypatch, tmp_path, "--threads", 1) == 0
+        path.write_text(path.read_text() + "\n")
+    assert start(monkeypatch, tmp_path, "--threads", 1) == 0
+    assert len(bar.calls) == 3
+
+
 def test_an_interrupted_run_goes_on(bar, tmp_path, monkeypatch):
     bar()
     assert start(monkeypatch, tmp_path, "--threads", 1) == 0
@@ -160,8 +172,7 @@ def test_an_interrupted_run_goes_on(bar, tmp_path, monkeypatch):
     (out / "checkpoints/1").touch()
     for overrides, expected in (([], ["--restart", str(out)]), (["--set", "time.end=3"], ["-o", str(out), "--overwrite"])):
         assert start(monkeypatch, tmp_path, "--threads", 1, *overrides) == 0
-        words = bar.calls[-1][0]
-        assert words[3:3 + len(expected)] == expected and "--overwrite" not in words or expected[-1] == "--overwrite"
+        assert bar.calls[-1][0][3:6] == [*expected, "-q"][:3]
 
 
 def test_cases_of_the_gallery():

@@ -37,27 +37,12 @@ def measured(material, crack):
     return np.polyfit(r[near], apparent, 1)[1]
 
 
-def rayleigh_speed(material):
-    """Root of 4 a b = (1 + b^2)^2, a^2 = 1 - (v/c_d)^2, b^2 = 1 - (v/c_s)^2, by halving."""
-    cd, cs = material.dilatational_speed, material.shear_speed
-    low, high = 0.5 * cs, cs
-
-    def rayleigh(v):
-        a, b = math.sqrt(1 - (v / cd) ** 2), math.sqrt(1 - (v / cs) ** 2)
-        return 4 * a * b - (1 + b * b) ** 2
-
-    for _ in range(60):
-        middle = (low + high) / 2
-        low, high = (middle, high) if rayleigh(middle) > 0 else (low, middle)
-    return low
-
-
 def way(case, t):
     """How far the crack has come: G of the moving crack is (1 - v/c_R) times that of the resting one (Freund 1990, 6.4)."""
     material, energy = rhegma.one_material(case, TITLE), float(case["interface"]["energy"])
     toughness2 = material.young * energy / (1 - material.poisson**2)
     start = toughness2 / intensity(material, 1.0) ** 2
-    return rayleigh_speed(material) * (t - start - start * math.log(t / start)) if t > start else 0.0
+    return gallery.rayleigh_speed(material) * (t - start - start * math.log(t / start)) if t > start else 0.0
 
 
 def quantities(setups, done):
