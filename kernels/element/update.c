@@ -131,19 +131,8 @@ RG_INLINE void kick_vector(const rg_kick_args *args, size_t block, int lane, rg_
     }
 }
 
-static bool has_tile_face(const int32_t *link) {
-    int32_t any = 0;
-    for (int k = 0; k < RG_LINK_BLOCK; k++) {
-        any |= link[k] >= 0 ? link[k] : 0;
-    }
-    return (any & RG_TILE_FACE) != 0;
-}
-
 void RG_ISA_NAME(rg_kick)(const rg_kick_args *args, size_t begin, size_t end) {
     for (size_t b = begin; b < end; b++) {
-        if (args->sweep == RG_SWEEP_BOUNDARY && !has_tile_face(args->interface + b * RG_LINK_BLOCK)) {
-            continue;
-        }
         for (int lane = 0; lane < RG_LANES; lane += RG_VLEN) {
             if (args->sweep == RG_SWEEP_BOUNDARY) {
                 kick_vector(args, b, lane, args->mass, RG_SWEEP_BOUNDARY);

@@ -60,6 +60,7 @@ static void allocate_elements(rg_domain *d) {
     d->region = RG_NEW(int32_t, slots);
     d->across = RG_NEW(uint8_t, slots + 1);
     d->material = RG_NEW(uint16_t, d->blocks + 1);
+    d->rim = RG_NEW(uint8_t, d->blocks + 1);
     d->geom = RG_NEW(rg_real, d->blocks * RG_GEOM_BLOCK);
     d->neighbour = RG_NEW(int32_t, d->blocks * RG_LINK_BLOCK);
     d->interface = RG_NEW(int32_t, d->blocks * RG_LINK_BLOCK);
@@ -104,10 +105,22 @@ static void mark_joined(rg_domain *d, size_t slot, uint8_t joined) {
     }
 }
 
+/* Whether an element of the tile whose `count` elements begin with `first` has a neighbour in another one. */
+static bool is_on_rim(const rg_element *e, rg_gid first, size_t count) {
+    for (int f = 0; f < RG_FACES; f++) {
+        rg_gid other = e->neighbour[f];
+        if (other >= 0 && (other < first || other >= first + (rg_gid)count)) {
+            return true;
+        }
+    }
+    return false;
+}
+
 /* Gives the blocks of tile t their materials, and its elements their places. */
-static void place_materials(rg_domain *d, const rg_tile *t, const rg_element *element, size_t count,
-                            int materials) {
+static void place_elements(rg_domain *d, const rg_tile *t, const rg_element *element, size_t count,
+                           int materials) {
     size_t *next = RG_NEW(size_t, (size_t)materials), block = 0;
+    uint16_t *place = d->place + (size_t)(t - d->tile) * (size_t)d->tile_elements;
     count_materials(element, count, materials, next);
     for (int m = 0; m < materials; m++) {
         size_t end = block + whole_blocks(next[m]);
@@ -116,9 +129,13 @@ static void place_materials(rg_domain *d, const rg_tile *t, const rg_element *el
             d->material[t->begin + block] = (uint16_t)m;
         }
     }
-    for (size_t i = 0; d->place != NULL && i < count; i++) {
-        d->place[(size_t)(t - d->tile) * (size_t)d->tile_elements + i] =
-            (uint16_t)next[element[i].material]++;
+    for (int rim = 0; rim < 2; rim++) {
+        for (size_t i = 0; i < count; i++) {
+            if (is_on_rim(&element[i], t->first, count) == rim) {
+                place[i] = (uint16_t)next[element[i].material]++;
+                d->rim[t->begin + place[i] / RG_LANES] |= (uint8_t)rim;
+            }
+        }
     }
     rg_free(next);
 }
@@ -128,7 +145,7 @@ static void fill_tile(rg_domain *d, const rg_part *part, const rg_element *eleme
     const rg_tile *tile = &d->tile[t];
     size_t first = tile->begin * RG_LANES, count = (size_t)rg_tile_size(part, part->tile_id[t]);
     size_t slots = (tile->end - tile->begin) * RG_LANES;
-    place_materials(d, tile, element, count, materials);
+    place_elements(d, tile, element, count, materials);
     for (size_t at = 0; at < slots; at++) {
         d->id[first + at] = -1;
     }
@@ -155,7 +172,7 @@ rg_domain *rg_domain_build(const rg_part *part, const uint8_t *joined, int rank,
     }
     make_tiles(d, part, element, m->materials);
     allocate_elements(d);
-    d->place = m->materials > 1 ? RG_NEW(uint16_t, d->tiles * (size_t)part->tile) : NULL;
+    d->place = RG_NEW(uint16_t, d->tiles * (size_t)part->tile);
 #pragma omp parallel for schedule(static)
     for (size_t t = 0; t < d->tiles; t++) {
         fill_tile(d, part, element[t], joined, m->materials, t);
@@ -191,9 +208,9 @@ void rg_domain_free(rg_domain *d) {
     if (d == NULL) {
         return;
     }
-    void *blocks[] = {d->region,    d->across,    d->id,       d->corner,  d->set,        d->geom,
-                      d->neighbour, d->interface, d->material, d->place,   d->beside,     d->tile,
-                      d->side[0],   d->side[1],   d->igeom,    d->counted, d->shared_face};
+    void *blocks[] = {d->region,    d->across,    d->id,       d->corner, d->set,     d->geom,
+                      d->neighbour, d->interface, d->material, d->rim,    d->place,   d->beside,
+                      d->tile,      d->side[0],   d->side[1],  d->igeom,  d->counted, d->shared_face};
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) {
         rg_free(blocks[i]);
     }

@@ -3,7 +3,8 @@
  *
  * Tiles are the mesh's; those that touch another rank come first. Each has its elements, the interfaces
  * inside it and its tile-boundary faces, padded to whole blocks. Its elements lie by material, each of them
- * padded, and of each by number: every block is of one material. A tile-boundary face has a row by which the
+ * padded, so every block is of one material; of each those come last that have a neighbour in another tile,
+ * so the boundary sweep finds them in few blocks; then by number. A tile-boundary face has a row by which the
  * other side finds its trace and its tractions; the rows of other ranks' tile-boundary faces come behind the
  * own ones, in the order in which they arrive. */
 #ifndef RG_DOMAIN_H
@@ -40,7 +41,8 @@ typedef struct {
     int32_t *region;      /* [slots]: group of volume sets, -1 for none */
     uint8_t *across;      /* [slots]: bits of faces beyond which volume sets or the material differ */
     uint16_t *material;   /* [blocks]: number of its material */
-    uint16_t *place;      /* [tiles][tile_elements]: slot in its tile, by number in it; NULL: the number */
+    uint8_t *rim;         /* [blocks]: 1 where an element has a neighbour in another tile */
+    uint16_t *place;      /* [tiles][tile_elements]: slot in its tile, by number in it */
     rg_real *geom;        /* kernels/layout.h */
     int32_t *neighbour;   /* links */
     int32_t *interface;   /* links */
@@ -78,8 +80,7 @@ const rg_tile *rg_tile_of(const rg_domain *d, size_t slot);
 
 /* Slot, in its tile t, of element `id`. */
 static inline size_t rg_slot_in(const rg_domain *d, const rg_tile *t, rg_gid id) {
-    size_t number = (size_t)(id - t->first);
-    return d->place == NULL ? number : d->place[(size_t)(t - d->tile) * (size_t)d->tile_elements + number];
+    return d->place[(size_t)(t - d->tile) * (size_t)d->tile_elements + (size_t)(id - t->first)];
 }
 
 /* Where the blocks of tile t that are of one material with its block `begin` end; both count from the tile's

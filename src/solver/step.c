@@ -6,6 +6,7 @@
 
 #include "base/interrupt.h"
 #include "partition/material.h"
+#include "solver/ahead.h"
 #include "solver/exposure.h"
 #include "solver/initial.h"
 #include "solver/law.h"
@@ -64,6 +65,9 @@ static void tile_kick(rg_solver *s, size_t tile, const rg_workspace *w, const im
     for (size_t begin = 0, end; begin < rg_tile_eblocks(t); begin = end) {
         end = rg_run_end(s->domain, t, begin);
         args.density = rg_block_material(s, t, begin)->density;
+        while (sweep == RG_SWEEP_BOUNDARY && begin < end && !s->domain->rim[t->begin + begin]) {
+            begin++; /* no tile-boundary face */
+        }
         s->kernels->kick(&args, begin, end);
     }
 }
@@ -118,6 +122,7 @@ static void element_sweep(rg_solver *s, size_t tile, const rg_workspace *w, cons
     bulk.advance = p->advance;
     rg_interface_args interface = interfaces_of(s, t, w, p);
     rg_trace_args traces = rg_tile_traces(s, t, w, false);
+    rg_ahead_of_elements(s, t);
     if (p->apart) {
         memset(p->velocity + t->begin * RG_NODE_BLOCK, 0, blocks * RG_NODE_BLOCK * sizeof *p->velocity);
     }
@@ -181,6 +186,7 @@ static void tile_complete(rg_solver *s, size_t tile, const rg_workspace *w, cons
 static void boundary_sweep(rg_solver *s, size_t tile, const rg_workspace *w, const impulse *p) {
     const rg_tile *t = &s->domain->tile[tile];
     rg_interface_args interface = interfaces_of(s, t, w, p);
+    rg_ahead_of_boundary(s, t);
     rg_tile_receive(s, t, w);
     s->kernels->interface(&interface, rg_tile_inner_blocks(t), rg_tile_iblocks(t));
     mark_cracked(s, t, t->sbegin, t->iend);

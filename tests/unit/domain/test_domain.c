@@ -157,9 +157,23 @@ static void check_slots(const setup *s) {
     assert_int_equal(real, d->elements);
 }
 
-/* Materials ascend in a tile, and of each the numbers. */
+/* Whether an element has a neighbour in another tile. */
+static bool is_on_rim(const setup *s, rg_gid e) {
+    rg_gid tile = e / s->domain->tile_elements;
+    for (int f = 0; f < RG_FACES; f++) {
+        rg_gid other = s->mesh->neighbour[4 * e + f];
+        if (other >= 0 && other / s->domain->tile_elements != tile) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Materials ascend in a tile; of each those on the rim come last; of these and the others the numbers ascend.
+ */
 static void check_runs(const setup *s) {
     const rg_domain *d = s->domain;
+    size_t rims = 0;
     for (size_t t = 0; t < d->tiles; t++) {
         size_t end = 0, blocks = d->tile[t].end - d->tile[t].begin;
         for (size_t begin = 0; begin < blocks; begin = end) {
@@ -167,14 +181,26 @@ static void check_runs(const setup *s) {
             const uint16_t *of = d->material + d->tile[t].begin;
             const rg_gid *id = d->id + d->tile[t].begin * RG_LANES;
             assert_true(end > begin && end <= blocks && (begin == 0 || of[begin - 1] < of[begin]));
+            rg_gid before = -1;
             for (size_t at = begin * RG_LANES; at < end * RG_LANES; at++) {
-                bool first = at == begin * RG_LANES;
                 assert_int_equal(of[at / RG_LANES], of[begin]);
-                assert_true(first ? id[at] >= 0 : id[at] > id[at - 1] || id[at] < 0);
+                assert_true(at > begin * RG_LANES || id[at] >= 0);
+                rg_gid order = id[at] < 0 ? INT64_MAX : id[at] + is_on_rim(s, id[at]) * s->mesh->elements;
+                assert_true(id[at] < 0 || order > before);
+                before = order;
             }
         }
         assert_int_equal(end, blocks);
     }
+    for (size_t b = 0; b < d->blocks; b++) {
+        bool rim = false;
+        for (size_t at = b * RG_LANES; at < (b + 1) * RG_LANES; at++) {
+            rim |= d->id[at] >= 0 && is_on_rim(s, d->id[at]);
+        }
+        assert_int_equal(d->rim[b], rim);
+        rims += rim;
+    }
+    assert_true(d->tiles == 1 || (rims > 0 && rims <= d->blocks));
 }
 
 static void test_runs(void **state) {
