@@ -13,7 +13,7 @@ import subprocess
 import pytest
 from conftest import ENVIRONMENT, ROOT, TIMEOUT
 
-STEPS = re.findall(r"^(?:count|check|programs|runs)\(\) \{.*?^\}\n", (ROOT / "tests" / "run").read_text(), re.M | re.S)
+STEPS = re.findall(r"^(?:count|check|build_others|built|programs|runs)\(\) \{.*?^\}\n", (ROOT / "tests" / "run").read_text(), re.M | re.S)
 LOADER = importlib.machinery.SourceFileLoader("count", str(ROOT / "tests" / "count"))
 count = importlib.util.module_from_spec(importlib.util.spec_from_loader("count", LOADER))
 LOADER.exec_module(count)
@@ -260,6 +260,16 @@ def test_checks(tmp_path):
     assert {name: (step["passed"], step["failed"]) for name, step in steps(tmp_path).items()} == {
         "good": (1, []), "bad": (0, ["check: exit status 1"]), "dies": (0, ["check: killed by SIGSEGV"]),
         "none": (0, ["check: exit status 127"])}
+
+
+def test_builds_behind_the_tests(tmp_path):
+    """Each counts once it is waited for; the last of them ends all that were to come."""
+    build = "build() { case $1 in bad) echo why; false ;; dies) kill -KILL $BASHPID ;; esac; }; "
+    shell(tmp_path, build + "touch out/good.status; count start; build_others good bad dies after; "
+                            "built good; built bad; built dies; built after")
+    assert {name: (step["passed"], step["failed"]) for name, step in steps(tmp_path).items()} == {
+        "good": (1, []), "bad": (0, ["check: exit status 1"]), "dies": (0, ["check: exit status 1"]),
+        "after": (0, ["check: exit status 1"])}
 
 
 @pytest.mark.parametrize("script", ["", "count start;", "count start; touch out/outcomes; "
