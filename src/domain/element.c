@@ -1,5 +1,7 @@
 #include "domain/element.h"
 
+#include <string.h>
+
 /* Ends of each node: a corner is both ends of itself. */
 const int rg_node_end[RG_NODES][2] = {{0, 0}, {1, 1}, {2, 2}, {3, 3}, {0, 1},
                                       {1, 2}, {0, 2}, {0, 3}, {1, 3}, {2, 3}};
@@ -38,24 +40,13 @@ void rg_shape(const double l[4], double N[RG_NODES]) {
     }
 }
 
-/* Corners that two mid-edges, or an edge and a corner (listed twice), have in common. */
-static int common_ends(int a, int b) {
-    const int *p = rg_node_end[a], *q = rg_node_end[b];
-    return (p[0] == q[0]) + (p[0] == q[1]) + (p[1] == q[0]) + (p[1] == q[1]);
-}
-
-/* Value for a pair of nodes by kind: corners same, different; corner and edge adjacent, opposite; edges same,
- * adjacent, opposite. */
-static double by_kind(const double kind[7], int a, int b) {
-    int common = common_ends(a, b);
-    if (a < 4 && b < 4) {
-        return kind[a == b ? 0 : 1];
-    }
-    if (a < 4 || b < 4) {
-        return kind[common > 0 ? 2 : 3];
-    }
-    return kind[a == b ? 4 : common > 0 ? 5 : 6];
-}
+/* Kinds of pairs of nodes: corners same 0, different 1; corner and edge adjacent 2, opposite 3; edges same 4,
+ * adjacent 5, opposite 6. */
+static const uint8_t kind_of[RG_NODES][RG_NODES] = {
+    {0, 1, 1, 1, 2, 3, 2, 2, 3, 3}, {1, 0, 1, 1, 2, 2, 3, 3, 2, 3}, {1, 1, 0, 1, 3, 2, 2, 3, 3, 2},
+    {1, 1, 1, 0, 3, 3, 3, 2, 2, 2}, {2, 2, 3, 3, 4, 5, 5, 5, 5, 6}, {3, 2, 2, 3, 5, 4, 5, 6, 5, 5},
+    {2, 3, 2, 3, 5, 5, 4, 5, 6, 5}, {2, 3, 3, 2, 5, 6, 5, 4, 5, 5}, {3, 2, 3, 2, 5, 5, 6, 5, 4, 5},
+    {3, 3, 2, 2, 6, 5, 5, 5, 5, 4}};
 
 double rg_mass_entry(rg_mass kind, int a, int b) {
     static const double entry[7] = {6. / 420, 1. / 420, -4. / 420, -6. / 420, 32. / 420, 16. / 420, 8. / 420};
@@ -65,9 +56,9 @@ double rg_mass_entry(rg_mass kind, int a, int b) {
         return a != b ? 0 : a < 4 ? 1. / 36 : 4. / 27;
     }
     if (kind == RG_MASS_SCALED) {
-        return RG_MASS_SCALE * by_kind(entry, a, b) + (1 - RG_MASS_SCALE) * by_kind(affine, a, b);
+        return RG_MASS_SCALE * entry[kind_of[a][b]] + (1 - RG_MASS_SCALE) * affine[kind_of[a][b]];
     }
-    return by_kind(entry, a, b);
+    return entry[kind_of[a][b]];
 }
 
 double rg_inverse_mass_entry(rg_mass kind, int a, int b) {
@@ -77,18 +68,20 @@ double rg_inverse_mass_entry(rg_mass kind, int a, int b) {
         return a != b ? 0 : a < 4 ? 36 : 27. / 4;
     }
     if (kind == RG_MASS_SCALED) {
-        return by_kind(entry, a, b) / RG_MASS_SCALE + (1 - 1. / RG_MASS_SCALE) * by_kind(affine, a, b);
+        return entry[kind_of[a][b]] / RG_MASS_SCALE + (1 - 1. / RG_MASS_SCALE) * affine[kind_of[a][b]];
     }
-    return by_kind(entry, a, b);
+    return entry[kind_of[a][b]];
 }
 
 void rg_mass_times(rg_mass kind, double mass, const rg_real *v, size_t slot, double out[RG_NODES][3]) {
     for (int a = 0; a < RG_NODES; a++) {
-        for (int c = 0; c < 3; c++) {
-            out[a][c] = 0;
-            for (int b = 0; b < RG_NODES; b++) {
-                out[a][c] += mass * rg_mass_entry(kind, a, b) * v[rg_node_index(slot, b, c)];
+        double sum[3] = {0, 0, 0};
+        for (int b = 0; b < RG_NODES; b++) {
+            double entry = mass * rg_mass_entry(kind, a, b);
+            for (int c = 0; c < 3; c++) {
+                sum[c] += entry * v[rg_node_index(slot, b, c)];
             }
         }
+        memcpy(out[a], sum, sizeof sum);
     }
 }
