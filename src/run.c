@@ -436,6 +436,7 @@ static void begin(run *r, MPI_Comm comm) {
     }
     if (speaks) {
         rg_estimate_print(r->solver, &r->summary.estimate, stdout);
+        rg_probes_print(r->probes, stdout);
     }
     if (!r->options->quiet) {
         rg_affinity_print(comm, stdout);
@@ -528,7 +529,7 @@ int rg_run(const rg_case *c, MPI_Comm comm, const rg_run_options *options) {
 
 int rg_run_check(const rg_case *c, MPI_Comm comm) {
     rg_solver *s = rg_solver_make(c, comm);
-    rg_probes_close(rg_probes_find(s));
+    rg_probes *probes = rg_probes_find(s);
     rg_spectrum(s);
     rg_solver_start(s);
     rg_solver_measure(s);
@@ -536,8 +537,10 @@ int rg_run_check(const rg_case *c, MPI_Comm comm) {
     if (s->rank == 0) {
         rg_estimate_warn(c, &estimate);
         rg_estimate_print(s, &estimate, stdout);
+        rg_probes_print(probes, stdout);
     }
     rg_affinity_print(comm, stdout);
+    rg_probes_close(probes);
     rg_free(estimate.of_material);
     rg_solver_free(s);
     return RG_OK;

@@ -155,6 +155,42 @@ typedef struct {
     double at[3]; /* reference position (m) */
 } rg_probe;
 
+/* What sensors record, X(NAME, word, meaning): values at a place, those of stress last, and what is made of
+ * them over a part of the body. */
+#define RG_SENSOR_VALUE(X)                                                                                   \
+    X(UX, "ux", "displacement along x (m)")                                                                  \
+    X(UY, "uy", "along y")                                                                                   \
+    X(UZ, "uz", "along z")                                                                                   \
+    X(VX, "vx", "velocity along x (m/s)")                                                                    \
+    X(VY, "vy", "along y")                                                                                   \
+    X(VZ, "vz", "along z")                                                                                   \
+    X(SXX, "sxx", "Cauchy stress (Pa)")                                                                      \
+    X(SYY, "syy", "Cauchy stress")                                                                           \
+    X(SZZ, "szz", "Cauchy stress")                                                                           \
+    X(SYZ, "syz", "Cauchy stress")                                                                           \
+    X(SXZ, "sxz", "Cauchy stress")                                                                           \
+    X(SXY, "sxy", "Cauchy stress")                                                                           \
+    X(MISES, "von_mises", "von Mises stress (Pa)")                                                           \
+    X(PRESSURE, "pressure", "minus the mean stress (Pa)")
+
+#define RG_SENSOR_MEASURE(X)                                                                                 \
+    X(MEAN, "mean", "over the volume or area of reference")                                                  \
+    X(MIN, "min", "least, at nodes; of stress at the points of integration")                                 \
+    X(MAX, "max", "largest")                                                                                 \
+    X(INTEGRAL, "integral", "over the volume or area of reference (its unit times m3 or m2)")
+
+#define RG_SENSOR_ENUM(NAME, word, meaning) RG_SENSOR_##NAME,
+enum { RG_SENSOR_VALUE(RG_SENSOR_ENUM) RG_SENSOR_VALUES };
+enum { RG_SENSOR_MEASURE(RG_SENSOR_ENUM) RG_SENSOR_MEASURES };
+
+typedef struct {
+    char *name;                /* column prefix in history.csv */
+    char *set;                 /* named set of faces or elements; or */
+    rg_expr *where;            /* not 0: elements by their centroid, with a normal faces of the surface; or */
+    char *material;            /* by name; none of them: the whole body */
+    unsigned values, measures; /* bits */
+} rg_sensor_input;
+
 /* A rigid body that the solid's surface touches; it moves without turning. Values that the shape or the
  * motion has no use for are 0. */
 typedef struct {
@@ -244,6 +280,8 @@ typedef struct {
         double *time;           /* s, ascending */
         int probes;
         rg_probe *probe;
+        int sensors;
+        rg_sensor_input *sensor;
         unsigned fields;
         rg_expr *region; /* fields of the elements at whose centroid this is not 0; NULL: of all */
         rg_output_precision precision; /* of the fields on the disk */

@@ -57,6 +57,12 @@ static const char *const laws_meaning[] = {
 #include "laws.h"
 #undef RG_LAW
     "faces never break"};
+#define SENSOR_WORD(NAME, word, meaning)    word,
+#define SENSOR_MEANING(NAME, word, meaning) meaning,
+static const char *const sensor_values[] = {RG_SENSOR_VALUE(SENSOR_WORD) NULL};
+static const char *const sensor_values_meaning[] = {RG_SENSOR_VALUE(SENSOR_MEANING)};
+static const char *const sensor_measures[] = {RG_SENSOR_MEASURE(SENSOR_WORD) NULL};
+static const char *const sensor_measures_meaning[] = {RG_SENSOR_MEASURE(SENSOR_MEANING)};
 /* clang-format off */
 static const char *const interactions[] = {"thesis", "derived", NULL};
 static const char *const interactions_meaning[] = {
@@ -288,6 +294,8 @@ static const rg_key case_keys[] = {
      .offset_count = offsetof(rg_case, output.times), MEANS("fields at exactly these times")},
     {.name = "output.probes", .type = RG_KEY_LIST, ELSE("none"), CASE(output.probe), .entry = &rg_probe_table,
      .offset_count = offsetof(rg_case, output.probes), MEANS("points whose history is recorded in every step")},
+    {.name = "output.sensors", .type = RG_KEY_LIST, ELSE("none"), CASE(output.sensor), .entry = &rg_sensor_table,
+     .offset_count = offsetof(rg_case, output.sensors), MEANS("means, extremes and integrals over parts of the body, recorded in every step: columns NAME_VALUE_MEASURE of history.csv")},
     {.name = "output.fields", .type = RG_KEY_FLAGS, .choice = fields, .choice_meaning = fields_meaning, DEFAULT(0), MAY_CHANGE,
      .absent = "all that the materials have but rank, and triaxiality and material where there is cause",
      CASE(output.fields), MEANS("what to write; [] for none")},
@@ -454,6 +462,20 @@ static const rg_key probe_keys[] = {
      MEANS("column prefix in history.csv: letters, digits, _ and -")},
     {.name = "at", .unit = "m", REAL3, ANY, REQUIRED, .offset = offsetof(rg_probe, at), MEANS("reference position, inside the body")},
 };
+
+#define SENSOR(member) .offset = offsetof(rg_sensor_input, member)
+static const rg_key sensor_keys[] = {
+    {.name = "name", .type = RG_KEY_TEXT, REQUIRED, SENSOR(name), MEANS("column prefix in history.csv: letters, digits, _ and -")},
+    {.name = "set", .type = RG_KEY_TEXT, .choice = box_sets, ELSE("where, material or the whole body"), SENSOR(set),
+     MEANS("a side of the box, or a set of the mesh file: of faces of the surface, or of elements")},
+    {.name = "where", .type = RG_KEY_EXPR, ELSE("set, material or the whole body"), .no_time = true, .normal = true, SENSOR(where),
+     MEANS("elements at whose centroid it is not 0; an expression with nx, ny or nz selects faces of the surface, by middle and outward normal")},
+    {.name = "material", .type = RG_KEY_TEXT, ELSE("set, where or the whole body"), SENSOR(material), MEANS("elements of the material of this name")},
+    {.name = "values", .type = RG_KEY_FLAGS, .choice = sensor_values, .choice_meaning = sensor_values_meaning, REQUIRED, SENSOR(values),
+     MEANS("what is recorded; stress costs each element about as much as half a step")},
+    {.name = "measures", .type = RG_KEY_FLAGS, .choice = sensor_measures, .choice_meaning = sensor_measures_meaning, DEFAULT(0), .absent = "[mean]", SENSOR(measures),
+     MEANS("what is made of it over the part")},
+};
 /* clang-format on */
 
 #define TABLE(list, type)                                                                                    \
@@ -466,6 +488,7 @@ const rg_key_table rg_boundary_table = TABLE(boundary_keys, rg_boundary);
 const rg_key_table rg_load_table = TABLE(load_keys, rg_load_input);
 const rg_key_table rg_body_table = TABLE(body_keys, rg_body_input);
 const rg_key_table rg_initial_set_table = TABLE(initial_set_keys, rg_initial_set);
+const rg_key_table rg_sensor_table = TABLE(sensor_keys, rg_sensor_input);
 const rg_key_table rg_probe_table = TABLE(probe_keys, rg_probe);
 
 _Static_assert(sizeof(case_keys) / sizeof(case_keys[0]) <= RG_MAX_KEYS, "RG_MAX_KEYS is too small");

@@ -276,8 +276,12 @@ static const char *column_name(const rg_case *c, int i, bool *end) {
         return c->body[i].name;
     }
     i -= c->bodies;
-    *end = i >= c->output.probes;
-    return *end ? NULL : c->output.probe[i].name;
+    if (i < c->output.probes) {
+        return c->output.probe[i].name;
+    }
+    i -= c->output.probes;
+    *end = i >= c->output.sensors;
+    return *end ? NULL : c->output.sensor[i].name;
 }
 
 /* Whether an entry before that of `name` has the same one. */

@@ -10,6 +10,7 @@
 #include "base/files.h"
 #include "base/mem.h"
 #include "base/first_bad.h"
+#include "diagnostics/sensor.h"
 #include "domain/element.h"
 #include "quadrature.h"
 #include "solver/tile.h"
@@ -18,9 +19,10 @@ enum {
     VALUES = 12,
     BODY = 9,
     OUTSIDE = 7,
-    CAPACITY = 256
-}; /* per probe, body, item of the account and sample;
-      samples between two flushes */
+    CAPACITY = 256,
+    CAPACITY_OF_SUMS = 32
+}; /* per probe, body, item of the account and sample; samples between two flushes, with sensors, whose sums
+      are large */
 
 static const char *const column[VALUES] = {"ux",  "uy",  "uz",  "vx",  "vy",  "vz",
                                            "sxx", "syy", "szz", "syz", "sxz", "sxy"};
@@ -39,8 +41,17 @@ struct rg_probes {
     rg_lid *slot;                 /* [probes]; -1 where another rank has it */
     double (*at)[4];              /* [probes]: barycentric coordinates */
     double *time, *value, *total; /* [CAPACITY], [CAPACITY][row]; total: on rank 0 */
+    rg_sensors *sensors;
     FILE *file;
 };
+
+static int columns(const rg_probes *p) {
+    return p->row + rg_sensors_columns(p->sensors);
+}
+
+static int capacity(const rg_probes *p) {
+    return rg_sensors_columns(p->sensors) > 0 ? CAPACITY_OF_SUMS : CAPACITY;
+}
 
 /* The element with the lowest number that contains probe i. */
 static rg_lid locate(const rg_solver *s, int i, double at[4]) {
@@ -95,6 +106,7 @@ static void write_header(rg_probes *p, const rg_case *c) {
             fprintf(p->file, ",%s_%s", name, outside_column[i % OUTSIDE]);
         }
     }
+    rg_sensors_header(p->sensors, p->file);
     fputc('\n', p->file);
 }
 
@@ -137,6 +149,7 @@ static void watch(void *context, rg_solver *s, size_t tile, const rg_workspace *
             sample(s, w, (size_t)p->slot[i], p->at[i], p->value + p->samples * p->row + i * VALUES);
         }
     }
+    rg_sensors_watch(p->sensors, s, tile, w);
 }
 
 rg_probes *rg_probes_find(const rg_solver *s) {
@@ -148,6 +161,7 @@ rg_probes *rg_probes_find(const rg_solver *s) {
                      .row = probes * VALUES + s->bodies->count * BODY + named_items(s->account) * OUTSIDE,
                      .bodies = s->bodies,
                      .account = s->account};
+    p->sensors = rg_sensors_make(s);
     p->slot = RG_NEW(rg_lid, (size_t)p->probes);
     p->at = rg_alloc((size_t)p->probes, sizeof *p->at);
     for (int i = 0; i < p->probes; i++) {
@@ -167,20 +181,24 @@ static void begin(rg_probes *p, rg_solver *s) {
             s->watched[rg_tile_of(s->domain, (size_t)p->slot[i]) - s->domain->tile] = 1;
         }
     }
+    for (size_t t = 0; t < s->domain->tiles; t++) {
+        s->watched[t] |= rg_sensors_want(p->sensors, t);
+    }
+    rg_sensors_open(p->sensors, capacity(p));
     s->watch = watch;
     s->watch_context = p;
 }
 
 void rg_probes_open(rg_probes *p, rg_solver *s) {
     begin(p, s);
-    if (p->rank == 0 && p->row > 0) {
+    if (p->rank == 0 && columns(p) > 0) {
         write_header(p, s->input);
     }
 }
 
 void rg_probes_reopen(rg_probes *p, rg_solver *s, int64_t length) {
     begin(p, s);
-    if (p->rank == 0 && p->row > 0) {
+    if (p->rank == 0 && columns(p) > 0) {
         p->file = rg_reopen_in(s->input->output.dir, "history.csv", length);
     }
 }
@@ -209,29 +227,34 @@ static void sample_account(const rg_probes *p, double *out) {
 }
 
 void rg_probes_next(rg_probes *p, double time) {
-    if (p->row == 0) {
+    if (columns(p) == 0) {
         return;
     }
+    rg_sensors_next(p->sensors);
     double *values = p->value + p->samples * p->row + p->probes * VALUES;
     sample_bodies(p, values);
     sample_account(p, values + p->bodies->count * BODY);
     p->time[p->samples] = time;
-    if (++p->samples == CAPACITY) {
+    if (++p->samples == capacity(p)) {
         rg_probes_flush(p);
     }
 }
 
 void rg_probes_flush(rg_probes *p) {
-    int count = p->samples * p->row;
-    if (count == 0) {
+    int count = p->samples * p->row, more = rg_sensors_columns(p->sensors);
+    if (p->samples == 0) {
         return;
     }
     /* One rank has each value, the others have zero from the start: the sum only brings them together. */
     MPI_Reduce(p->value, p->total, count, MPI_DOUBLE, MPI_SUM, 0, p->comm);
+    const double *sensed = rg_sensors_collect(p->sensors);
     for (int k = 0; p->rank == 0 && k < p->samples; k++) {
         fprintf(p->file, "%.17g", p->time[k]);
         for (int i = 0; i < p->row; i++) {
             fprintf(p->file, ",%.17g", p->total[k * p->row + i]);
+        }
+        for (int i = 0; i < more; i++) {
+            fprintf(p->file, ",%.17g", sensed[k * more + i]);
         }
         fputc('\n', p->file);
     }
@@ -251,8 +274,13 @@ void rg_probes_close(rg_probes *p) {
     if (p->file != NULL) {
         fclose(p->file);
     }
+    rg_sensors_free(p->sensors);
     void *blocks[] = {p->slot, p->at, p->time, p->value, p->total, p};
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) {
         rg_free(blocks[i]);
     }
+}
+
+void rg_probes_print(const rg_probes *p, FILE *out) {
+    rg_sensors_print(p->sensors, out);
 }

@@ -1,8 +1,10 @@
 /* What is recorded every step, in history.csv: displacement, velocity and stress at the probes; position,
  * velocity of rigid bodies, and the solid's force on them; force, moment and work of loads and supports that
- * have a name. */
+ * have a name; sensors (diagnostics/sensor.h). */
 #ifndef RG_PROBE_H
 #define RG_PROBE_H
+
+#include <stdio.h>
 
 #include "solver/solver.h"
 
@@ -11,6 +13,9 @@ typedef struct rg_probes rg_probes;
 /* Finds the elements that hold the probes: of several, the one with the lowest number. Ends the run with a
  * message if a probe is in none, which of a mesh file nobody knew before. Collective. */
 rg_probes *rg_probes_find(const rg_solver *s);
+
+/* What sensors look at, a line each. */
+void rg_probes_print(const rg_probes *p, FILE *out);
 
 /* Creates history.csv in the output directory, on rank 0 and if there is any of that. From then on the
  * solver's kicks record what they see there. */

@@ -1,0 +1,102 @@
+"""Sensors: means, extremes and integrals over parts of the body. Bits on any layout and restarts: test_parallel.py,
+test_restart.py."""
+
+import numpy as np
+import pytest
+from conftest import SINGLE, launch, rounding
+from figures import ROUNDING
+
+SIZE = np.array([2e-3, 1e-3, 3e-3])
+E, NU = 200e9, 0.3
+BLOCK = """
+mesh: {cells: [2, 1, 3], size: [2e-3, 1e-3, 3e-3], jitter: 0.15}
+material: {model: linear-elastic, young: 200e9, poisson: 0.3, density: 8000}
+materials: [{name: half, where: x < 1e-3, model: linear-elastic, young: 200e9, poisson: 0.3, density: 8000}]
+interface: {law: none, beta_s: 2}
+initial:
+  displacement: {x: "1e-4*x*x + 1e-7*y", y: "2e-4*y*z", z: "3e-7*x"}
+  velocity: {x: "1e6*x*y", y: 3, z: "z > 2.9e-3 ? 7 : x/1e-3"}
+time: {end: 1, safety: 0.9, steps: 1}
+output:
+  fields: []
+  sensors:
+    - {name: all, values: [ux, uy, uz, vx, vy], measures: [mean, min, max, integral]}
+    - {name: stress, values: [sxx, syy, sxy, pressure, von_mises]}
+    - {name: far, set: x+, values: [sxx, sxy, von_mises, pressure, ux], measures: [mean, min, max]}
+    - {name: top, where: nz > 0.5, values: [vz, uy], measures: [mean, min, integral]}
+    - {name: half, material: half, values: [sxx], measures: [mean, max]}
+"""
+
+
+@pytest.fixture(scope="module")
+def row(run, scratch):
+    path = scratch / "sensors.yaml"
+    path.write_text(BLOCK)
+    history = run(path).history
+    return {name: history[name][0] for name in history.dtype.names}
+
+
+def stress(x, y, z):
+    """xx, yy, zz, xy of the displacement, and yz, xz."""
+    x, y, z = np.broadcast_arrays(x, y, z)
+    mu, lam = E / 2 / (1 + NU), E * NU / (1 + NU) / (1 - 2 * NU)
+    xx, yy = 2e-4 * x, 2e-4 * z
+    trace = lam * (xx + yy)
+    return np.array([trace + 2 * mu * xx, trace + 2 * mu * yy, trace, mu * 1e-7 + 0 * x, mu * 2e-4 * y, mu * 3e-7 + 0 * x])
+
+
+def test_motion_is_integrated_exactly(row, figure):
+    """Quadratic fields on an irregular mesh."""
+    x, y, z = SIZE
+    volume = SIZE.prod()
+    known = {"all_ux_mean": 1e-4 * x**2 / 3 + 1e-7 * y / 2, "all_ux_max": 1e-4 * x**2 + 1e-7 * y, "all_ux_min": 0, "all_uy_mean": 2e-4 * y * z / 4,
+             "all_uz_integral": 3e-7 * x / 2 * volume, "all_vx_mean": 1e6 * x * y / 4, "all_vx_max": 1e6 * x * y, "all_vy_integral": 3 * volume, "all_vy_min": 3,
+             "top_vz_mean": 7, "top_vz_min": 7, "top_uy_mean": 2e-4 * y * z / 2, "top_uy_integral": 2e-4 * y * z / 2 * x * y, "far_ux_mean": 1e-4 * x**2 + 1e-7 * y / 2}
+    apart = max(abs(row[name] - value) / max(abs(value), 1e-12) for name, value in known.items())
+    figure("sensors: displacement and velocity, the worst of 14", apart, bound=rounding(2e-15, 4e-7), why=ROUNDING)
+
+
+@pytest.mark.skipif(SINGLE, reason="strains of 1e-7")
+def test_stress_is_that_of_the_points(row, figure):
+    """Linear in an element: means are exact, and so is all on a face where it is the same everywhere."""
+    x, y, z = SIZE
+    mean, far = stress(x / 2, y / 2, z / 2), stress(x, y / 2, z / 2)
+    known = {"stress_sxx_mean": mean[0], "stress_syy_mean": mean[1], "stress_sxy_mean": mean[3], "stress_pressure_mean": -mean[:3].mean(), "half_sxx_mean": stress(x / 4, y / 2, z / 2)[0],
+             "far_sxx_mean": far[0], "far_sxy_mean": far[3], "far_sxy_min": far[3], "far_sxy_max": far[3], "far_pressure_mean": -far[:3].mean()}
+    apart = max(abs(row[name] - value) / abs(value) for name, value in known.items())
+    figure("sensors: stress, the worst of 10", apart, bound=1e-6, why="strains of 1e-7, of which Cauchy stress takes the square")
+    assert row["far_sxx_min"] < far[0] < row["far_sxx_max"] <= stress(x, y, z)[0] * (1 + 1e-6)
+    assert row["half_sxx_max"] < stress(x / 2, y, z)[0] < row["far_sxx_mean"]
+
+
+@pytest.mark.skipif(SINGLE, reason="strains of 1e-7")
+def test_von_mises(row, figure):
+    """At the middles of the edges of the side: between its extremes there, and the mean over them."""
+    x, y, z = SIZE
+    def mises(t):
+        return np.sqrt(0.5 * ((t[0] - t[1]) ** 2 + (t[1] - t[2]) ** 2 + (t[2] - t[0]) ** 2) + 3 * (t[3] ** 2 + t[4] ** 2 + t[5] ** 2))
+    grid = mises(stress(x, *np.meshgrid(np.linspace(0, y, 101), np.linspace(0, z, 101))))
+    figure("sensors: mean von Mises stress of a side", row["far_von_mises_mean"], theory=grid.mean(), bound=3e-3, unit="Pa", relative=True)
+    assert grid.min() * (1 - 1e-6) <= row["far_von_mises_min"] < row["far_von_mises_mean"] < row["far_von_mises_max"] <= grid.max() * (1 + 1e-6)
+
+
+@pytest.mark.parametrize("sensor, message", [
+    ("{name: a, where: z > 7, values: [ux]}", "output.sensors[0]: no element is in it"),
+    ("{name: a, where: nz > 7, values: [ux]}", "output.sensors[0]: no face of the surface is in it, where: nz > 7"),
+    ("{name: a, where: 1/x, values: [ux]}, {name: a, values: [ux]}", "output.sensors[1].name: a: the name of an earlier one in history.csv; allowed: letters, digits, _ and -; unique in history.csv"),
+    ("{name: a, values: []}", "output.sensors[0].values: []: nothing is to be recorded"),
+    ("{name: a, set: z+, where: 1, values: [ux]}", "output.sensors[0]: more than one given; allowed: at most one of set, where, material"),
+    ("{name: a, material: tin, values: [ux]}", "output.sensors[0].material: tin: no such material")])
+def test_sensors_that_are_refused(tmp_path, sensor, message):
+    case = tmp_path / "sensor.yaml"
+    case.write_text("mesh: {cells: [1, 1, 1], size: [1, 1, 1]}\nmaterial: {model: neo-hookean, young: 1, poisson: 0, density: 1}\n"
+                    f"interface: {{law: none}}\ntime: {{end: 1}}\noutput: {{sensors: [{sensor}]}}\n")
+    told = launch("check", case)
+    assert told.returncode == 2 and told.stderr.endswith(f"{message}\n"), told.stderr
+
+
+def test_check_tells_what_sensors_look_at(tmp_path):
+    case = tmp_path / "sensors.yaml"
+    case.write_text(BLOCK)
+    told = [line for line in launch("check", case).stdout.splitlines() if line.startswith("sensor ")]
+    assert told[0] == "sensor         all: 6e-09 m3" and told[2] == "sensor         far: 3e-06 m2" and len(told) == 5
