@@ -57,6 +57,7 @@ RG_INLINE void damaged(interface *s, law_functions law, rg_activation activation
     vec3 g[RG_POINTS][2], n[RG_POINTS], turn[RG_FNODES] = {{{0}}};
     rg_vec area[RG_POINTS];
     load_law(s);
+    find_middle(s);
     mid_tangents(s, g);
     mid_surface(g, n, area);
     uint8_t broken[RG_VLEN], unlinked[RG_VLEN] = {0}, any = 0;

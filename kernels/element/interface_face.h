@@ -20,9 +20,11 @@ typedef struct {
     bool tile_face;
     vec3 edge[2], normal; /* normal: area vector A */
     rg_vec area_square, area, pen_iso, pen_norm;
-    vec3 jump[RG_POINTS];                                    /* [u] */
-    vec3 mean[RG_POINTS];                                    /* <P> A */
-    vec3 total[RG_POINTS];                                   /* traction that acts */
+    bool damaged;           /* some face of the block is */
+    vec3 middle[RG_FNODES]; /* damaged faces: mean of the displacements of both sides (find_middle) */
+    vec3 jump[RG_POINTS];   /* [u] */
+    vec3 mean[RG_POINTS];   /* <P> A */
+    vec3 total[RG_POINTS];  /* traction that acts */
     rg_vec strength, strong_area, opening, inverse, contact; /* damaged faces: the law here (load_law) */
     rg_vec beta2;
 } interface;
@@ -37,6 +39,7 @@ RG_INLINE void load_interface(interface *s, const rg_interface_args *args, size_
     s->block = block;
     s->lane = lane;
     s->tile_face = tile_face;
+    s->damaged = args->active[block] != 0;
     const rg_real *geom = args->geom + block * RG_IGEOM_BLOCK + lane;
     for (int k = 0; k < 2; k++) {
         for (int c = 0; c < 3; c++) {
@@ -76,9 +79,30 @@ RG_INLINE void traces(const interface *s, vec3 one[RG_FNODES], vec3 two[RG_FNODE
     }
 }
 
+RG_INLINE void set_middle(interface *s, vec3 one[RG_FNODES], vec3 two[RG_FNODES]) {
+    for (int a = 0; a < RG_FNODES; a++) {
+        for (int c = 0; c < 3; c++) {
+            s->middle[a][c] = 0.5 * (one[a][c] + two[a][c]);
+        }
+    }
+}
+
+/* Where faces break that no damage was expected of. */
+RG_INLINE void find_middle(interface *s) {
+    if (!s->damaged) {
+        vec3 one[RG_FNODES], two[RG_FNODES];
+        traces(s, one, two);
+        set_middle(s, one, two);
+        s->damaged = true;
+    }
+}
+
 RG_INLINE void jump_at_points(interface *s) {
     vec3 one[RG_FNODES], two[RG_FNODES];
     traces(s, one, two);
+    if (s->damaged) {
+        set_middle(s, one, two);
+    }
     for (int a = 0; a < RG_FNODES; a++) {
         for (int c = 0; c < 3; c++) {
             two[a][c] -= one[a][c];
@@ -179,8 +203,6 @@ RG_INLINE void face_derivatives(int q, rg_real xi[RG_FNODES], rg_real eta[RG_FNO
 
 /* Tangents g1 = dx/dxi, g2 = dx/deta of the deformed mid-surface at the points (m). */
 RG_INLINE void mid_tangents(const interface *s, vec3 g[RG_POINTS][2]) {
-    vec3 one[RG_FNODES], two[RG_FNODES];
-    traces(s, one, two);
     for (int q = 0; q < RG_POINTS; q++) {
         rg_real xi[RG_FNODES], eta[RG_FNODES];
         face_derivatives(q, xi, eta);
@@ -188,9 +210,8 @@ RG_INLINE void mid_tangents(const interface *s, vec3 g[RG_POINTS][2]) {
             g[q][0][c] = s->edge[0][c];
             g[q][1][c] = s->edge[1][c];
             for (int a = 0; a < RG_FNODES; a++) {
-                rg_vec u = 0.5 * (one[a][c] + two[a][c]);
-                g[q][0][c] += xi[a] * u;
-                g[q][1][c] += eta[a] * u;
+                g[q][0][c] += xi[a] * s->middle[a][c];
+                g[q][1][c] += eta[a] * s->middle[a][c];
             }
         }
     }

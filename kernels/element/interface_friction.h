@@ -16,11 +16,9 @@ typedef struct {
 } surface_frame;
 
 RG_INLINE void tangents(const interface *s, const vec3 n, surface_frame *f) {
-    vec3 one[RG_FNODES], two[RG_FNODES];
-    traces(s, one, two);
     vec3 *along = f->along;
     for (int c = 0; c < 3; c++) {
-        along[0][c] = s->edge[0][c] + 0.5 * ((one[1][c] + two[1][c]) - (one[0][c] + two[0][c]));
+        along[0][c] = s->edge[0][c] + (s->middle[1][c] - s->middle[0][c]);
     }
     f->rise = rg_dot(along[0], n);
     for (int c = 0; c < 3; c++) {
