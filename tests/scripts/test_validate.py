@@ -2,13 +2,15 @@
 numbers in place of the program."""
 
 import json
+import os
 import re
+import subprocess
 import sys
 
 import matplotlib
 import pytest
 import synthetic_run as synthetic
-from conftest import ROOT
+from conftest import ENVIRONMENT, PROGRAM, ROOT, SINGLE, TIMEOUT
 from pictures import script
 
 import gallery
@@ -186,3 +188,16 @@ def test_cases_of_the_gallery():
                 assert setup.file.exists() and (setup.geometry is None or setup.geometry.exists())
                 assert setup.seeded(module.SEED, 7) != setup and setup.case
     assert "bench/validate" in (ROOT / "bench/README.md").read_text() and matplotlib.get_backend().lower() == "agg"
+
+
+@pytest.mark.skipif(SINGLE, reason="bounds are those of double precision")
+def test_spall_by_a_plate_holds_and_turns_with_the_strength(tmp_path):
+    """A case of the gallery with the program itself, on a mesh of fewer elements across."""
+    for planted, status, wrong in (([], 0, []), (["--set", "interface.strength=440e6"], 1, ["pull-back of the velocity (m/s)"])):
+        command = [sys.executable, ROOT / "bench/validate", "plate-impact-spall", "--threads", "1", "--out", tmp_path, "--set",
+                   "mesh.cells=[1, 1, 80]", *planted, "--json", tmp_path / "r.json"]
+        done = subprocess.run(command, env={**os.environ, **ENVIRONMENT, "RHEGMA": str(PROGRAM)}, capture_output=True, text=True,
+                              timeout=TIMEOUT)
+        assert done.returncode == status, done.stderr
+        rows = json.loads((tmp_path / "r.json").read_text())
+        assert len(rows) == 6 and [row["quantity"] for row in rows if not row["ok"]] == wrong
