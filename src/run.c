@@ -386,6 +386,7 @@ static void make_state(run *r, double *cost, MPI_Comm comm) {
     }
     r->probes = rg_probes_find(r->solver);
     rg_restart_register(&r->state, &r->keep, r->solver, &r->ledger, &r->summary);
+    rg_probes_register(r->probes, &r->state);
     rg_checkpoints_open(&r->checkpoints, c->output.dir, r->solver, &r->state, &r->slab);
     if (!r->restart) {
         rg_spectrum(r->solver);

@@ -33,6 +33,7 @@ EVERYWHERE = {  # changes of fragments.yaml that must not change the bits, on an
               "interface.sets": [{"where": "abs(z) < 5e-5 && abs(nz) > 0.8 && x > 0", "open": True},
                                  {"where": "abs(z - 5.3e-4) < 5e-5 && abs(nz) > 0.8", "open": True, "at": 6e-8}],
               "tables": {"pulse": {"points": [[0, 0], [5e-8, 1], [2e-7, 0.2]], "smooth": True}},
+              "output.crack_tips": [{"name": "right", "direction": [1, 0, 0], "where": "abs(nz) > 0.5", "distance": 5e-5}, {"name": "up", "direction": [0, 0, 2]}],
               "output.sensors": [{"name": "end", "set": "z+", "values": ["uz", "vz", "szz"], "measures": ["mean", "min", "max", "integral"]},
                                  {"name": "core", "where": "abs(z) < 5e-4", "values": ["von_mises", "vx"], "measures": ["mean", "max"]}],
               "loads": [{"name": "pull", "set": "z+", "traction": {"x": "2e7*pulse(t)*(1 + 1e3*y)", "z": "3e8*pulse(t)"}},

@@ -191,6 +191,15 @@ typedef struct {
     unsigned values, measures; /* bits */
 } rg_sensor_input;
 
+/* The tip of a crack that is followed. */
+typedef struct {
+    char *name;          /* column prefix in history.csv */
+    char *set;           /* named set of faces between elements; or */
+    rg_expr *where;      /* not 0: faces between elements, by their middle and normal; NULL both: all */
+    double direction[3]; /* of any length */
+    double distance;     /* over which its speed is taken (m) */
+} rg_crack_tip_input;
+
 /* A rigid body that the solid's surface touches; it moves without turning. Values that the shape or the
  * motion has no use for are 0. */
 typedef struct {
@@ -282,6 +291,8 @@ typedef struct {
         rg_probe *probe;
         int sensors;
         rg_sensor_input *sensor;
+        int crack_tips;
+        rg_crack_tip_input *crack_tip;
         unsigned fields;
         rg_expr *region; /* fields of the elements at whose centroid this is not 0; NULL: of all */
         rg_output_precision precision; /* of the fields on the disk */

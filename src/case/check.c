@@ -154,6 +154,8 @@ static void check_entry(rg_check *ck, const rg_key *key, const rg_node *list, co
         rg_body_rule(ck, list, i, item, good);
     } else if (key->entry == &rg_probe_table) {
         rg_probe_rule(ck, list, i, item, good);
+    } else if (key->entry == &rg_crack_tip_table) {
+        rg_crack_tip_rule(ck, list, i, item, good);
     } else if (key->entry == &rg_sensor_table) {
         rg_sensor_rule(ck, list, i, item, good);
     } else if (key->entry == &rg_material_table) {

@@ -296,6 +296,8 @@ static const rg_key case_keys[] = {
      .offset_count = offsetof(rg_case, output.probes), MEANS("points whose history is recorded in every step")},
     {.name = "output.sensors", .type = RG_KEY_LIST, ELSE("none"), CASE(output.sensor), .entry = &rg_sensor_table,
      .offset_count = offsetof(rg_case, output.sensors), MEANS("means, extremes and integrals over parts of the body, recorded in every step: columns NAME_VALUE_MEASURE of history.csv")},
+    {.name = "output.crack_tips", .type = RG_KEY_LIST, ELSE("none"), GROUP(COHESIVE), CASE(output.crack_tip), .entry = &rg_crack_tip_table,
+     .offset_count = offsetof(rg_case, output.crack_tips), MEANS("how far cracks have come and how fast, recorded in every step: columns NAME_tip (m; nan before there is one) and NAME_speed (m/s) of history.csv")},
     {.name = "output.fields", .type = RG_KEY_FLAGS, .choice = fields, .choice_meaning = fields_meaning, DEFAULT(0), MAY_CHANGE,
      .absent = "all that the materials have but rank, and triaxiality and material where there is cause",
      CASE(output.fields), MEANS("what to write; [] for none")},
@@ -463,6 +465,19 @@ static const rg_key probe_keys[] = {
     {.name = "at", .unit = "m", REAL3, ANY, REQUIRED, .offset = offsetof(rg_probe, at), MEANS("reference position, inside the body")},
 };
 
+#define TIP(member) .offset = offsetof(rg_crack_tip_input, member)
+static const rg_key crack_tip_keys[] = {
+    {.name = "name", .type = RG_KEY_TEXT, REQUIRED, TIP(name), MEANS("column prefix in history.csv: letters, digits, _ and -")},
+    {.name = "direction", REAL3, ANY, REQUIRED, TIP(direction),
+     MEANS("the tip is the furthest point along it, of reference, that has separated wholly; of a law without an end, that has broken: of any length")},
+    {.name = "set", .type = RG_KEY_TEXT, .choice = box_sets, ELSE("where or all faces"), TIP(set),
+     MEANS("a surface set of the mesh file: those of its faces that lie between elements")},
+    {.name = "where", .type = RG_KEY_EXPR, ELSE("set or all faces"), .no_time = true, .normal = true, TIP(where),
+     MEANS("faces between elements where it is not 0, by their middle and unit normal, of either sign")},
+    {.name = "distance", .unit = "m", REAL, FROM(0), DEFAULT(0), TIP(distance),
+     MEANS("the speed is that over at least this distance; 0: from one point to the next, which leaps")},
+};
+
 #define SENSOR(member) .offset = offsetof(rg_sensor_input, member)
 static const rg_key sensor_keys[] = {
     {.name = "name", .type = RG_KEY_TEXT, REQUIRED, SENSOR(name), MEANS("column prefix in history.csv: letters, digits, _ and -")},
@@ -489,6 +504,7 @@ const rg_key_table rg_load_table = TABLE(load_keys, rg_load_input);
 const rg_key_table rg_body_table = TABLE(body_keys, rg_body_input);
 const rg_key_table rg_initial_set_table = TABLE(initial_set_keys, rg_initial_set);
 const rg_key_table rg_sensor_table = TABLE(sensor_keys, rg_sensor_input);
+const rg_key_table rg_crack_tip_table = TABLE(crack_tip_keys, rg_crack_tip_input);
 const rg_key_table rg_probe_table = TABLE(probe_keys, rg_probe);
 
 _Static_assert(sizeof(case_keys) / sizeof(case_keys[0]) <= RG_MAX_KEYS, "RG_MAX_KEYS is too small");

@@ -280,8 +280,12 @@ static const char *column_name(const rg_case *c, int i, bool *end) {
         return c->output.probe[i].name;
     }
     i -= c->output.probes;
-    *end = i >= c->output.sensors;
-    return *end ? NULL : c->output.sensor[i].name;
+    if (i < c->output.sensors) {
+        return c->output.sensor[i].name;
+    }
+    i -= c->output.sensors;
+    *end = i >= c->output.crack_tips;
+    return *end ? NULL : c->output.crack_tip[i].name;
 }
 
 /* Whether an entry before that of `name` has the same one. */

@@ -1,4 +1,4 @@
-/* Rules for the sensors of a case: each on one part of the body, of what this part has. */
+/* Rules for the sensors of a case, each on one part of the body, and for the tips of cracks. */
 #include <string.h>
 
 #include "case/entry.h"
@@ -45,5 +45,28 @@ void rg_sensor_rule(rg_check *ck, const rg_node *list, int i, const char *path, 
         check_part(&e);
         check_words(&e, "values", sensor->values);
         check_words(&e, "measures", sensor->measures);
+    }
+}
+
+void rg_crack_tip_rule(rg_check *ck, const rg_node *list, int i, const char *path, bool good) {
+    const rg_crack_tip_input *tip = &ck->c->output.crack_tip[i];
+    rg_entry e = {ck, &list->child[i], path};
+    if (tip->name != NULL) {
+        rg_name_rule(ck, e.item, path, tip->name);
+    }
+    if (e.item->kind != RG_NODE_MAPPING || !good) {
+        return;
+    }
+    const rg_node *direction = rg_entry_given(&e, "direction"), *where = rg_entry_given(&e, "where");
+    const double *d = tip->direction;
+    if (d[0] == 0 && d[1] == 0 && d[2] == 0) {
+        char value[64];
+        rg_entry_wrong(&e, "direction", direction->at,
+                       (rg_subject){.value = rg_node_line(direction, value, sizeof value)},
+                       "has no direction");
+    }
+    if (where != NULL && rg_entry_given(&e, "set") != NULL) {
+        rg_entry_wrong(&e, NULL, where->key_at, (rg_subject){.allowed = "at most one of set, where"},
+                       "set and where both given");
     }
 }

@@ -10,6 +10,7 @@
 #include "base/files.h"
 #include "base/mem.h"
 #include "base/first_bad.h"
+#include "diagnostics/crack_tip.h"
 #include "diagnostics/sensor.h"
 #include "domain/element.h"
 #include "quadrature.h"
@@ -42,11 +43,12 @@ struct rg_probes {
     double (*at)[4];              /* [probes]: barycentric coordinates */
     double *time, *value, *total; /* [CAPACITY], [CAPACITY][row]; total: on rank 0 */
     rg_sensors *sensors;
+    rg_crack_tips *tips;
     FILE *file;
 };
 
 static int columns(const rg_probes *p) {
-    return p->row + rg_sensors_columns(p->sensors);
+    return p->row + rg_sensors_columns(p->sensors) + rg_crack_tips_columns(p->tips);
 }
 
 static int capacity(const rg_probes *p) {
@@ -107,6 +109,7 @@ static void write_header(rg_probes *p, const rg_case *c) {
         }
     }
     rg_sensors_header(p->sensors, p->file);
+    rg_crack_tips_header(p->tips, p->file);
     fputc('\n', p->file);
 }
 
@@ -150,6 +153,7 @@ static void watch(void *context, rg_solver *s, size_t tile, const rg_workspace *
         }
     }
     rg_sensors_watch(p->sensors, s, tile, w);
+    rg_crack_tips_watch(p->tips, s, tile);
 }
 
 rg_probes *rg_probes_find(const rg_solver *s) {
@@ -162,6 +166,7 @@ rg_probes *rg_probes_find(const rg_solver *s) {
                      .bodies = s->bodies,
                      .account = s->account};
     p->sensors = rg_sensors_make(s);
+    p->tips = rg_crack_tips_make(s);
     p->slot = RG_NEW(rg_lid, (size_t)p->probes);
     p->at = rg_alloc((size_t)p->probes, sizeof *p->at);
     for (int i = 0; i < p->probes; i++) {
@@ -182,9 +187,10 @@ static void begin(rg_probes *p, rg_solver *s) {
         }
     }
     for (size_t t = 0; t < s->domain->tiles; t++) {
-        s->watched[t] |= rg_sensors_want(p->sensors, t);
+        s->watched[t] |= rg_sensors_want(p->sensors, t) || rg_crack_tips_want(p->tips, t);
     }
     rg_sensors_open(p->sensors, capacity(p));
+    rg_crack_tips_open(p->tips, capacity(p));
     s->watch = watch;
     s->watch_context = p;
 }
@@ -231,6 +237,7 @@ void rg_probes_next(rg_probes *p, double time) {
         return;
     }
     rg_sensors_next(p->sensors);
+    rg_crack_tips_next(p->tips);
     double *values = p->value + p->samples * p->row + p->probes * VALUES;
     sample_bodies(p, values);
     sample_account(p, values + p->bodies->count * BODY);
@@ -242,12 +249,13 @@ void rg_probes_next(rg_probes *p, double time) {
 
 void rg_probes_flush(rg_probes *p) {
     int count = p->samples * p->row, more = rg_sensors_columns(p->sensors);
+    int tips = rg_crack_tips_columns(p->tips);
     if (p->samples == 0) {
         return;
     }
     /* One rank has each value, the others have zero from the start: the sum only brings them together. */
     MPI_Reduce(p->value, p->total, count, MPI_DOUBLE, MPI_SUM, 0, p->comm);
-    const double *sensed = rg_sensors_collect(p->sensors);
+    const double *sensed = rg_sensors_collect(p->sensors), *tip = rg_crack_tips_collect(p->tips, p->time);
     for (int k = 0; p->rank == 0 && k < p->samples; k++) {
         fprintf(p->file, "%.17g", p->time[k]);
         for (int i = 0; i < p->row; i++) {
@@ -255,6 +263,9 @@ void rg_probes_flush(rg_probes *p) {
         }
         for (int i = 0; i < more; i++) {
             fprintf(p->file, ",%.17g", sensed[k * more + i]);
+        }
+        for (int i = 0; i < tips; i++) {
+            fprintf(p->file, ",%.17g", tip[k * tips + i]);
         }
         fputc('\n', p->file);
     }
@@ -275,6 +286,7 @@ void rg_probes_close(rg_probes *p) {
         fclose(p->file);
     }
     rg_sensors_free(p->sensors);
+    rg_crack_tips_free(p->tips);
     void *blocks[] = {p->slot, p->at, p->time, p->value, p->total, p};
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) {
         rg_free(blocks[i]);
@@ -283,4 +295,9 @@ void rg_probes_close(rg_probes *p) {
 
 void rg_probes_print(const rg_probes *p, FILE *out) {
     rg_sensors_print(p->sensors, out);
+    rg_crack_tips_print(p->tips, out);
+}
+
+void rg_probes_register(rg_probes *p, rg_state *st) {
+    rg_crack_tips_register(p->tips, st);
 }

@@ -1,6 +1,6 @@
 /* What is recorded every step, in history.csv: displacement, velocity and stress at the probes; position,
  * velocity of rigid bodies, and the solid's force on them; force, moment and work of loads and supports that
- * have a name; sensors (diagnostics/sensor.h). */
+ * have a name; sensors (diagnostics/sensor.h); tips of cracks (diagnostics/crack_tip.h). */
 #ifndef RG_PROBE_H
 #define RG_PROBE_H
 
@@ -16,6 +16,9 @@ rg_probes *rg_probes_find(const rg_solver *s);
 
 /* What sensors look at, a line each. */
 void rg_probes_print(const rg_probes *p, FILE *out);
+
+/* Registers what goes on (solver/state.h); after rg_probes_sync it is that of all rows so far. */
+void rg_probes_register(rg_probes *p, rg_state *st);
 
 /* Creates history.csv in the output directory, on rank 0 and if there is any of that. From then on the
  * solver's kicks record what they see there. */

@@ -1,6 +1,8 @@
 """Sensors: means, extremes and integrals over parts of the body. Bits on any layout and restarts: test_parallel.py,
 test_restart.py."""
 
+import json
+
 import numpy as np
 import pytest
 from conftest import SINGLE, launch, rounding
@@ -100,3 +102,46 @@ def test_check_tells_what_sensors_look_at(tmp_path):
     case.write_text(BLOCK)
     told = [line for line in launch("check", case).stdout.splitlines() if line.startswith("sensor ")]
     assert told[0] == "sensor         all: 6e-09 m3" and told[2] == "sensor         far: 3e-06 m2" and len(told) == 5
+
+
+# ---- Tips of cracks ----
+
+CELLS, EDGE, EVERY = 8, 1e-3, 0.5e-6
+RUNNING = {
+    "mesh": {"cells": [CELLS, 1, 2], "size": [CELLS * EDGE, EDGE, 2 * EDGE]}, "material": {"model": "linear-elastic", "young": 200e9, "poisson": 0.3, "density": 8000},
+    "interface": {"law": "linear", "strength": 1e12, "energy": 1e3, "sets": [{"where": f"abs(z - 1e-3) < 1e-6 && x < {(k + 1) * EDGE} && x > {k * EDGE}", "open": True,
+                                                                           **({"at": k * EVERY} if k > 0 else {})} for k in range(1, CELLS)]},
+    "time": {"end": (CELLS - 1) * EVERY},
+    "output": {"fields": [], "crack_tips": [{"name": "run", "direction": [3, 0, 0], "distance": 1.5 * EDGE}, {"name": "back", "direction": [-1, 0, 0], "where": "x < 3e-3"},
+                                            {"name": "none", "direction": [1, 0, 0], "where": "abs(nx) > 0.9"}]},
+}
+
+
+def test_a_tip_that_moves_cell_by_cell(run, scratch, figure):
+    """Faces open one cell after the other; the last point of a face is 0.0916 of an edge from its corner."""
+    path = scratch / "running.yaml"
+    path.write_text(json.dumps(RUNNING))
+    history = run(path).history
+    time, tip, step = history["time"], history["run_tip"], np.diff(history["time"]).max()
+    point = 0.091576213509771
+    settled = np.abs(time / EVERY - np.rint(time / EVERY)) * EVERY > 1.01 * step
+    opened = np.floor(time / EVERY)
+    assert np.isnan(tip[opened == 0][:-2]).all() and np.isnan(history["none_tip"]).all() and not history["none_speed"].any()
+    figure("tip of a crack that opens cell by cell: its place, over an edge", np.nanmax(np.abs(tip / EDGE - (opened + 1 - point))[settled & (opened > 0)]),
+           bound=rounding(1e-14, 1e-7), why=ROUNDING)
+    assert history["back_tip"][-1] == pytest.approx(-EDGE * (1 + point), rel=1e-6)
+    figure("tip of a crack that opens cell by cell: its speed", history["run_speed"][-1], theory=EDGE / EVERY, bound=0.03, unit="m/s", relative=True)
+    assert not history["run_speed"][opened < 2].any()
+    assert len(np.unique(history["run_speed"])) == 1 + (CELLS - 2) // 2  # each is that over two cells
+
+
+@pytest.mark.parametrize("tip, law, message", [
+    ("{name: a, direction: [0, 0, 0]}", "law: linear, strength: 1, energy: 1", "output.crack_tips[0].direction: [0, 0, 0]: has no direction"),
+    ("{name: a, direction: [0, 0, 1], where: z > 3}", "law: linear, strength: 1, energy: 1", "output.crack_tips[0]: no face between elements is in it, where: z > 3"),
+    ("{name: a, direction: [0, 0, 1]}", "law: none", "output.crack_tips: [{name: a, direction: [0, 0, 1]}]: not used, because interface.law is none")])
+def test_tips_that_are_refused(tmp_path, tip, law, message):
+    case = tmp_path / "tip.yaml"
+    case.write_text("mesh: {cells: [1, 1, 1], size: [1, 1, 1]}\nmaterial: {model: neo-hookean, young: 1, poisson: 0, density: 1}\n"
+                    f"interface: {{{law}}}\ntime: {{end: 1}}\noutput: {{crack_tips: [{tip}]}}\n")
+    told = launch("check", case)
+    assert told.returncode == 2 and told.stderr.endswith(f"{message}\n"), told.stderr

@@ -60,6 +60,7 @@ static const char defaults[] =
     "  interval: 0.01 # s\n"
     "  probes: []\n"
     "  sensors: []\n"
+    "  crack_tips: []\n"
     "  fields: [displacement, velocity, stress, mean_stress, principal_stress, crack, fragment]\n"
     "  fragments: each\n"
     "  precision: double\n"
@@ -318,6 +319,7 @@ static void test_everything(void **state) {
                 "    - name: \"p_2\"\n"
                 "      at: [-0.875, 2.5, 8.5] # m\n"
                 "  sensors: []\n"
+                "  crack_tips: []\n"
                 "  fields: [velocity, triaxiality, rank, material]\n"
                 "  fragments: last\n"
                 "  region: \"x > 0\"\n"
@@ -402,7 +404,8 @@ static void test_interval_of_a_long_run(void **state) {
     expect_part("time.end=49", "  interval", "  probes", "  interval: 0.97999999999999998 # s\n");
     expect_part("time.end=50", "  dir", "  fields",
                 "  dir: \"results/m\"\n  probes: []\n"
-                "  sensors: []\n"); /* 1 s would be a step */
+                "  sensors: []\n"
+                "  crack_tips: []\n"); /* 1 s would be a step */
 }
 
 #ifndef RG_SINGLE
