@@ -5,7 +5,7 @@
 #include "base/mem.h"
 #include "case/entry.h"
 
-#define KINDS RG_PRESCRIBED(RG_PRESCRIBED_KEY, ", ") ", absorbing"
+#define KINDS RG_PRESCRIBED(RG_PRESCRIBED_KEY, ", ") ", absorbing, dashpot"
 
 static bool one_kind(const rg_entry *e, rg_boundary *b) {
     const char *first = NULL;
@@ -27,7 +27,7 @@ static bool one_kind(const rg_entry *e, rg_boundary *b) {
     }
     if (first == NULL) {
         rg_entry_wrong(e, NULL, e->item->at, subject,
-                       "missing " RG_PRESCRIBED(RG_PRESCRIBED_KEY, " or ") " or absorbing");
+                       "missing " RG_PRESCRIBED(RG_PRESCRIBED_KEY, " or ") " or absorbing or dashpot");
     }
     return first != NULL;
 }
@@ -81,7 +81,7 @@ static bool check_line(const rg_entry *e, const rg_boundary *b) {
 
 static bool check_axis(const rg_entry *e, const rg_boundary *b) {
     static const char *const keys[] = {"axis", "at", "translation", NULL};
-    bool rigid = !b->absorbing && b->prescribed == RG_PRESCRIBED_ANGLE;
+    bool rigid = !rg_boundary_damps(b) && b->prescribed == RG_PRESCRIBED_ANGLE;
     const rg_node *axis = rg_entry_given(e, "axis");
     bool good = refuse(e, keys, rigid, "not used: it belongs to an angle");
     if (rigid && axis == NULL) {
@@ -99,7 +99,7 @@ static bool check_axis(const rg_entry *e, const rg_boundary *b) {
 
 static bool check_times(const rg_entry *e, const rg_boundary *b) {
     static const char *const keys[] = {"from", "until", NULL};
-    bool good = refuse(e, keys, !b->absorbing, "not used: a side absorbs all the time");
+    bool good = refuse(e, keys, !rg_boundary_damps(b), "not used: a side absorbs all the time");
     if (good && b->until > 0 && b->until <= b->from) {
         rg_entry_wrong(e, "until", rg_entry_given(e, "until")->at, (rg_subject){0}, "not after `from`");
         good = false;
@@ -111,11 +111,11 @@ static bool check_absorbing(const rg_entry *e, const rg_boundary *b) {
     const rg_node *node = rg_entry_given(e, "absorbing"), *name = rg_entry_given(e, "name");
     if (node != NULL && !b->absorbing) {
         rg_entry_wrong(e, "absorbing", node->at, (rg_subject){.allowed = "true"}, "prescribes nothing");
-    } else if (node != NULL && name != NULL) {
+    } else if (rg_boundary_damps(b) && name != NULL) {
         rg_entry_wrong(e, "name", name->key_at, (rg_subject){0},
                        "not used: what leaves is `radiated` in energy.csv");
     }
-    return node == NULL || (b->absorbing && name == NULL);
+    return (node == NULL || b->absorbing) && !(rg_boundary_damps(b) && name != NULL);
 }
 
 static const rg_node *same_motion(const rg_case *c, const rg_node *list, int i) {

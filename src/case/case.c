@@ -4,8 +4,12 @@
 #include <math.h>
 #include <string.h>
 
+bool rg_boundary_damps(const rg_boundary *b) {
+    return b->absorbing || b->dashpot > 0;
+}
+
 bool rg_boundary_is_along_line(const rg_boundary *b) {
-    return !b->absorbing &&
+    return !rg_boundary_damps(b) &&
            (b->prescribed == RG_PRESCRIBED_VELOCITY || b->prescribed == RG_PRESCRIBED_DISPLACEMENT);
 }
 
@@ -15,7 +19,7 @@ bool rg_boundary_has_component(const rg_boundary *b) {
 }
 
 bool rg_boundary_is_placed(const rg_boundary *b) {
-    return !b->absorbing &&
+    return !rg_boundary_damps(b) &&
            (b->prescribed == RG_PRESCRIBED_DISPLACEMENT || b->prescribed == RG_PRESCRIBED_ANGLE);
 }
 

@@ -62,7 +62,8 @@ typedef struct {
     rg_expr *value;
     double axis[3], at[3];   /* about which an angle turns; a point of it (m) */
     rg_expr *translation[3]; /* of a point of the axis (m), beside an angle; NULL: 0 */
-    bool absorbing;          /* waves leave by it, and nothing is prescribed */
+    bool absorbing;          /* waves leave by it, and nothing is prescribed; or */
+    double dashpot;          /* traction over velocity (N s/m^3); 0: it is none */
     double from, until;      /* a motion is prescribed in between (s); until 0: without end */
 } rg_boundary;
 
@@ -309,8 +310,10 @@ typedef struct {
     } checkpoint;
 } rg_case;
 
-/* Whether an entry of `boundary` prescribes a velocity or displacement along one line; along an axis of
- * coordinates; whether it prescribes places, not only velocities. */
+/* Whether an entry of `boundary` absorbs or is a dashpot, and prescribes nothing; prescribes a velocity or
+ * displacement along one line; along an axis of coordinates; whether it prescribes places, not only
+ * velocities. */
+bool rg_boundary_damps(const rg_boundary *b);
 bool rg_boundary_is_along_line(const rg_boundary *b);
 bool rg_boundary_has_component(const rg_boundary *b);
 bool rg_boundary_is_placed(const rg_boundary *b);

@@ -238,10 +238,9 @@ bool rg_key_used(const rg_key *key, const void *base) {
     case RG_GROUP_COMPONENT:
         return rg_boundary_has_component(base);
     case RG_GROUP_RIGID:
-        return !((const rg_boundary *)base)->absorbing &&
-               ((const rg_boundary *)base)->prescribed == RG_PRESCRIBED_ANGLE;
+        return !rg_boundary_damps(base) && ((const rg_boundary *)base)->prescribed == RG_PRESCRIBED_ANGLE;
     case RG_GROUP_MOTION:
-        return !((const rg_boundary *)base)->absorbing;
+        return !rg_boundary_damps(base);
     case RG_GROUP_PRESCRIBED:
         return ((const rg_boundary *)base)->prescribed == key->prescribed;
     case RG_GROUP_ALWAYS:

@@ -389,6 +389,8 @@ static const rg_key boundary_keys[] = {
     RG_PRESCRIBED(PRESCRIBED, )
     {.name = "absorbing", .type = RG_KEY_BOOL, ELSE("a motion"), ONE_OF, BOUNDARY(absorbing),
      MEANS("true: waves that meet it straight on leave by it (Lysmer & Kuhlemeyer 1969): the traction is -rho c_d v along the normal, -rho c_s v across")},
+    {.name = "dashpot", .unit = "N s/m3", REAL, ABOVE(0), ELSE("a motion"), ONE_OF, BOUNDARY(dashpot),
+     MEANS("traction over velocity of dashpots between the side and the ground, alike in all directions; what they take is `radiated` in energy.csv")},
     {.name = "axis", REAL3, ANY, ELSE("required of an angle"), GROUP(RIGID), BOUNDARY(axis), MEANS("about which the set turns, by the right hand: of any length")},
     {.name = "at", .unit = "m", REAL3, ANY, ELSE("0, 0, 0"), GROUP(RIGID), BOUNDARY(at), MEANS("a point of the axis at the start")},
     TRANSLATION("translation.x", 0, "of the axis along x, beside the turn")

@@ -20,7 +20,7 @@ typedef struct {
                          * part of contact */
     double unresolved;  /* set free where points switched, beyond what their law can take, and where faces
                          * opened because their time had come (J) */
-    double radiated;    /* taken out of the body by absorbing sides (J) */
+    double radiated;    /* taken out of the body by absorbing sides and dashpots (J) */
     double half_kick;   /* dt^2/8 a . M a: by so much what a central difference keeps is below the sum (J) */
     double external;    /* work done by prescribed motions and loads (J) */
     double total;       /* sum of the parts less the external work (J) */

@@ -283,15 +283,26 @@ double rg_absorbing_radiated(const rg_absorbing *a) {
 
 /* ---- Set-up ---- */
 
-/* Bits of the absorbing faces of each element: [slots]. */
-static uint8_t *find_faces(const rg_case *c, const rg_domain *d, const rg_part *part, MPI_Comm comm) {
-    uint8_t *all = RG_NEW(uint8_t, d->blocks * RG_LANES + 1);
+/* What damps at the faces: absorbing ones, and dashpots on top (N s/m^3). */
+typedef struct {
+    uint8_t *faces, *absorbing; /* [slots]: bits of all, and of those that absorb */
+    double *dashpot;            /* [slots][RG_FACES] */
+} damping;
+
+static damping find_faces(const rg_case *c, const rg_domain *d, const rg_part *part, MPI_Comm comm) {
+    size_t slots = d->blocks * RG_LANES;
+    damping all = {RG_NEW(uint8_t, slots + 1), RG_NEW(uint8_t, slots + 1),
+                   RG_NEW(double, RG_FACES *slots + 1)};
     for (int b = 0; b < c->boundaries; b++) {
-        if (c->boundary[b].absorbing) {
+        if (rg_boundary_damps(&c->boundary[b])) {
             rg_selection s = {"boundary", b, c->boundary[b].set, c->boundary[b].where, false};
             uint8_t *here = rg_selection_faces(&s, c, d, part, comm);
-            for (size_t slot = 0; slot < d->blocks * RG_LANES; slot++) {
-                all[slot] |= here[slot];
+            for (size_t slot = 0; slot < slots; slot++) {
+                all.faces[slot] |= here[slot];
+                all.absorbing[slot] |= c->boundary[b].absorbing ? here[slot] : 0;
+            }
+            for (size_t i = 0; i < RG_FACES * slots; i++) {
+                all.dashpot[i] += (here[i / RG_FACES] >> i % RG_FACES & 1) != 0 ? c->boundary[b].dashpot : 0;
             }
             rg_free(here);
         }
@@ -299,20 +310,23 @@ static uint8_t *find_faces(const rg_case *c, const rg_domain *d, const rg_part *
     return all;
 }
 
-static void add_side(const rg_absorbing *a, entry *e, int face) {
+static void add_side(const rg_absorbing *a, entry *e, int face, const damping *by) {
     const rg_domain *d = a->surface.domain;
     const rg_material *m = &a->surface.material[d->material[(size_t)e->slot / RG_LANES]];
     side *s = &e->side[e->sides++];
     s->face = (int8_t)face;
     double normal[3], area = rg_surface_area(d->corner + 12 * (size_t)e->slot, face, normal);
     double per_mass = area / (double)d->geom[rg_geom_index((size_t)e->slot, RG_GEOM_VOLUME)];
-    rg_material_impedance(m, normal, s->impedance);
+    if ((by->absorbing[e->slot] >> face & 1) != 0) {
+        rg_material_impedance(m, normal, s->impedance);
+    }
+    double dashpot = by->dashpot[RG_FACES * (size_t)e->slot + (size_t)face] / m->density;
     for (int k = 0; k < 6; k++) {
-        s->impedance[k] *= per_mass;
+        s->impedance[k] = per_mass * (s->impedance[k] + (k < 3 ? dashpot : 0));
     }
 }
 
-static entry make_entry(const rg_absorbing *a, size_t slot, unsigned faces, unsigned nodes) {
+static entry make_entry(const rg_absorbing *a, size_t slot, const damping *by, unsigned nodes) {
     entry e = {.slot = (rg_lid)slot, .length = -1};
     for (int8_t n = 0; n < RG_NODES; n++) {
         if ((nodes >> n & 1) != 0) {
@@ -320,8 +334,8 @@ static entry make_entry(const rg_absorbing *a, size_t slot, unsigned faces, unsi
         }
     }
     for (int f = 0; f < RG_FACES; f++) {
-        if ((faces >> f & 1) != 0) {
-            add_side(a, &e, f);
+        if ((by->faces[slot] >> f & 1) != 0) {
+            add_side(a, &e, f, by);
         }
     }
     return e;
@@ -418,7 +432,7 @@ static void make_rules(rg_absorbing *a, rg_mass mass) {
 static bool any_side(const rg_case *c) {
     bool any = false;
     for (int b = 0; b < c->boundaries; b++) {
-        any = any || c->boundary[b].absorbing;
+        any = any || rg_boundary_damps(&c->boundary[b]);
     }
     return any;
 }
@@ -434,10 +448,10 @@ rg_absorbing *rg_absorbing_make(const rg_case *c, const rg_domain *d, const rg_p
     }
     a->item = rg_account_add(account, NULL);
     make_rules(a, c->mass);
-    uint8_t *faces = find_faces(c, d, part, comm);
+    damping by = find_faces(c, d, part, comm);
     uint16_t *damped = RG_NEW(uint16_t, d->blocks * RG_LANES + 1);
     for (size_t slot = 0; slot < d->blocks * RG_LANES; slot++) {
-        damped[slot] = (uint16_t)nodes_of(faces[slot]);
+        damped[slot] = (uint16_t)nodes_of(by.faces[slot]);
     }
     if (nodes != NULL) { /* also copies of elements that only touch a side */
         rg_assembly_spread(nodes, damped);
@@ -447,13 +461,15 @@ rg_absorbing *rg_absorbing_make(const rg_case *c, const rg_domain *d, const rg_p
         for (size_t slot = d->tile[t].begin * RG_LANES; slot < d->tile[t].end * RG_LANES; slot++) {
             if (damped[slot] != 0) {
                 a->entry = rg_grow(a->entry, &room, a->entries + 1, sizeof *a->entry);
-                a->entry[a->entries++] = make_entry(a, slot, faces[slot], damped[slot]);
+                a->entry[a->entries++] = make_entry(a, slot, &by, damped[slot]);
             }
         }
         a->tile_begin[t + 1] = a->entries;
     }
     rg_free(damped);
-    rg_free(faces);
+    rg_free(by.faces);
+    rg_free(by.absorbing);
+    rg_free(by.dashpot);
     if (nodes != NULL) {
         share_nodes(a, nodes);
     } else {

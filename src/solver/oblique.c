@@ -180,7 +180,7 @@ static void list_rows(rg_oblique *o, size_t *room, size_t slot) {
     const rg_case *c = o->supports->input;
     for (int b = c->boundaries - 1; b >= 0; b--) {
         const rg_boundary *of = &c->boundary[b];
-        if (of->absorbing) {
+        if (rg_boundary_damps(of)) {
             continue;
         }
         for (int axis = 0; axis < 3; axis++) {
@@ -523,7 +523,8 @@ rg_oblique *rg_oblique_make(rg_supports *s, const rg_material *m, rg_assembly *n
             rg_inverse_mass_entry(c->mass, i / RG_NODES, i % RG_NODES);
     }
     for (int b = 0; nodes != NULL && b < c->boundaries; b++) {
-        bool normal = !c->boundary[b].absorbing && c->boundary[b].prescribed == RG_PRESCRIBED_NORMAL;
+        bool normal =
+            !rg_boundary_damps(&c->boundary[b]) && c->boundary[b].prescribed == RG_PRESCRIBED_NORMAL;
         o->mean[b] = normal ? find_mean(o, b, m, nodes, comm) : NULL;
     }
     size_t room = 0, row_room = 0;

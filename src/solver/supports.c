@@ -15,17 +15,17 @@
 /* ---- What an entry prescribes ---- */
 
 bool rg_support_is_oblique(const rg_boundary *b) {
-    return !b->absorbing && (b->prescribed == RG_PRESCRIBED_NORMAL ||
-                             (rg_boundary_is_along_line(b) && !rg_boundary_has_component(b)));
+    return !rg_boundary_damps(b) && (b->prescribed == RG_PRESCRIBED_NORMAL ||
+                                     (rg_boundary_is_along_line(b) && !rg_boundary_has_component(b)));
 }
 
 bool rg_support_has_axis(const rg_boundary *b, int c) {
-    return !b->absorbing &&
+    return !rg_boundary_damps(b) &&
            (b->prescribed == RG_PRESCRIBED_ANGLE || (rg_boundary_has_component(b) && b->component == c));
 }
 
 bool rg_support_varies(const rg_boundary *b) {
-    return !b->absorbing && (rg_boundary_is_placed(b) || rg_expr_uses_time(b->value));
+    return !rg_boundary_damps(b) && (rg_boundary_is_placed(b) || rg_expr_uses_time(b->value));
 }
 
 /* (R - I) r + d of a place at r from the axis' point. */
@@ -99,7 +99,7 @@ bool rg_supports_told(const rg_supports *s, char *words, size_t size, MPI_Comm c
 
 void rg_supports_describe(const rg_supports *s, int b, char *words, size_t size) {
     const rg_boundary *of = &s->input->boundary[b];
-    const char *what = of->absorbing ? "absorbing" : key[of->prescribed];
+    const char *what = of->absorbing ? "absorbing" : of->dashpot > 0 ? "dashpot" : key[of->prescribed];
     char along[80] = "";
     if (rg_boundary_has_component(of)) {
         snprintf(along, sizeof along, " along %c", "xyz"[of->component]);
@@ -210,7 +210,7 @@ rg_supports *rg_supports_make(const rg_case *c, const rg_domain *d, const rg_par
         rg_selection selection = {"boundary", b, of->set, of->where, false};
         uint8_t *faces = rg_selection_faces(&selection, c, d, part, comm);
         s->area[b] = area_of(d, faces, comm);
-        if (of->absorbing) {
+        if (rg_boundary_damps(of)) {
             rg_free(faces);
         } else {
             s->faces[b] = faces;

@@ -45,8 +45,8 @@ def test_work_of_all_is_the_external_work(held, figure):
 YOUNG, POISSON, DENSITY, CELL = 200e9, 0.25, 8000.0, 1e-4
 
 
-def absorb(run, wave, cells, form="variational", mass="consistent", absorbing=True):
-    """A pulse sin^2 of so many cells, in a column of three times as many whose end absorbs."""
+def absorb(run, wave, cells, form="variational", mass="consistent", absorbing=True, dashpot=None):
+    """A pulse sin^2 of so many cells, in a column of three times as many whose end absorbs; a dashpot over rho c in place of that."""
     lame, shear = YOUNG * POISSON / (1 + POISSON) / (1 - 2 * POISSON), YOUNG / 2 / (1 + POISSON)
     speed = np.sqrt((lame + 2 * shear) / DENSITY if wave == "P" else shear / DENSITY)
     length, pulse = 3 * cells * CELL, cells * CELL
@@ -56,12 +56,13 @@ def absorb(run, wave, cells, form="variational", mass="consistent", absorbing=Tr
     velocity = f"{inside} ? sin({phase})^2 : 0"
     whole = pulse / 2 / speed
     way = f"z < {begin} ? {whole} : z > {begin + pulse} ? 0 : {whole} - ((z - {begin})/2 - {pulse}/(4*pi)*sin(2*{phase}))/{speed}"
+    side = {"set": "z+", "absorbing": True} if dashpot is None else {"set": "z+", "dashpot": dashpot * DENSITY * speed}
     held = {"P": [("x", "x"), ("y", "y")], "S": [("x", "z"), ("y", "z"), ("y", "y")]}[wave]
     boundary = [{"set": side + end, "component": component, "velocity": 0} for side, component in held for end in "-+"]
     law = {"law": "none", "form": form, **({"beta_s": 2} if form != "continuous" else {})}
     sets = {"mesh": {"cells": [1, 1, 3 * cells], "size": [CELL, CELL, length]}, "mass": mass, "interface": law,
             "material": {"model": "linear-elastic", "young": YOUNG, "poisson": POISSON, "density": DENSITY},
-            "boundary": [*boundary, *([{"set": "z+", "absorbing": True}] if absorbing else [])],
+            "boundary": [*boundary, *([side] if absorbing else [])],
             "initial": {"velocity": {axis: velocity}, "displacement": {axis: way}}, "time": {"end": 3 * pulse / speed, "safety": 0.9},
             "output": {"fields": [], "probes": [{"name": "p", "at": [CELL / 3, CELL / 3, length - pulse]}]}}
     done = run(example("spall.yaml"), sets=sets)
@@ -87,6 +88,26 @@ def test_a_plane_wave_leaves(run, figure, wave, cells, form, mass, bound):
 def test_the_step_stays(run):
     free, absorbing = (absorb(run, "P", 10, absorbing=absorbing)[0].summary for absorbing in (False, True))
     assert free["dt_first"] == absorbing["dt_first"]
+
+
+@pytest.mark.parametrize("wave, form, mass", [("P", "variational", "consistent"), ("S", "continuous", "lumped")])
+def test_a_dashpot_takes_its_share(run, figure, wave, form, mass):
+    """Of a third of rho c: a plane wave comes back with (1 - 1/3)/(1 + 1/3) = 1/2, and three quarters of its energy are gone."""
+    done, left = absorb(run, wave, 20, form, mass, dashpot=1 / 3)
+    figure(f"{wave} wave on a dashpot, form {form}: what comes back", left, theory=0.5, bound=0.002, relative=True)
+    figure(f"{wave} wave on a dashpot, form {form}: energy that it takes", done.energy["radiated"][-1] / done.energy["total"][0], theory=0.75, bound=0.0015, relative=True)
+
+
+def test_check_tells_of_dashpots(tmp_path):
+    case = tmp_path / "dashpot.yaml"
+    text = ("mesh: {cells: [1, 1, 1], size: [1, 1, 1]}\nmaterial: {model: neo-hookean, young: 1, poisson: 0, density: 1}\n"
+            "interface: {law: none}\ntime: {end: 1}\nboundary: [{set: z+, dashpot: 3%s}]\n")
+    case.write_text(text % "")
+    assert "boundary       dashpot on 1 m2\n" in launch("check", case).stdout
+    for more, message in ((", velocity: 1", "boundary[0]: velocity and dashpot both given"), (", name: a", "boundary[0].name: not used: what leaves is `radiated` in energy.csv"),
+                          (", until: 1", "boundary[0].until: not used: a side absorbs all the time")):
+        case.write_text(text % more)
+        assert message in launch("check", case).stderr
 
 
 def test_a_block_with_all_sides_absorbing_comes_to_rest(run, figure):

@@ -240,7 +240,7 @@ static const mistake keys[] = {
      ":14:55: boundary[0].a.b: unknown key: the parts of a dotted key stand on lines of their own\n"
      ":16:5: boundary[2]: missing set or where; allowed: exactly one of set, where\n"
      ":16:5: boundary[2]: missing " MOTIONS(
-         " or ") " or absorbing; " ONE_MOTION
+         " or ") " or absorbing or dashpot; " ONE_MOTION
                  ":17:5: boundary[3]: []: not a mapping of keys; allowed: " BOUNDARY_LIST "\n"},
     {"boundary:\n"
      "  - {set: z+, component: z, velocity: 6.086}\n",

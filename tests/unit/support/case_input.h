@@ -21,10 +21,10 @@
 
 /* What is allowed of the motions of a boundary. */
 #define MOTIONS(join) RG_PRESCRIBED(RG_PRESCRIBED_KEY, join)
-#define ONE_MOTION    "allowed: exactly one of " MOTIONS(", ") ", absorbing\n"
+#define ONE_MOTION    "allowed: exactly one of " MOTIONS(", ") ", absorbing, dashpot\n"
 #define BOUNDARY_LIST                                                                                        \
     "list of {name, set, where, component, direction, " MOTIONS(                                             \
-        " or ") " or absorbing, axis, at, translation, "                                                     \
+        " or ") " or absorbing, dashpot, axis, at, translation, "                                            \
                 "from, until}"
 #include "cohesive/facts.h"
 
