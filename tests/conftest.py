@@ -39,7 +39,7 @@ EVERYWHERE = {  # changes of fragments.yaml that must not change the bits, on an
               "loads": [{"name": "pull", "set": "z+", "traction": {"x": "2e7*pulse(t)*(1 + 1e3*y)", "z": "3e8*pulse(t)"}},
                         {"where": "abs(nx) > 0.5", "pressure": "2e8*pulse(2*t)*(1 + 1e2*z)", "from": 2e-8, "until": 1.5e-7},
                         {"name": "gas", "cracks": True, "where": "abs(nz) > 0.3", "pressure": "2e7*(1 + 1e3*x)*(1 + t/1e-7)"},
-                        {"set": "y-", "force": {"y": 3}}, {"name": "fall", "acceleration": {"y": -4e7, "z": "1e11*x*t/1e-7"}}],
+                        {"set": "y-", "force": {"y": 3}}, {"name": "bed", "set": "y+", "foundation": "1e14*(1 + 1e3*x)"}, {"name": "fall", "acceleration": {"y": -4e7, "z": "1e11*x*t/1e-7"}}],
               "boundary": [{"name": "hold", "set": "z-", "angle": "2e4*t", "axis": [0, 1, 3], "translation": {"z": "3e6*t*t"}}, {"set": "x+", "absorbing": True},
                            {"set": "z+", "absorbing": True}, {"where": "abs(nx) > 0.5 && z > 0", "dashpot": 4e6}, {"name": "roll", "where": "nx < -0.5 && z > 0", "normal": "1e7*t*z", "until": 1.6e-7},
                            {"set": "y+", "direction": [1, 0, 2], "velocity": 3, "from": 1.4e-7},

@@ -72,7 +72,8 @@ typedef struct {
 #define RG_LOADS(X, join)                                                                                    \
     X(TRACTION, "traction", "Pa")                                                                            \
     join X(PRESSURE, "pressure", "Pa") join X(FORCE, "force", "N") join X(ACCELERATION, "acceleration",      \
-                                                                          "m/s2")
+                                                                          "m/s2") join                       \
+    X(FOUNDATION, "foundation", "N/m3")
 
 #define RG_LOAD_ENUM(NAME, key, unit) RG_LOAD_##NAME,
 #define RG_LOAD_KEY(NAME, key, unit)  key
@@ -84,7 +85,7 @@ typedef struct {
     rg_expr *where; /* not 0: on faces, by their middle and outward normal; of accelerations, at centroids */
     bool cracks;    /* of a pressure: on faces between elements, as they open; all, or where those two say */
     rg_load_kind kind;
-    rg_expr *value[RG_LOAD_KINDS][3]; /* of its kind, x, y, z (a pressure: the first alone); NULL: 0 */
+    rg_expr *value[RG_LOAD_KINDS][3]; /* of its kind, x, y, z (of some the first alone); NULL: 0 */
     double from, until;               /* it acts in between (s); until 0: without end */
 } rg_load_input;
 

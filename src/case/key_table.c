@@ -423,6 +423,8 @@ static const rg_key load_keys[] = {
      MEANS("pressure on the deformed face: it follows its normal and its area")},
     LOAD_VECTOR("force", "N", FORCE, true, "total force along x, spread evenly over the area of reference")
     LOAD_VECTOR("acceleration", "m/s2", ACCELERATION, false, "force per mass along x, as gravity")
+    {.name = "foundation", .unit = "N/m3", .type = RG_KEY_EXPR, ELSE("another load"), ONE_OF, .no_time = true, LOAD(value[RG_LOAD_FOUNDATION][0]),
+     MEANS("springs between the surface and the ground, alike in all directions, per area of reference: traction over displacement, not negative; what they store is minus their work")},
     {.name = "from", .unit = "s", REAL, FROM(0), DEFAULT(0), LOAD(from), MEANS("the load acts from this time on")},
     {.name = "until", .unit = "s", REAL, ABOVE(0), ELSE("the end of the run"), LOAD(until), MEANS("and no more from this one on")},
 };

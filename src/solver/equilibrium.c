@@ -169,6 +169,7 @@ static bool is_held(const newton *q) {
         r.size = fmax(r.size, box[1][c] - box[0][c]);
     }
     rg_constraints_show(q->solver->constraints, add_line, &r);
+    rg_loads_show(q->solver->loads, add_line, &r);
     rg_exact_allreduce(r.sum, MODES * MODES, q->solver->comm);
     double matrix[MODES][MODES], most = 0;
     for (int i = 0; i < MODES * MODES; i++) {

@@ -49,9 +49,9 @@ struct rg_loads {
     rg_first_bad bad; /* where a value was not finite first, and when */
 };
 
-/* Of a value: of a pressure there is one. */
+/* Of a value: of a pressure and of a foundation there is one. */
 static int components(const load *l) {
-    return l->input->kind == RG_LOAD_PRESSURE ? 1 : 3;
+    return l->input->kind == RG_LOAD_PRESSURE || l->input->kind == RG_LOAD_FOUNDATION ? 1 : 3;
 }
 
 static bool is_body_force(const load *l) {
@@ -152,7 +152,21 @@ void rg_loads_set(rg_loads *all, double time, double dt_last, double dt_next) {
     }
 }
 
+void rg_loads_set_springs(rg_loads *all) {
+    rg_loads_set(all, 0, 0, 0);
+    for (int i = 0; i < all->count; i++) {
+        all->load[i].acts = all->load[i].acts && all->load[i].input->kind == RG_LOAD_FOUNDATION;
+    }
+}
+
 /* ---- Forces ---- */
+
+/* Displacements of an entry's nodes. */
+static void displacements(const entry *e, const rg_real *u, double out[RG_FNODES][3]) {
+    for (int i = 0; i < 3 * RG_FNODES; i++) {
+        out[i / 3][i % 3] = u[index_of(e, i / 3, i % 3)];
+    }
+}
 
 static void face_forces(const rg_loads *all, entry *e, const rg_real *u) {
     const rg_surface *s = &all->surface;
@@ -170,9 +184,20 @@ static void face_forces(const rg_loads *all, entry *e, const rg_real *u) {
         out = rg_vector_dot(product, normal) > 0 ? 1 : -1;
         rg_surface_place(s, (size_t)e->slot, e->face, u, x);
     }
+    bool springs = l->input->kind == RG_LOAD_FOUNDATION;
+    if (springs) {
+        displacements(e, u, x);
+    }
     for (int q = 0; q < RG_POINTS; q++) {
         const double *value = l->by_place ? e->value[q] : l->value;
         double t[3] = {value[0] * area, value[1] * area, value[2] * area};
+        if (springs) {
+            double here[3];
+            rg_surface_at(s, q, x, here);
+            for (int c = 0; c < 3; c++) {
+                t[c] = -value[0] * area * here[c];
+            }
+        }
         if (follows) {
             double tangent[2][3] = {{0}};
             for (int a = 0; a < RG_FNODES; a++) {
@@ -479,6 +504,88 @@ static void measure_areas(rg_loads *all) {
     }
 }
 
+/* Largest eigenvalue of a face's int N N dA over its area and M over the element's mass, of one component: by
+ * power iteration, from a vector that is no eigenvector. All faces have the same. */
+static double face_eigenvalue(const rg_surface *s) {
+    enum { ITERATIONS = 200 };
+    double matrix[RG_FNODES][RG_FNODES] = {{0}}, x[RG_FNODES] = {1, 2, 3, 5, 7, 11}, largest = 0;
+    for (int i = 0; i < RG_FNODES * RG_FNODES * RG_FNODES * RG_POINTS; i++) {
+        int q = i % RG_POINTS, k = i / RG_POINTS, a = k % RG_FNODES, b = k / RG_FNODES % RG_FNODES,
+            c = k / RG_FNODES / RG_FNODES;
+        matrix[a][b] += s->inverse_mass[rg_face_node[0][a]][rg_face_node[0][c]] * s->weight[q] *
+                        s->shape[q][c] * s->shape[q][b];
+    }
+    for (int k = 0; k < ITERATIONS; k++) {
+        double y[RG_FNODES] = {0};
+        largest = 0;
+        for (int i = 0; i < RG_FNODES * RG_FNODES; i++) {
+            y[i / RG_FNODES] += matrix[i / RG_FNODES][i % RG_FNODES] * x[i % RG_FNODES];
+        }
+        for (int a = 0; a < RG_FNODES; a++) {
+            largest = fmax(largest, fabs(y[a]));
+        }
+        for (int a = 0; a < RG_FNODES; a++) {
+            x[a] = y[a] / largest;
+        }
+    }
+    return largest;
+}
+
+double rg_loads_omega2(const rg_loads *all) {
+    const rg_domain *d = all->surface.domain;
+    double eigenvalue = face_eigenvalue(&all->surface), most = 0;
+    double *sum = RG_NEW(double, d->blocks *RG_LANES + 1);
+    for (size_t n = 0; n < all->tile_begin[d->tiles]; n++) {
+        const entry *e = &all->entry[n];
+        const load *l = &all->load[e->load];
+        double normal[3], stiffest = l->value[0];
+        if (l->input->kind != RG_LOAD_FOUNDATION) {
+            continue;
+        }
+        for (int q = 0; l->by_place && q < RG_POINTS; q++) {
+            stiffest = fmax(q > 0 ? stiffest : 0, e->value[q][0]);
+        }
+        double area = rg_surface_area(d->corner + 12 * (size_t)e->slot, e->face, normal);
+        sum[e->slot] += eigenvalue * stiffest * area / mass_of(all, e);
+        most = fmax(most, sum[e->slot]);
+    }
+    rg_free(sum);
+    MPI_Allreduce(MPI_IN_PLACE, &most, 1, MPI_DOUBLE, MPI_MAX, all->comm);
+    return most;
+}
+
+void rg_loads_show(const rg_loads *all, void (*show)(void *to, size_t slot, int node, const double line[3]),
+                   void *to) {
+    for (size_t n = 0; n < all->tile_begin[all->surface.domain->tiles]; n++) {
+        const entry *e = &all->entry[n];
+        const load *l = &all->load[e->load];
+        bool holds = l->input->kind == RG_LOAD_FOUNDATION && !(l->input->from > 0);
+        for (int i = 0; holds && i < 3 * RG_FNODES; i++) {
+            const double line[3] = {i % 3 == 0, i % 3 == 1, i % 3 == 2};
+            show(to, (size_t)e->slot, node_of(e, i / 3), line);
+        }
+    }
+}
+
+/* Springs that push away from where they are fixed are none. */
+static void refuse_negative(const rg_loads *all) {
+    int bad = all->count;
+    for (size_t n = 0; n < all->tile_begin[all->surface.domain->tiles]; n++) {
+        const entry *e = &all->entry[n];
+        const load *l = &all->load[e->load];
+        for (int q = 0; l->input->kind == RG_LOAD_FOUNDATION && q < RG_POINTS; q++) {
+            double value = l->by_place ? e->value[q][0] : l->value[0];
+            bad = value < 0 && e->load < bad ? e->load : bad;
+        }
+    }
+    MPI_Allreduce(MPI_IN_PLACE, &bad, 1, MPI_INT, MPI_MIN, all->comm);
+    if (bad < all->count) {
+        rg_speak(all->comm);
+        rg_fatal(RG_USAGE, "%s: loads[%d].foundation: %s is negative somewhere", all->input->path, bad,
+                 rg_expr_text(all->load[bad].input->value[RG_LOAD_FOUNDATION][0]));
+    }
+}
+
 /* Values that do not change, and all others when their load begins. */
 static void first_values(rg_loads *all) {
     for (int i = 0; i < all->count; i++) {
@@ -541,6 +648,7 @@ rg_loads *rg_loads_make(const rg_case *c, const rg_domain *d, const rg_part *par
     measure_areas(all);
     copy_expressions(all);
     first_values(all);
+    refuse_negative(all);
     return all;
 }
 

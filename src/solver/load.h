@@ -2,6 +2,8 @@
  *
  * On a face, by its six points (solver/surface.h), f_a = int N_a t dA:
  *   traction, force   t per area of reference: dead, it keeps direction and size
+ *   foundation        t = -k u per area of reference, of springs to the ground: a part of the critical
+ * step and of a static start
  *   pressure          t dA = -p x,1 cross x,2 by the face's own deformed tangents, p at the place of
  * reference. By Nanson this is -p J F^-T N dA with the F of the element at its face, but from six nodes in
  * place of ten, for any state of the element, and a polynomial that the rule takes exactly: on a closed
@@ -34,6 +36,16 @@ rg_loads *rg_loads_make(const rg_case *c, const rg_domain *d, const rg_part *par
 
 /* A step from `time`, dt_next long, after one of dt_last (s). One thread. */
 void rg_loads_set(rg_loads *l, double time, double dt_last, double dt_next);
+
+/* For a static start: foundations alone act, at t = 0. */
+void rg_loads_set_springs(rg_loads *l);
+
+/* The share of foundations in the largest squared frequency (1/s^2). */
+double rg_loads_omega2(const rg_loads *l);
+
+/* Calls `show` with all nodes of foundations that act, along each axis (solver/constraint.h). */
+void rg_loads_show(const rg_loads *l, void (*show)(void *to, size_t slot, int node, const double line[3]),
+                   void *to);
 
 struct rg_solver;
 

@@ -433,9 +433,11 @@ void rg_solver_acceleration(rg_solver *s, rg_real *acceleration, bool loaded) {
     }
     if (loaded) {
         rg_loads_set(s->loads, 0, 0, 0);
+    } else {
+        rg_loads_set_springs(s->loads);
     }
     publish(s);
-    evaluate(s, &(impulse){.velocity = acceleration, .dt = 1, .hold = true, .load = loaded});
+    evaluate(s, &(impulse){.velocity = acceleration, .dt = 1, .hold = true, .load = true});
 }
 
 /* ---- Time ---- */

@@ -31,8 +31,8 @@ void rg_solver_step(rg_solver *s, double dt);
  * the spectrum. Collective. */
 void rg_solver_impulse(rg_solver *s, rg_real *velocity, double dt);
 
-/* M^-1 (all forces of u) of faces that cannot break yet, with the loads of t = 0 or without, and no
- * constraints: for equilibria. The state stays. Collective. */
+/* M^-1 (all forces of u) of faces that cannot break yet, with the loads of t = 0 or those of foundations
+ * alone, and no constraints: for equilibria. The state stays. Collective. */
 void rg_solver_acceleration(rg_solver *s, rg_real *acceleration, bool loaded);
 
 /* The displacement of the start has changed: constraints and stiffening follow. Collective. */

@@ -105,3 +105,67 @@ def test_free_fall(run, figure, form, mass):
 def test_check_tells_them():
     said = launch("check", LOADS).stdout
     assert "load           pull: traction on 9e-08 m2\n" in said and "load           fall: acceleration of the body\n" in said
+
+
+# ---- Foundations ----
+
+BLOCK = """
+mesh: {cells: [2, 2, 2], size: [1e-3, 1e-3, 1e-3], jitter: 0.1}
+material: {model: linear-elastic, young: 200e9, poisson: 0.3, density: 8000}
+interface: {law: none, beta_s: 2}
+loads: [{name: bed, set: z-, foundation: 1e11}, {name: fall, acceleration: {z: -1e6, x: 2e5}}]
+time: {end: 1, safety: 0.9, steps: 300}
+output: {fields: [], interval: 20, sensors: [{name: all, values: [ux, uz]}]}
+"""
+
+
+@pytest.fixture(scope="module")
+def bed(scratch):
+    path = scratch / "bed.yaml"
+    path.write_text(BLOCK)
+    return path
+
+
+@pytest.mark.parametrize("form", ["variational", "continuous"])
+def test_a_block_on_a_foundation_at_rest(run, figure, bed, form):
+    """Nothing else holds it: its weight is on the springs, so that the mean displacement of its bed is m g/(k A)."""
+    law = {"law": "none", "form": form, **({"beta_s": 2} if form == "variational" else {})}
+    sensors = [{"name": "low", "set": "z-", "values": ["ux", "uz"]}]
+    done = run(bed, sets={"start": "static", "interface": law, "output.sensors": sensors})
+    weight, stiffness = 8000 * 1e-9 * 1e6, 1e11 * 1e-6
+    figure(f"block on a foundation, form {form}: how far it sinks", done.history["low_uz_mean"][0], theory=-weight / stiffness, bound=rounding(1e-7, 1e-4), relative=True,
+           why="the residual at which the search ends")
+    figure(f"block on a foundation, form {form}: how far it is pulled aside", done.history["low_ux_mean"][0], theory=0.2 * weight / stiffness, bound=rounding(1e-7, 1e-4), relative=True,
+           why="the residual at which the search ends")
+    assert done.history["bed_force_z"][-1] == pytest.approx(weight, rel=rounding(1e-6, 1e-2))
+    assert done.energy["kinetic"].max() < rounding(1e-10, 1e-4) * done.energy["bulk"][0]
+
+
+def test_a_block_bounces_on_its_foundation(run, figure, bed):
+    """As a mass on a spring: a quarter of a period from where it was let go to the bed's full load; the elastic block
+    itself is 1/500 as soft. And with what the springs have stored the energy adds up."""
+    soft = [{"name": "bed", "set": "z-", "foundation": 1e11}, {"name": "fall", "acceleration": {"z": -1e6}}]
+    done = run(bed, sets={"loads": soft, "time.steps": 4000, "output.interval": 100})
+    history, energy = done.history, done.energy
+    rate = np.sqrt(1e11 * 1e-6 / (8000 * 1e-9))
+    assert history["time"][-1] * rate > np.pi
+    theory = -1e6 / rate**2 * (1 - np.cos(rate * history["time"]))
+    figure("block that bounces on a foundation: mean displacement, of the largest", np.abs(history["all_uz_mean"] - theory).max() / np.abs(theory).max(), bound=7e-4)
+    error = np.abs(energy["total"] - energy["total"][0]).max() / np.abs(history["bed_work"]).max()
+    figure("block that bounces on a foundation: energy error over what it stores", error, bound=rounding(4e-14, 1e-4), why=ROUNDING)
+
+
+def test_a_stiff_foundation_shortens_the_step(run, bed):
+    """So that it does not throw the block off: springs ten times as stiff as the elements."""
+    plain, stiff = (run(bed, sets={"loads": [{"set": "z-", "foundation": k}, {"acceleration": {"z": -1e6}}], "output.sensors": []}) for k in (1, 2e16))
+    assert stiff.summary["dt_first"] < 0.7 * plain.summary["dt_first"]
+    energy = stiff.energy
+    assert np.abs(energy["total"] - energy["total"][0]).max() < rounding(1e-9, 1e-3) * np.abs(energy["external_work"]).max()
+
+
+def test_a_foundation_that_is_refused(tmp_path):
+    case = tmp_path / "bed.yaml"
+    case.write_text(BLOCK.replace("foundation: 1e11", "foundation: 1 - 2e3*x"))
+    assert "loads[0].foundation: 1 - 2e3*x is negative somewhere\n" in launch("check", case).stderr
+    case.write_text(BLOCK)
+    assert "load           bed: foundation on 1e-06 m2\n" in launch("check", case).stdout

@@ -60,7 +60,7 @@ static const mistake bodies[] = {
      "and -; unique in history.csv\n"},
 };
 
-#define LOAD "allowed: exactly one of traction, pressure, force, acceleration\n"
+#define LOAD "allowed: exactly one of traction, pressure, force, acceleration, foundation\n"
 
 static const mistake loads[] = {
     {"time:\n",
@@ -99,7 +99,7 @@ static const mistake loads[] = {
      ":28:5: loads[12]: 3: not a mapping of keys; allowed: list of {name, set, where, cracks, traction, "
      "pressure, "
      "force, "
-     "acceleration, from, until}\n"
+     "acceleration, foundation, from, until}\n"
      ":33:14: output.probes[0].name: p: the name of an earlier one in history.csv; allowed: letters, digits, "
      "_ "
      "and -; unique in history.csv\n"},
