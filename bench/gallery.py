@@ -44,7 +44,8 @@ class Quantity:
         return self.low <= self.value <= self.high
 
     def record(self):
-        return {**dataclasses.asdict(self), "ok": self.ok}
+        value = self.value if math.isfinite(self.value) else None  # JSON knows no nan
+        return {**dataclasses.asdict(self), "value": value, "ok": self.ok}
 
 
 def within(quantity, value, expected, part, above=None):
@@ -64,6 +65,18 @@ def areas(crack):
     """Of the faces of a crack surface, as rhegma.crack gives it."""
     a, b, c = np.moveaxis(crack["points"], 1, 0)
     return np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2
+
+
+def first_fracture(run):
+    """When the first face broke, in s; nan where none did."""
+    begin = run.summary["first_fracture_time_s"]
+    return math.nan if begin is None else begin
+
+
+def spent(run, crack, chosen=slice(None)):
+    """What was dissipated over area times damage, which is G_c with a linear law; of these faces, where others were open before."""
+    weighted = math.fsum((areas(crack) * crack["damage"])[chosen])  # in any order of the faces
+    return run.summary["dissipated_J"] / weighted if weighted > 0 else math.nan
 
 
 def rayleigh_speed(material):

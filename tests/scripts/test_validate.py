@@ -8,6 +8,7 @@ import subprocess
 import sys
 
 import matplotlib
+import numpy as np
 import pytest
 import synthetic_run as synthetic
 from conftest import ENVIRONMENT, PROGRAM, ROOT, SINGLE, TIMEOUT
@@ -89,7 +90,8 @@ def test_what_holds(bar, tmp_path, monkeypatch, capsys):
 def test_what_does_not_hold(bar, found, error, tmp_path, monkeypatch, capsys):
     bar(lambda sets: found, error)
     assert start(monkeypatch, tmp_path, "bar", "--json", tmp_path / "r.json") == 1
-    assert [row["ok"] for row in json.loads((tmp_path / "r.json").read_text())].count(False) == 1
+    text = (tmp_path / "r.json").read_text()
+    assert [row["ok"] for row in json.loads(text)].count(False) == 1 and "NaN" not in text
     assert capsys.readouterr().out.count("| FAILS |") == 1
     assert next((tmp_path / "out").glob("*/report.html")).read_text().count("class=fails") == 1
 
@@ -175,6 +177,18 @@ def test_an_interrupted_run_goes_on(bar, tmp_path, monkeypatch):
     for overrides, expected in (([], ["--restart", str(out)]), (["--set", "time.end=3"], ["-o", str(out), "--overwrite"])):
         assert start(monkeypatch, tmp_path, "--threads", 1, *overrides) == 0
         assert bar.calls[-1][0][3:6] == [*expected, "-q"][:3]
+
+
+def test_energy_spent_and_first_fracture(tmp_path):
+    """Of two faces of 0.5 and 2 m2; and of a run in which nothing broke."""
+    crack = {"points": np.array([[[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 0, 0], [2, 0, 0], [0, 0, 2]]], float),
+             "damage": np.array([1, 0.25])}
+    run = rhegma.Run(synthetic.write_run(tmp_path, summary={"dissipated_J": 3.0, "first_fracture_time_s": None}))
+    assert gallery.areas(crack) == pytest.approx([0.5, 2]) and gallery.spent(run, crack) == 3
+    assert gallery.spent(run, crack, np.array([False, True])) == 6 and np.isnan(gallery.first_fracture(run))
+    assert np.isnan(gallery.spent(run, {"points": crack["points"][:0], "damage": crack["damage"][:0]}))
+    steel = rhegma.Material("steel", "neo-hookean", 8000, 190e9 / 2.6, 0.3)
+    assert gallery.rayleigh_speed(steel) == pytest.approx(0.9274 * steel.shear_speed, rel=1e-4)  # of nu 0.3
 
 
 def test_cases_of_the_gallery():

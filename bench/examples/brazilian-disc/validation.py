@@ -28,16 +28,16 @@ def quantities(setups, done):
     setup, run = setups["disc"], done["disc"]
     strength = setup.case["interface"]["strength"]
     time, stress = tension(setup, run)
-    begin, crack = run.summary["first_fracture_time_s"], run.crack()
+    begin, crack = gallery.first_fracture(run), run.crack()
     since, place = crack["time_of_failure"], crack["points"].mean(axis=1)
-    early = since <= np.sort(since)[min(20, len(since)) - 1]
+    early = np.lexsort((place[:, 1], place[:, 0], since))[:20]
     failed = crack["damage"] > 1 - 1e-6
     edge = 1e-3 * setup.values["h"]
     return [
         gallery.within("2P/(pi D t) at first fracture (Pa)", np.interp(begin, time, stress), strength, 0.06, 0.04),
         gallery.within("2P/(pi D t) at the peak (Pa)", stress.max(), strength, 0.02, 0.09),
-        gallery.Quantity("first faces to break, from the diameter between the planes (m)", float(np.abs(place[early, 0]).mean()), 0.0, 0.0,
-                         1.5 * edge),
+        gallery.Quantity("first faces to break, from the diameter between the planes (m)",
+                         float(np.abs(place[early, 0]).mean()) if len(early) else np.nan, 0.0, 0.0, 1.5 * edge),
         gallery.Quantity("length of what failed along that diameter (m)",
                          float(np.ptp(place[failed & (np.abs(place[:, 0]) < 2 * edge), 1])) if failed.any() else 0.0, 14e-3, 11e-3, 14e-3),
         gallery.ledger(run),
@@ -52,7 +52,7 @@ def draw(setups, done):
     figure, (left, right) = plt.subplots(1, 2, figsize=(10, 4.6))
     left.plot(1e6 * time, 1e-6 * stress, color=BLUE, label="2P/(π D t)")
     left.axhline(1e-6 * setup.case["interface"]["strength"], color=INK, linestyle="--", label="strength")
-    left.axvline(1e6 * run.summary["first_fracture_time_s"], color=RED, linestyle="-.", linewidth=1, label="first fracture")
+    left.axvline(1e6 * gallery.first_fracture(run), color=RED, linestyle="-.", linewidth=1, label="first fracture")
     left.set(xlabel="time (µs)", ylabel="tension in the middle (MPa)", title="load")
     left.legend(loc="upper left")
     crack = run.crack()

@@ -54,11 +54,10 @@ def quantities(setups, done):
     case, run = setups["plate"].case, done["plate"]
     material, faces, crack = rhegma.one_material(case, TITLE), case["interface"], run.crack()
     rayleigh = gallery.rayleigh_speed(material)
-    spent = run.summary["dissipated_J"] / (gallery.areas(crack) * crack["damage"]).sum()
     return [
         gallery.Quantity("angle (degrees)", angle(crack), 70.0, 60.0, 75.0),
         gallery.Quantity("speed over that of Rayleigh waves", speed(run) / rayleigh, 0.6, 0.4, 0.75),
-        gallery.within("dissipated over area times damage (J/m2)", spent, faces["energy"], 0.01),
+        gallery.within("dissipated over area times damage (J/m2)", gallery.spent(run, crack), faces["energy"], 0.01),
         gallery.ledger(run),
     ]
 

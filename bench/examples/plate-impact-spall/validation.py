@@ -30,7 +30,6 @@ def quantities(setups, done):
     z, area, damage = crack["points"][:, :, 2].mean(axis=1), gallery.areas(crack), crack["damage"]
     inside = z > FLYER + 5e-6
     spalled = inside & (damage > 1 - 1e-6)
-    spent = run.summary["dissipated_J"] / (area * damage)[inside].sum()
     return [
         gallery.within("velocity of the back (m/s)", plateau, SPEED, 0.002),
         gallery.within("arrival at the back (s)", arrival, TARGET / c, 0.006),
@@ -38,7 +37,7 @@ def quantities(setups, done):
                        0.04, 0.02),
         gallery.within("place of the spall plane (m)", np.average(z[spalled], weights=area[spalled]) if spalled.any() else np.nan,
                        TARGET, 0.01),
-        gallery.within("dissipated over area times damage (J/m2)", spent, faces["energy"], 0.01),
+        gallery.within("dissipated over area times damage (J/m2)", gallery.spent(run, crack, inside), faces["energy"], 0.01),
         gallery.ledger(run),
     ]
 

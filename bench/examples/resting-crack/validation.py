@@ -58,8 +58,7 @@ def quantities(setups, done):
     new = crack["points"][:, :, 0].mean(axis=1) > 0
     work = start.summary["dissipated_J"]
     thickness = np.ptp(crack["points"][..., 2])
-    spent = work / (gallery.areas(crack) * crack["damage"])[new].sum()  # the law takes G_c times the damage
-    rows.append(gallery.within("dissipated over area times damage (J/m2)", spent, energy, 0.01))
+    rows.append(gallery.within("dissipated over area times damage (J/m2)", gallery.spent(start, crack, new), energy, 0.01))
     rows.append(gallery.within(f"way at {1e6 * times[-1]:.3g} us, dissipated over G_c (m)", work / energy / thickness,
                                way(case, times[-1]), 0.05, 0.25))
     return [*rows, gallery.ledger(start)]
