@@ -15,6 +15,7 @@ enum {
     RG_HAS_REGIME = 2,  /* regimes of its cracks, 1, 2, 3 */
     RG_HAS_PLASTIC = 4, /* equivalent plastic strain */
     RG_TAKES_YOUNG = 8, /* by Young's modulus and Poisson's ratio */
+    RG_TAKES_BULK = 16, /* by its bulk modulus and coefficients of its energy */
 };
 
 /* Constants of an elastic solid of any symmetry: the upper triangle of its stiffness, row by row, in Voigt's
@@ -40,6 +41,8 @@ enum {
       "a crystal or a composite: the same with a stiffness of any symmetry, along axes of its own", 0, 0)
 /* ... and those that exist in double precision only */
 #define RG_MATERIALS_DOUBLE(X)                                                                               \
+    X(mooney_rivlin, MOONEY_RIVLIN, "mooney-rivlin", "rubber: Mooney and Rivlin's, compressible", 0,         \
+      RG_TAKES_BULK)                                                                                         \
     X(deshpande_evans, DESHPANDE_EVANS, "deshpande-evans",                                                   \
       "a ceramic with growing microcracks and plastic flow", RG_DE_HISTORY,                                  \
       RG_HAS_DAMAGE | RG_HAS_REGIME | RG_HAS_PLASTIC)                                                        \
@@ -78,7 +81,11 @@ typedef enum {
       "yield stress to which hardening of Voce's kind goes up, not below yield_stress; goes with "           \
       "saturation_rate")                                                                                     \
     X(SATURATION_RATE, "saturation_rate", NULL, RG_FROM_0, RG_MATERIAL_BIT_J2,                               \
-      "how fast it goes there: as 1 - exp(-saturation_rate times plastic strain)")
+      "how fast it goes there: as 1 - exp(-saturation_rate times plastic strain)")                           \
+    X(BULK, "bulk", "Pa", RG_NEEDED, RG_MATERIAL_BIT_MOONEY_RIVLIN, "bulk modulus K")                        \
+    X(C10, "c10", "Pa", RG_NEEDED, RG_MATERIAL_BIT_MOONEY_RIVLIN,                                            \
+      "coefficient of the first invariant; the shear modulus at rest is 2 (c10 + c01)")                      \
+    X(C01, "c01", "Pa", RG_FROM_0, RG_MATERIAL_BIT_MOONEY_RIVLIN, "coefficient of the second invariant")
 
 #define RG_PARAMETER_ENUM(NAME, key, unit, range, models, meaning) RG_PARAMETER_##NAME,
 enum { RG_MATERIAL_PARAMETERS(RG_PARAMETER_ENUM) RG_PARAMETERS };

@@ -20,6 +20,7 @@ typedef struct {
 #define LINEAR    RG_MATERIAL_LINEAR_ELASTIC
 #define KIRCHHOFF RG_MATERIAL_ST_VENANT_KIRCHHOFF
 #define CRYSTAL   RG_MATERIAL_ANISOTROPIC
+#define RUBBER    RG_MATERIAL_MOONEY_RIVLIN
 #define J2        RG_MATERIAL_J2
 
 static const kernel_case cases[] = {
@@ -33,6 +34,7 @@ static const kernel_case cases[] = {
      {.gradient = RG_GRADIENT_LIFTED, .model = KIRCHHOFF},
      BENCH_ROUGH},
     {"anisotropic", RG_COST_BULK, 0, {.gradient = RG_GRADIENT_LIFTED, .model = CRYSTAL}, BENCH_ROUGH},
+    {"Mooney-Rivlin", RG_COST_BULK, 0, {.gradient = RG_GRADIENT_LIFTED, .model = RUBBER}, BENCH_ROUGH},
     {"J2 elastic",
      RG_COST_BULK,
      0,

@@ -157,6 +157,9 @@ static rg_material make_material(rg_material_model model) {
         m.of.parameter[RG_PARAMETER_HARDENING] = 2e9;
         m.of.parameter[RG_PARAMETER_SATURATION_STRESS] = 2e9;
         m.of.parameter[RG_PARAMETER_SATURATION_RATE] = 100;
+        m.of.parameter[RG_PARAMETER_BULK] = LAMBDA + 2 * MU / 3;
+        m.of.parameter[RG_PARAMETER_C10] = 0.3 * MU;
+        m.of.parameter[RG_PARAMETER_C01] = 0.2 * MU;
     }
     rg_material_prepare(&m, STEP);
     return m;

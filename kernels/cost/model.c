@@ -67,6 +67,16 @@ enum {
     VOIGT_PIOLA = 9 * (1 + DOT),
     VOIGT_STIFFENING = 3 * (1 + FMA) + 3 * 2 + 1 + 1 + FMA,
     VOIGT_ENERGY = 1 + 5 * FMA + 1 + FMA,
+    /* Mooney-Rivlin: J^-2/3 by exponential, six strains, their trace */
+    MOONEY_STRAIN = VOLUME_CHANGE + 1 + HENCKY_EXP + 6 * (1 + DOT + 2) + 2,
+    /* other cofactors, E^2; x, y; C S, its mean, the rest on the diagonal, over J; P */
+    MOONEY_STRESS =
+        2 * COFACTORS + 6 * DOT + (2 + FMA + 1 + FMA + 1) + 6 * (1 + FMA) + 3 + 4 + 1 + 3 + 6 + 9 * (1 + DOT),
+    /* largest rows of Q and C, tr Q; first and second part; their sum, ratio, NaN guard */
+    MOONEY_STIFFENING = 3 + 6 * DOT + 9 + (3 * DOT + 2) + (3 + 6 + FMA + 1) + (FMA + 1 + FMA + 1 + 4 + 1) +
+                        (2 + FMA + FMA + 2 + FMA + 1) + (2 + 1 + FMA + FMA + 1 + FMA) + 2 + FMA,
+    MOONEY_ENERGY = 1 + FMA + (DOT + DOT + 1 + FMA) + (3 * DOT + 2) + (FMA + 2) + FMA + (1 + 2 * FMA) +
+                    (1 + 2 * FMA + 2 + FMA + 2 * FMA + FMA + 1) + (1 + 2 * FMA) + (1 + FMA) + FMA,
 };
 
 /* All up to the gradients at the four points. */
@@ -89,6 +99,8 @@ static double point_flops(const rg_cost_variant *v) {
         return JACOBIAN + GREEN_STRAIN + GREEN_STRESS + GREEN_STIFFENING + VALID + FMA;
     case RG_MATERIAL_ANISOTROPIC:
         return JACOBIAN + VOIGT_STRAIN + VOIGT_STRESS + VOIGT_PIOLA + VOIGT_STIFFENING + VALID + FMA;
+    case RG_MATERIAL_MOONEY_RIVLIN:
+        return MOONEY_STRAIN + MOONEY_STRESS + MOONEY_STIFFENING + FMA;
     case RG_MATERIAL_DESHPANDE_EVANS:
         return rg_ceramic_flops(v) + FMA + released;
     case RG_MATERIAL_J2:
@@ -107,6 +119,8 @@ static double state_flops(const rg_cost_variant *v) {
         return GREEN_STRAIN + GREEN_ENERGY + FMA + (v->cauchy ? JACOBIAN + GREEN_STRESS + CAUCHY : 0);
     case RG_MATERIAL_ANISOTROPIC:
         return VOIGT_STRAIN + VOIGT_STRESS + VOIGT_ENERGY + (v->cauchy ? JACOBIAN + VOIGT_PIOLA + CAUCHY : 0);
+    case RG_MATERIAL_MOONEY_RIVLIN:
+        return MOONEY_STRAIN + MOONEY_ENERGY + (v->cauchy ? MOONEY_STRESS + CAUCHY : 0);
     case RG_MATERIAL_DESHPANDE_EVANS:
         return rg_ceramic_state_flops(v) + FMA + (v->cauchy ? 3 + CAUCHY : 0);
     case RG_MATERIAL_J2:

@@ -124,7 +124,14 @@ const char *rg_key_allowed(const rg_key *key, char *text, size_t size) {
 
 void rg_models_words(const rg_key *key, char *text, size_t size) {
     const char *join = "";
+    unsigned others = ((1U << RG_MATERIAL_MODELS) - 1) & ~key->models;
     text[0] = '\0';
+    for (int m = 0; m < RG_MATERIAL_MODELS && others != 0; m++) {
+        if (others == 1U << m) {
+            rg_text_add(text, size, "all but %s", rg_material_word((rg_material_model)m));
+            return;
+        }
+    }
     for (int m = 0; m < RG_MATERIAL_MODELS; m++) {
         if ((key->models >> m & 1U) != 0) {
             rg_text_add(text, size, "%s%s", join, rg_material_word((rg_material_model)m));

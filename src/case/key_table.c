@@ -26,7 +26,7 @@
 #define GROUP(name)  .group = RG_GROUP_##name
 #define ELASTIC      .models = RG_MATERIAL_BIT_ANISOTROPIC RG_MATERIALS(TAKES_YOUNG)
 #define CERAMIC      .models = RG_MATERIAL_BIT_DESHPANDE_EVANS
-#define EVERY_MODEL  .models = (1U << RG_MATERIAL_MODELS) - 1
+#define OF_POISSON   .models = ((1U << RG_MATERIAL_MODELS) - 1) & ~(0U RG_MATERIALS(TAKES_BULK))
 #define ALONG_AXES   .models = RG_MATERIAL_BIT_ANISOTROPIC
 #define OF_AXES(key) .as_models = RG_MATERIAL_BIT_ANISOTROPIC, .as = &(key)
 #define MAY_CHANGE   .may_change = true /* on a restart */
@@ -39,6 +39,8 @@
 #define OF_SET(member)                                                                                       \
     .offset = offsetof(rg_face_set, member), .offset_expr = offsetof(rg_face_set, member##_at)
 
+#define TAKES_BULK(name, NAME, word, meaning, history, inside)                                               \
+    | ((inside)&RG_TAKES_BULK ? (unsigned)RG_MATERIAL_BIT_##NAME : 0U)
 #define TAKES_YOUNG(name, NAME, word, meaning, history, inside)                                              \
     | ((inside)&RG_TAKES_YOUNG ? RG_MATERIAL_BIT_##NAME : 0)
 

@@ -20,7 +20,7 @@
 {.name = KEY("shear"), .unit = "Pa", REAL, ABOVE(0), REQUIRED,
  .models = RG_MATERIAL_BIT_DESHPANDE_EVANS | RG_MATERIAL_BIT_ANISOTROPIC, OF_AXES(shear_of_axes), AT(deshpande_evans.shear),
  MEANS("shear modulus of the intact solid; of anisotropic those of its planes, beside young")},
-{.name = KEY("poisson"), REAL, FROM_TO(0, 0.5), .high_open = true, REQUIRED, EVERY_MODEL, OF_AXES(poisson_of_axes),
+{.name = KEY("poisson"), REAL, FROM_TO(0, 0.5), .high_open = true, REQUIRED, OF_POISSON, OF_AXES(poisson_of_axes),
  AT(poisson), MEANS("Poisson's ratio; of anisotropic nu_ij, what the solid contracts along axis j where it is pulled along i, beside young ([0, 0, 0])")},
 {.name = KEY("density"), .unit = "kg/m3", REAL, ABOVE(0), REQUIRED, AT(density), MEANS("reference density")},
 {.name = KEY("flaw_radius"), .unit = "m", REAL, ABOVE(0), REQUIRED, FLAWS(flaw_radius),

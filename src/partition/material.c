@@ -102,6 +102,10 @@ static rg_material make(const rg_material_input *in, const rg_material *like) {
     rg_material m = {.model = in->model, .density = in->density};
     if (m.model == RG_MATERIAL_ANISOTROPIC) {
         set_anisotropic(&m, &in->anisotropic, like);
+    } else if (m.model == RG_MATERIAL_MOONEY_RIVLIN) {
+        memcpy(m.of.parameter, in->parameter, sizeof m.of.parameter);
+        m.mu = 2 * (in->parameter[RG_PARAMETER_C10] + in->parameter[RG_PARAMETER_C01]);
+        m.lambda = in->parameter[RG_PARAMETER_BULK] - 2 * m.mu / 3;
     } else if ((rg_material_inside(m.model) & RG_TAKES_YOUNG) != 0) {
         set_young(&m, in->young, in->poisson);
         memcpy(m.of.parameter, in->parameter, sizeof m.of.parameter);

@@ -63,6 +63,8 @@ static void test_orthotropic(void **state) {
         assert_near(c[k], expected[k], 2e-13);
     }
     assert_near(least, 0.4 / 210, 1e-18); /* of the compliance: 1/(3 K) */
+    assert_true(rg_stiffness_orthotropic(E, nu, (double[3]){1e3, 2e3, 1e3}, c, &least));
+    assert_near(least, 0.5 / 2e3, 1e-18); /* ... or 1/(2 G) */
     const double young[3] = {10, 20, 40}, poisson[3] = {0.25, 0.1, 0.4}, shear[3] = {3, 5, 7};
     assert_true(rg_stiffness_orthotropic(young, poisson, shear, c, &least));
     const double strain[3][3] = {

@@ -1,6 +1,6 @@
-/* Points of the linear elastic and the St. Venant-Kirchhoff solid against theory: stress by hand, what a
- * rotation does, the bound on the acoustic tensor. (test_reference.c differentiates their energies,
- * test_kernels.c holds the kernels against these points.) */
+/* Points of the linear elastic, the St. Venant-Kirchhoff and the Mooney-Rivlin solid against theory: stress
+ * by hand, what a rotation does, the bound on the acoustic tensor. (test_reference.c differentiates their
+ * energies, test_kernels.c holds the kernels against these points.) */
 #include <stdarg.h>
 #include <stddef.h>
 #include <setjmp.h>
@@ -22,11 +22,19 @@ typedef struct {
 
 static const solid solids[] = {{rg_reference_point_neo_hookean, "neo-Hookean"},
                                {rg_reference_point_linear_elastic, "linear"},
-                               {rg_reference_point_st_venant_kirchhoff, "St. Venant-Kirchhoff"}};
-enum { NEO_HOOKEAN, LINEAR, KIRCHHOFF, SOLIDS };
+                               {rg_reference_point_st_venant_kirchhoff, "St. Venant-Kirchhoff"},
+                               {rg_reference_point_mooney_rivlin, "Mooney-Rivlin"}};
+enum { NEO_HOOKEAN, LINEAR, KIRCHHOFF, MOONEY, SOLIDS };
+#define C10 (0.35 * MU)
+#define C01 (0.15 * MU)
 
 static rg_reference_point point(int which, double F[3][3], double P[3][3]) {
-    const rg_material m = {.lambda = LAMBDA, .mu = MU, .density = 3690};
+    const rg_material m = {
+        .lambda = LAMBDA,
+        .mu = MU,
+        .density = 3690,
+        .of.parameter = {
+            [RG_PARAMETER_BULK] = LAMBDA + 2 * MU / 3, [RG_PARAMETER_C10] = C10, [RG_PARAMETER_C01] = C01}};
     rg_reference_point out = {0};
     solids[which].law(&m, false, F, NULL, P, &out);
     return out;
@@ -63,6 +71,33 @@ static void test_by_hand(void **state) {
     assert_near(&solids[KIRCHHOFF], P[0][1], MU * g + g * LARGE * g * g / 2, 4e-15 * MU);
 }
 
+/* Mooney and Rivlin's solid in simple shear by g, where J = 1: Cauchy stresses 2 (c10 + c01) g, and along
+ * less across 2 c10 g^2 and -2 c01 g^2 (Rivlin 1948); and swollen by J alone, under K/2 (J^2 - 1)/J. */
+static void test_rubber_by_hand(void **state) {
+    const solid *s = &solids[MOONEY];
+    double P[3][3], sigma[3][3];
+    (void)state;
+    for (int n = 1; n < 10; n++) {
+        const double g = 0.2 * n;
+        double F[3][3] = {{1, g, 0}, {0, 1, 0}, {0, 0, 1}};
+        rg_reference_point r = point(MOONEY, F, P);
+        for (int k = 0; k < 9; k++)
+            sigma[k / 3][k % 3] =
+                P[k / 3][0] * F[k % 3][0] + P[k / 3][1] * F[k % 3][1] + P[k / 3][2] * F[k % 3][2];
+        assert_near(s, sigma[0][1], MU * g, 1e-14 * MU);
+        assert_near(s, sigma[1][0], MU * g, 1e-14 * MU);
+        assert_near(s, sigma[0][0] - sigma[2][2], 2 * C10 * g * g, 1e-14 * MU);
+        assert_near(s, sigma[1][1] - sigma[2][2], -2 * C01 * g * g, 1e-14 * MU);
+        assert_near(s, r.energy, MU / 2 * g * g, 1e-14 * MU);
+        const double K = LAMBDA + 2 * MU / 3, size = 0.4 + 0.2 * n, J = size * size * size;
+        double swollen[3][3] = {{size, 0, 0}, {0, size, 0}, {0, 0, size}};
+        r = point(MOONEY, swollen, P);
+        for (int k = 0; k < 9; k++)
+            assert_near(s, P[k / 3][k % 3], (k % 4 == 0) * K / 2 * (J * J - 1) / size, 1e-14 * K * J * J);
+        assert_near(s, r.energy, K / 4 * (J * J - 1 - 2 * log(J)), 1e-14 * K * J * J);
+    }
+}
+
 static void random_gradient(dice *d, double size, double F[3][3]) {
     for (int k = 0; k < 9; k++)
         F[k / 3][k % 3] = (k % 4 == 0) + size * dice_sign(d);
@@ -78,7 +113,9 @@ static void test_rotation(void **state) {
         random_gradient(&d, 0.3, F);
         dice_rotation(&d, Q);
         product(Q, F, QF);
-        for (int which = 0; which < SOLIDS; which += 2) {
+        for (int which = 0; which < SOLIDS; which++) {
+            if (which == LINEAR)
+                continue;
             rg_reference_point one = point(which, F, P), other = point(which, QF, turned);
             product(Q, P, expected);
             for (int k = 0; k < 9; k++)
@@ -166,9 +203,8 @@ static void test_stiffening(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_by_hand),
-        cmocka_unit_test(test_rotation),
-        cmocka_unit_test(test_small_strains),
+        cmocka_unit_test(test_by_hand),    cmocka_unit_test(test_rubber_by_hand),
+        cmocka_unit_test(test_rotation),   cmocka_unit_test(test_small_strains),
         cmocka_unit_test(test_stiffening),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

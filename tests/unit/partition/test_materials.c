@@ -42,6 +42,19 @@ static void test_elastic(void **state) {
     }
 }
 
+/* Speeds from the moduli at rest: mu = 2 (c10 + c01), K + 4/3 mu. */
+static void test_rubber(void **state) {
+    rg_material_input in = {.model = RG_MATERIAL_MOONEY_RIVLIN, .density = 1100};
+    (void)state;
+    in.parameter[RG_PARAMETER_BULK] = 2e9;
+    in.parameter[RG_PARAMETER_C10] = 0.3e6;
+    in.parameter[RG_PARAMETER_C01] = 0.1e6;
+    rg_material m = rg_material_make(&in);
+    assert_near(rg_material_shear(&m), sqrt(0.8e6 / 1100));
+    assert_near(rg_material_dilatational(&m), sqrt((2e9 + 4 * 0.8e6 / 3) / 1100));
+    assert_memory_equal(m.of.parameter, in.parameter, sizeof in.parameter);
+}
+
 static void test_ceramic(void **state) {
     (void)state;
     for (int derived = 0; derived < 2; derived++) {
@@ -274,9 +287,10 @@ static void test_fields(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_elastic),      cmocka_unit_test(test_isotropic), cmocka_unit_test(test_axes),
-        cmocka_unit_test(test_faces),        cmocka_unit_test(test_grains),    cmocka_unit_test(test_ceramic),
-        cmocka_unit_test(test_plastic_wave), cmocka_unit_test(test_of_case),   cmocka_unit_test(test_fields),
+        cmocka_unit_test(test_elastic), cmocka_unit_test(test_isotropic),    cmocka_unit_test(test_axes),
+        cmocka_unit_test(test_faces),   cmocka_unit_test(test_grains),       cmocka_unit_test(test_rubber),
+        cmocka_unit_test(test_ceramic), cmocka_unit_test(test_plastic_wave), cmocka_unit_test(test_of_case),
+        cmocka_unit_test(test_fields),
     };
     int failed = cmocka_run_group_tests_name("materials", tests, NULL, NULL);
     return failed + (rg_alloc_blocks() > 0); /* all is given back */

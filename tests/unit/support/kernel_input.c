@@ -357,8 +357,14 @@ static void set_parameters(rg_material *m) {
 
 void input_set_model(input *in, rg_material_model model) {
     in->material.model = model;
+    double mu = in->material.mu, *parameter = in->material.of.parameter;
     if (model == RG_MATERIAL_ANISOTROPIC)
         set_stiffness(&in->material);
+    if (model == RG_MATERIAL_MOONEY_RIVLIN) { /* of the same moduli at rest */
+        parameter[RG_PARAMETER_BULK] = in->material.lambda + 2 * mu / 3;
+        parameter[RG_PARAMETER_C10] = 0.3 * mu;
+        parameter[RG_PARAMETER_C01] = 0.2 * mu;
+    }
 }
 
 input *input_make(input_kind kind, rg_cohesive law, uint64_t seed, uint64_t order) {
