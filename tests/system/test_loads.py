@@ -4,7 +4,7 @@ integrals: tests/unit/solver/test_load.c; bits on any layout and restarts: test_
 import numpy as np
 import pytest
 import rhegma
-from conftest import CASES, example, launch, rounding
+from conftest import CASES, SINGLE, example, launch, rounding
 from figures import ROUNDING
 
 LOADS = CASES / "loads.yaml"
@@ -126,6 +126,7 @@ def bed(scratch):
     return path
 
 
+@pytest.mark.skipif(SINGLE, reason="a block that sinks by 500 times what it strains leaves too little of strains in floats")
 @pytest.mark.parametrize("form", ["variational", "continuous"])
 def test_a_block_on_a_foundation_at_rest(run, figure, bed, form):
     """Nothing else holds it: its weight is on the springs, so that the mean displacement of its bed is m g/(k A)."""
@@ -133,12 +134,12 @@ def test_a_block_on_a_foundation_at_rest(run, figure, bed, form):
     sensors = [{"name": "low", "set": "z-", "values": ["ux", "uz"]}]
     done = run(bed, sets={"start": "static", "interface": law, "output.sensors": sensors})
     weight, stiffness = 8000 * 1e-9 * 1e6, 1e11 * 1e-6
-    figure(f"block on a foundation, form {form}: how far it sinks", done.history["low_uz_mean"][0], theory=-weight / stiffness, bound=rounding(1e-7, 1e-4), relative=True,
+    figure(f"block on a foundation, form {form}: how far it sinks", done.history["low_uz_mean"][0], theory=-weight / stiffness, bound=1e-7, relative=True,
            why="the residual at which the search ends")
-    figure(f"block on a foundation, form {form}: how far it is pulled aside", done.history["low_ux_mean"][0], theory=0.2 * weight / stiffness, bound=rounding(1e-7, 1e-4), relative=True,
+    figure(f"block on a foundation, form {form}: how far it is pulled aside", done.history["low_ux_mean"][0], theory=0.2 * weight / stiffness, bound=1e-7, relative=True,
            why="the residual at which the search ends")
-    assert done.history["bed_force_z"][-1] == pytest.approx(weight, rel=rounding(1e-6, 1e-2))
-    assert done.energy["kinetic"].max() < rounding(1e-10, 1e-4) * done.energy["bulk"][0]
+    assert done.history["bed_force_z"][-1] == pytest.approx(weight, rel=1e-6)
+    assert done.energy["kinetic"].max() < 1e-10 * done.energy["bulk"][0]
 
 
 def test_a_block_bounces_on_its_foundation(run, figure, bed):
