@@ -98,6 +98,12 @@ static void test_table_of_angles(void **state) {
     expect_messages(0, NULL, FILE_KEY "of the columns angle_1, angle_2, angle_3 there are but 2\n");
     write_csv("set,angle_1,angle_2,angle_3\na,10,20,\n");
     expect_messages(0, NULL, ":4:12: materials[0].orientation.angles[2]: no value; allowed: number\n");
+    static const char *const both[] = {
+        "materials=[{file: grains.csv, name: g, model: anisotropic, orientation: {}}]"};
+    expect_messages(
+        1, both,
+        "--set materials=[{file: grains.csv, name: g, model: anisotropic, orientation: {}}]: "
+        "materials[0].file: grains.csv: orientation is given beside the file's columns of angles\n");
     unlink(csv);
 }
 
