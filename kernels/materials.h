@@ -29,6 +29,33 @@ enum {
     RG_J2_HISTORY = 7,
 };
 
+/* History of a point of material/johnson_cook.h. Zero is the virgin material, at the temperature to begin
+ * with. */
+enum {
+    RG_JC_STRAIN = 0, /* ep, accumulated equivalent plastic strain */
+    RG_JC_RISE = 1,   /* of the temperature (K) */
+    RG_JC_FLOW = 2,   /* as RG_J2_FLOW */
+    RG_JC_HISTORY = 8,
+};
+
+/* History of a point of material/johnson_holmquist.h. Zero is the virgin material. */
+enum {
+    RG_JH_STRAIN = 0,  /* accumulated equivalent plastic strain */
+    RG_JH_DAMAGE = 1,  /* D */
+    RG_JH_BULKING = 2, /* dp (Pa) */
+    RG_JH_LAST = 3,    /* eb, the size of the elastic strain, after a step that flowed; 0: it did not */
+    RG_JH_FLOW = 4,    /* as RG_J2_FLOW */
+    RG_JH_HISTORY = 10,
+};
+
+/* History of a point of material/viscoelastic.h, tensors xx yy zz yz xz xy. Zero is the virgin material. */
+enum {
+    RG_VE_ELEMENTS = 3, /* Maxwell's */
+    RG_VE_STRAIN = 0,   /* E after the last step */
+    RG_VE_ELASTIC = 6,  /* A of each element */
+    RG_VE_HISTORY = 6 + 6 * RG_VE_ELEMENTS,
+};
+
 /* name in C, name of the enum, name in a case file, what it is, values of history per point, bits of the
  * above */
 #define RG_MATERIALS_ANY(X)                                                                                  \
@@ -47,7 +74,16 @@ enum {
       "a ceramic with growing microcracks and plastic flow", RG_DE_HISTORY,                                  \
       RG_HAS_DAMAGE | RG_HAS_REGIME | RG_HAS_PLASTIC)                                                        \
     X(j2, J2, "j2", "a metal that flows: J2 plasticity with isotropic hardening", RG_J2_HISTORY,             \
-      RG_TAKES_YOUNG | RG_HAS_PLASTIC)
+      RG_TAKES_YOUNG | RG_HAS_PLASTIC)                                                                       \
+    X(johnson_cook, JOHNSON_COOK, "johnson-cook",                                                            \
+      "a metal that flows harder the faster and softer the hotter it is", RG_JC_HISTORY,                     \
+      RG_TAKES_YOUNG | RG_HAS_PLASTIC)                                                                       \
+    X(johnson_holmquist, JOHNSON_HOLMQUIST, "johnson-holmquist-2",                                           \
+      "a ceramic or glass that is crushed, under high pressure too", RG_JH_HISTORY,                          \
+      RG_TAKES_YOUNG | RG_HAS_DAMAGE | RG_HAS_PLASTIC)                                                       \
+    X(viscoelastic, VISCOELASTIC, "viscoelastic",                                                            \
+      "a polymer that relaxes: neo-Hookean in the long run, beside three Maxwell elements", RG_VE_HISTORY,   \
+      RG_TAKES_YOUNG)
 
 #define RG_MATERIALS(X) RG_MATERIALS_ANY(X) RG_MATERIALS_DOUBLE(X)
 #ifdef RG_SINGLE
@@ -73,7 +109,8 @@ typedef enum {
 /* Parameters besides density, elastic constants and those of the ceramic alone: name of the enum, key in the
  * block of a material, unit, range, models that use it, meaning. */
 #define RG_MATERIAL_PARAMETERS(X)                                                                            \
-    X(YIELD_STRESS, "yield_stress", "Pa", RG_NEEDED, RG_MATERIAL_BIT_J2 | RG_MATERIAL_BIT_DESHPANDE_EVANS,   \
+    X(YIELD_STRESS, "yield_stress", "Pa", RG_NEEDED,                                                         \
+      RG_MATERIAL_BIT_J2 | RG_MATERIAL_BIT_DESHPANDE_EVANS | RG_MATERIAL_BIT_JOHNSON_COOK,                   \
       "yield stress before any plastic strain")                                                              \
     X(HARDENING, "hardening", "Pa", RG_FROM_0, RG_MATERIAL_BIT_J2,                                           \
       "slope of the yield stress over plastic strain")                                                       \
@@ -85,7 +122,70 @@ typedef enum {
     X(BULK, "bulk", "Pa", RG_NEEDED, RG_MATERIAL_BIT_MOONEY_RIVLIN, "bulk modulus K")                        \
     X(C10, "c10", "Pa", RG_NEEDED, RG_MATERIAL_BIT_MOONEY_RIVLIN,                                            \
       "coefficient of the first invariant; the shear modulus at rest is 2 (c10 + c01)")                      \
-    X(C01, "c01", "Pa", RG_FROM_0, RG_MATERIAL_BIT_MOONEY_RIVLIN, "coefficient of the second invariant")
+    X(C01, "c01", "Pa", RG_FROM_0, RG_MATERIAL_BIT_MOONEY_RIVLIN, "coefficient of the second invariant")     \
+    X(HARDENING_MODULUS, "hardening_modulus", "Pa", RG_FROM_0, RG_MATERIAL_BIT_JOHNSON_COOK,                 \
+      "B: what hardening adds to the yield stress at a plastic strain of 1")                                 \
+    X(HARDENING_POWER, "hardening_power", NULL, RG_NEEDED, RG_MATERIAL_BIT_JOHNSON_COOK,                     \
+      "n: hardening goes with the plastic strain to this power")                                             \
+    X(RATE_SENSITIVITY, "rate_sensitivity", NULL, RG_FROM_0,                                                 \
+      RG_MATERIAL_BIT_JOHNSON_COOK | RG_MATERIAL_BIT_JOHNSON_HOLMQUIST,                                      \
+      "C: by so much strength grows per e-fold of the strain rate beyond reference_rate")                    \
+    X(REFERENCE_RATE, "reference_rate", "1/s", RG_NEEDED,                                                    \
+      RG_MATERIAL_BIT_JOHNSON_COOK | RG_MATERIAL_BIT_JOHNSON_HOLMQUIST,                                      \
+      "strain rate up to which strength is the quasi-static one, as a rule 1")                               \
+    X(SOFTENING_POWER, "softening_power", NULL, RG_FROM_0, RG_MATERIAL_BIT_JOHNSON_COOK,                     \
+      "m of the loss of strength on the way to the melting temperature; 0: heat softens nothing")            \
+    X(MELTING_TEMPERATURE, "melting_temperature", "K", RG_FROM_0, RG_MATERIAL_BIT_JOHNSON_COOK,              \
+      "where no strength is left; goes with softening_power, and is above room_temperature")                 \
+    X(ROOM_TEMPERATURE, "room_temperature", "K", RG_FROM_0, RG_MATERIAL_BIT_JOHNSON_COOK,                    \
+      "at which the yield stress holds, and the solid is to begin with")                                     \
+    X(HEAT_CAPACITY, "heat_capacity", "J/(kg K)", RG_FROM_0, RG_MATERIAL_BIT_JOHNSON_COOK,                   \
+      "per mass; goes with heat_fraction")                                                                   \
+    X(HEAT_FRACTION, "heat_fraction", NULL, RG_FROM_0, RG_MATERIAL_BIT_JOHNSON_COOK,                         \
+      "of the work of flow that heats the point (Taylor & Quinney), at most 1, as a rule 0.9; goes with "    \
+      "heat_capacity")                                                                                       \
+    X(HUGONIOT_LIMIT, "hugoniot_limit", "Pa", RG_NEEDED, RG_MATERIAL_BIT_JOHNSON_HOLMQUIST,                  \
+      "HEL: axial stress of uniaxial strain where the solid begins to flow; strengths are in units of "      \
+      "3/2 (HEL - P_HEL)")                                                                                   \
+    X(HUGONIOT_PRESSURE, "hugoniot_pressure", "Pa", RG_NEEDED, RG_MATERIAL_BIT_JOHNSON_HOLMQUIST,            \
+      "P_HEL: the pressure there, below hugoniot_limit; the unit of pressure in strengths and strains")      \
+    X(INTACT_STRENGTH, "intact_strength", NULL, RG_NEEDED, RG_MATERIAL_BIT_JOHNSON_HOLMQUIST,                \
+      "A of the intact solid's strength, A (P* + T*)^N")                                                     \
+    X(INTACT_POWER, "intact_power", NULL, RG_NEEDED, RG_MATERIAL_BIT_JOHNSON_HOLMQUIST, "N of it")           \
+    X(CRUSHED_STRENGTH, "crushed_strength", NULL, RG_FROM_0, RG_MATERIAL_BIT_JOHNSON_HOLMQUIST,              \
+      "B of the crushed solid's strength, B P*^M")                                                           \
+    X(CRUSHED_POWER, "crushed_power", NULL, RG_FROM_0, RG_MATERIAL_BIT_JOHNSON_HOLMQUIST, "M of it")         \
+    X(CRUSHED_LIMIT, "crushed_limit", NULL, RG_FROM_0, RG_MATERIAL_BIT_JOHNSON_HOLMQUIST,                    \
+      "most that B P*^M comes to; 0: no limit")                                                              \
+    X(TENSILE_LIMIT, "tensile_limit", "Pa", RG_NEEDED, RG_MATERIAL_BIT_JOHNSON_HOLMQUIST,                    \
+      "T: hydrostatic tension that the intact solid bears")                                                  \
+    X(FAILURE_STRAIN, "failure_strain", NULL, RG_FROM_0, RG_MATERIAL_BIT_JOHNSON_HOLMQUIST,                  \
+      "D1 of the plastic strain to fracture, D1 (P* + T*)^D2; 0: at once")                                   \
+    X(FAILURE_POWER, "failure_power", NULL, RG_FROM_0, RG_MATERIAL_BIT_JOHNSON_HOLMQUIST, "D2 of it")        \
+    X(BULK_2, "bulk_2", "Pa", RG_ANY_SIGN, RG_MATERIAL_BIT_JOHNSON_HOLMQUIST,                                \
+      "K2 of the pressure, K1 mu + K2 mu^2 + K3 mu^3 with mu the change of density over that to begin "      \
+      "with; K1 follows from young and poisson")                                                             \
+    X(BULK_3, "bulk_3", "Pa", RG_ANY_SIGN, RG_MATERIAL_BIT_JOHNSON_HOLMQUIST, "K3 of it")                    \
+    X(BULKING, "bulking", NULL, RG_FROM_0, RG_MATERIAL_BIT_JOHNSON_HOLMQUIST,                                \
+      "beta: share of the elastic energy lost by damage that raises the pressure, at most 1")                \
+    X(SHEAR_FRACTION_1, "shear_fraction_1", NULL, RG_FROM_0, RG_MATERIAL_BIT_VISCOELASTIC,                   \
+      "share of the shear modulus that relaxes in relaxation_time_1; young and poisson are those before")    \
+    X(SHEAR_FRACTION_2, "shear_fraction_2", NULL, RG_FROM_0, RG_MATERIAL_BIT_VISCOELASTIC,                   \
+      "share of the shear modulus that relaxes in relaxation_time_2; young and poisson are those before")    \
+    X(SHEAR_FRACTION_3, "shear_fraction_3", NULL, RG_FROM_0, RG_MATERIAL_BIT_VISCOELASTIC,                   \
+      "share of the shear modulus that relaxes in relaxation_time_3; young and poisson are those before")    \
+    X(BULK_FRACTION_1, "bulk_fraction_1", NULL, RG_FROM_0, RG_MATERIAL_BIT_VISCOELASTIC,                     \
+      "likewise of the bulk modulus")                                                                        \
+    X(BULK_FRACTION_2, "bulk_fraction_2", NULL, RG_FROM_0, RG_MATERIAL_BIT_VISCOELASTIC,                     \
+      "likewise of the bulk modulus")                                                                        \
+    X(BULK_FRACTION_3, "bulk_fraction_3", NULL, RG_FROM_0, RG_MATERIAL_BIT_VISCOELASTIC,                     \
+      "likewise of the bulk modulus")                                                                        \
+    X(RELAXATION_TIME_1, "relaxation_time_1", "s", RG_FROM_0, RG_MATERIAL_BIT_VISCOELASTIC,                  \
+      "time in which the stress of its Maxwell element falls to 1/e")                                        \
+    X(RELAXATION_TIME_2, "relaxation_time_2", "s", RG_FROM_0, RG_MATERIAL_BIT_VISCOELASTIC,                  \
+      "time in which the stress of its Maxwell element falls to 1/e")                                        \
+    X(RELAXATION_TIME_3, "relaxation_time_3", "s", RG_FROM_0, RG_MATERIAL_BIT_VISCOELASTIC,                  \
+      "time in which the stress of its Maxwell element falls to 1/e")
 
 #define RG_PARAMETER_ENUM(NAME, key, unit, range, models, meaning) RG_PARAMETER_##NAME,
 enum { RG_MATERIAL_PARAMETERS(RG_PARAMETER_ENUM) RG_PARAMETERS };

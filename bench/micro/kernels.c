@@ -22,6 +22,9 @@ typedef struct {
 #define CRYSTAL   RG_MATERIAL_ANISOTROPIC
 #define RUBBER    RG_MATERIAL_MOONEY_RIVLIN
 #define J2        RG_MATERIAL_J2
+#define COOK      RG_MATERIAL_JOHNSON_COOK
+#define CRUSHED   RG_MATERIAL_JOHNSON_HOLMQUIST
+#define RELAXING  RG_MATERIAL_VISCOELASTIC
 
 static const kernel_case cases[] = {
     {"bulk lifted", RG_COST_BULK, 0, {.gradient = RG_GRADIENT_LIFTED}, BENCH_ROUGH},
@@ -45,6 +48,31 @@ static const kernel_case cases[] = {
      0,
      {.gradient = RG_GRADIENT_LIFTED, .model = J2, .advance = true, .flowing = 1, .newton = 3},
      BENCH_FLOWING},
+    {"Johnson-Cook elastic",
+     RG_COST_BULK,
+     0,
+     {.gradient = RG_GRADIENT_LIFTED, .model = COOK, .advance = true},
+     BENCH_QUIET},
+    {"Johnson-Cook flowing",
+     RG_COST_BULK,
+     0,
+     {.gradient = RG_GRADIENT_LIFTED, .model = COOK, .advance = true, .flowing = 1, .newton = 5},
+     BENCH_FLOWING},
+    {"Johnson-Holmquist elastic",
+     RG_COST_BULK,
+     0,
+     {.gradient = RG_GRADIENT_LIFTED, .model = CRUSHED, .advance = true},
+     BENCH_QUIET},
+    {"Johnson-Holmquist flowing",
+     RG_COST_BULK,
+     0,
+     {.gradient = RG_GRADIENT_LIFTED, .model = CRUSHED, .advance = true, .flowing = 1},
+     BENCH_FLOWING},
+    {"viscoelastic",
+     RG_COST_BULK,
+     0,
+     {.gradient = RG_GRADIENT_LIFTED, .model = RELAXING, .advance = true},
+     BENCH_QUIET},
     {"ceramic quiet",
      RG_COST_BULK,
      0,

@@ -2,6 +2,8 @@
 
 #include "cost/ceramic.h"
 #include "cost/j2.h"
+#include "cost/johnson_cook.h"
+#include "cost/johnson_holmquist.h"
 #include "kernels.h"
 
 /* ---- Operations, per lane ---- */
@@ -79,6 +81,25 @@ enum {
                     (1 + 2 * FMA + 2 + FMA + 2 * FMA + FMA + 1) + (1 + 2 * FMA) + (1 + FMA) + FMA,
 };
 
+/* Viscoelastic: six components of E; a stress; F S; constants of a step, once for the points of an element.
+ */
+enum {
+    VE_STRAIN = 6 * (1 + DOT + 2),
+    VE_STRESS = 2 + 1 + 3 * FMA + 3,
+    VE_PIOLA = 9 * (2 + DOT),
+    VE_BOUND = 6,
+    /* strain gained; of each element A, stress and their sum; bound */
+    VE_AT_REST = VE_STRAIN + 6 + RG_VE_ELEMENTS * (6 + VE_STRESS + 6) + VE_PIOLA + 1 + 2 * VE_BOUND + 3 * FMA,
+    /* stress before, A by a and b, flow, work; also at rest, where nobody looks at it */
+    VE_STEP = RG_VE_ELEMENTS * (VE_STRESS + 6 * FMA + 12 + 6 + HENCKY_SYM_DOT + 1) + 1,
+    VE_CONSTANTS = RG_VE_ELEMENTS * (HENCKY_EXP + HENCKY_EXPM1 + 1),
+    VE_ENERGY = VE_STRAIN + 6 + RG_VE_ELEMENTS * (6 + VE_STRESS + HENCKY_SYM_DOT + FMA),
+};
+
+static double viscoelastic_flops(void) {
+    return VOLUME_CHANGE + STRESS + STIFFENING + VE_AT_REST + VE_STEP + VE_CONSTANTS / (double)RG_GAUSS;
+}
+
 /* All up to the gradients at the four points. */
 static double gradient_flops(const rg_cost_variant *v) {
     double sum = COMMON + RG_GAUSS * GRADIENT;
@@ -105,6 +126,12 @@ static double point_flops(const rg_cost_variant *v) {
         return rg_ceramic_flops(v) + FMA + released;
     case RG_MATERIAL_J2:
         return rg_j2_flops(v) + FMA + released;
+    case RG_MATERIAL_JOHNSON_COOK:
+        return rg_johnson_cook_flops(v) + FMA + released;
+    case RG_MATERIAL_JOHNSON_HOLMQUIST:
+        return rg_johnson_holmquist_flops(v) + FMA + released;
+    case RG_MATERIAL_VISCOELASTIC:
+        return viscoelastic_flops() + released;
     default:
         return VOLUME_CHANGE + STRESS + STIFFENING;
     }
@@ -125,6 +152,13 @@ static double state_flops(const rg_cost_variant *v) {
         return rg_ceramic_state_flops(v) + FMA + (v->cauchy ? 3 + CAUCHY : 0);
     case RG_MATERIAL_J2:
         return rg_j2_state_flops(v) + FMA + (v->cauchy ? 3 + CAUCHY : 0);
+    case RG_MATERIAL_JOHNSON_COOK:
+        return rg_johnson_cook_state_flops(v) + FMA + (v->cauchy ? 3 + CAUCHY : 0);
+    case RG_MATERIAL_JOHNSON_HOLMQUIST:
+        return rg_johnson_holmquist_state_flops(v) + FMA + (v->cauchy ? 3 + CAUCHY : 0);
+    case RG_MATERIAL_VISCOELASTIC:
+        return VOLUME_CHANGE + ENERGY + VE_ENERGY +
+               (v->cauchy ? STRESS + 6 * RG_VE_ELEMENTS + VE_PIOLA + CAUCHY : 0);
     default:
         return VOLUME_CHANGE + ENERGY + (v->cauchy ? STRESS + CAUCHY : 0);
     }
@@ -228,13 +262,21 @@ typedef struct {
     double index;   /* bytes of links and flags */
 } traffic;
 
+/* Values of a history that serve to go on alone: the plastic strain; the heat of Johnson and Cook's metal;
+ * the last strain of Johnson and Holmquist's ceramic. */
+static int only_advancing(rg_material_model model) {
+    return model == RG_MATERIAL_JOHNSON_COOK || model == RG_MATERIAL_JOHNSON_HOLMQUIST ? 2
+           : model == RG_MATERIAL_VISCOELASTIC                                         ? 0
+                                                                                       : 1;
+}
+
 static traffic bulk_traffic(const rg_cost_variant *v, double out) {
     traffic t = {.in = NODAL + RG_GEOM, .out = out};
     int history = rg_material_history(v->model);
     if (v->advance) {
         t.updated = (double)rg_history_rows(history);
     } else {
-        t.in += history > 0 ? RG_GAUSS * (history - 1) : 0; /* the plastic strain serves to go on alone */
+        t.in += history > 0 ? RG_GAUSS * (history - only_advancing(v->model)) : 0;
     }
     if (v->gradient == RG_GRADIENT_LIFTED) { /* links, one flag; where points are unlinked, interface links
                                               * and the masks of two sides

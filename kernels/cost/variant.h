@@ -15,8 +15,8 @@ typedef struct {
     bool cauchy;             /* bulk_state: writes the stress, not the energy alone */
     bool advance;            /* bulk: the history of the material goes on */
     double growing, panels;  /* ceramic: share of its points (by vectors) whose cracks grow; panels of each */
-    double flowing, newton; /* ceramic, J2: share of its points that flow; iterations of each, of J2 where its
-                               hardening saturates, else 0 */
+    double flowing, newton;  /* share of the points that flow; iterations of each, of J2 where its hardening
+                                saturates, else 0 */
     double unlinked; /* bulk, bulk_state: faces (0 to 4) of an element block with points that left the lift */
     double damaged;  /* interface, interface_state: share of the blocks in which some point is broken */
     double points;   /* interface: broken points (0 to 6) of such a block */

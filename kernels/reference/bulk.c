@@ -140,7 +140,7 @@ static void add_traction(const element *el, int g, double p[3][3],
     }
 }
 
-enum { MOST_HISTORY = 16 }; /* values per point */
+enum { MOST_HISTORY = 24 }; /* values per point */
 
 static rg_reference_point_law *law_of(const rg_material *m) {
 #define LAW(name, NAME, word, meaning, history, inside) [RG_MATERIAL_##NAME] = rg_reference_point_##name,

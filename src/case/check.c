@@ -271,11 +271,25 @@ static void learn_constants(rg_check *ck, size_t at, const rg_node *node, bool g
     }
 }
 
+/* Of a parameter of a material; after the last one, what they must be to each other. */
+static void learn_parameter(rg_check *ck, size_t number, const rg_node *node, bool good) {
+    rg_material_check *m = &ck->material;
+    m->given[number] = good ? node : NULL;
+    m->bad[number] = !good;
+    if (number + 1 == RG_PARAMETERS && m->model) {
+        rg_parameters_rule(ck);
+    }
+}
+
 /* What the value of a key of a material says about others. */
 static void learn_material(rg_check *ck, const rg_key *key, const rg_node *node, bool good) {
+    const size_t first = offsetof(rg_material_input, parameter), size = sizeof ck->material.of->parameter;
     size_t at = key->offset - key->input;
     rg_material_check *m = &ck->material;
     learn_constants(ck, at, node, good);
+    if (at >= first && at < first + size) {
+        learn_parameter(ck, (at - first) / sizeof(double), node, good);
+    }
     if (at == offsetof(rg_material_input, model)) {
         m->model = good;
         ck->models = ck->models && good;

@@ -31,6 +31,8 @@ typedef struct {
     bool constants;                        /* those are good so far */
     bool saturates;                        /* its saturation_stress is good */
     const rg_node *saturation;             /* its saturation_stress; NULL: not there */
+    const rg_node *given[RG_PARAMETERS];   /* its other parameters that are there and good */
+    bool bad[RG_PARAMETERS];               /* ... that are not good */
 } rg_material_check;
 
 typedef struct {
@@ -68,11 +70,12 @@ void rg_mesh_file_rule(rg_check *ck, const rg_node *node);
 
 /* Rules of the materials (case/material.c), but for the last two of the block in ck->material: a model that
  * this build does not have; hardening that saturates, which needs a stress, not below the yield stress, and a
- * rate (at `node`); an initial damage that leaves nothing to grow, reported at its flaw_density; what the
- * name is made of (at `node`); output fields that no material has, or, without `node`, those that they put
- * out by default. */
+ * rate (at `node`); other parameters that go together, above or below each other; an initial damage that
+ * leaves nothing to grow, reported at its flaw_density; what the name is made of (at `node`); output fields
+ * that no material has, or, without `node`, those that they put out by default. */
 void rg_model_rule(rg_check *ck, const rg_node *node);
 void rg_saturation_rule(rg_check *ck, const rg_node *node);
+void rg_parameters_rule(rg_check *ck);
 void rg_flaw_rule(rg_check *ck);
 void rg_material_name_rule(rg_check *ck, const rg_node *node);
 void rg_anisotropic_rule(rg_check *ck); /* anisotropic.c: which keys go together, stable, axes */

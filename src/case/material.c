@@ -48,6 +48,86 @@ void rg_saturation_rule(rg_check *ck, const rg_node *node) {
     }
 }
 
+#define PARAMETER_KEY(NAME, key, ...) key,
+static const char *const parameter_key[] = {RG_MATERIAL_PARAMETERS(PARAMETER_KEY)};
+
+/* Parameters of which neither has a use without the other; 0 counts as not given. */
+static const int pairs[][2] = {
+    {RG_PARAMETER_SOFTENING_POWER, RG_PARAMETER_MELTING_TEMPERATURE},
+    {RG_PARAMETER_HEAT_FRACTION, RG_PARAMETER_HEAT_CAPACITY},
+};
+/* The first one is below the second one. */
+static const int orders[][2] = {
+    {RG_PARAMETER_ROOM_TEMPERATURE, RG_PARAMETER_MELTING_TEMPERATURE},
+    {RG_PARAMETER_HUGONIOT_PRESSURE, RG_PARAMETER_HUGONIOT_LIMIT},
+};
+static const int shares[] = {RG_PARAMETER_HEAT_FRACTION, RG_PARAMETER_BULKING}; /* at most 1 */
+
+/* A share that relaxes needs a time, and all of them leave something. */
+static void check_relaxation(rg_check *ck, int first_share) {
+    const rg_material_check *m = &ck->material;
+    const rg_node *last = NULL;
+    int at = first_share;
+    double sum = 0;
+    for (int i = 0; i < RG_VE_ELEMENTS; i++) {
+        int share = first_share + i, time = RG_PARAMETER_RELAXATION_TIME_1 + i;
+        if (m->given[share] == NULL) {
+            continue;
+        }
+        sum += m->of->parameter[share];
+        last = m->given[share];
+        at = share;
+        if (m->of->parameter[share] > 0 && m->of->parameter[time] == 0 && !m->bad[time]) {
+            wrong(ck, last->key_at, parameter_key[share], NULL, "not used without %s%s", m->path,
+                  parameter_key[time]);
+        }
+    }
+    if (sum >= 1) {
+        wrong(ck, last->at, parameter_key[at], last->text, "the shares that relax come to %g: not below 1",
+              sum);
+    }
+}
+
+static void check_pair(rg_check *ck, const int pair[2]) {
+    const rg_material_check *m = &ck->material;
+    for (int k = 0; k < 2; k++) {
+        int here = pair[k], other = pair[1 - k];
+        if (m->given[here] != NULL && m->of->parameter[here] > 0 && m->of->parameter[other] == 0 &&
+            !m->bad[other]) {
+            wrong(ck, m->given[here]->key_at, parameter_key[here], NULL, "not used without %s%s", m->path,
+                  parameter_key[other]);
+        }
+    }
+}
+
+static void check_order(rg_check *ck, const int order[2]) {
+    const rg_material_check *m = &ck->material;
+    const rg_node *high = m->given[order[1]];
+    double low = m->of->parameter[order[0]];
+    if (high != NULL && !m->bad[order[0]] && m->of->parameter[order[1]] <= low) {
+        wrong(ck, high->at, parameter_key[order[1]], high->text, "not above %s%s, %g", m->path,
+              parameter_key[order[0]], low);
+    }
+}
+
+void rg_parameters_rule(rg_check *ck) {
+    const rg_material_check *m = &ck->material;
+    for (size_t k = 0; k < sizeof pairs / sizeof *pairs; k++) {
+        check_pair(ck, pairs[k]);
+    }
+    for (size_t k = 0; k < sizeof orders / sizeof *orders; k++) {
+        check_order(ck, orders[k]);
+    }
+    check_relaxation(ck, RG_PARAMETER_SHEAR_FRACTION_1);
+    check_relaxation(ck, RG_PARAMETER_BULK_FRACTION_1);
+    for (size_t k = 0; k < sizeof shares / sizeof *shares; k++) {
+        const rg_node *node = m->given[shares[k]];
+        if (node != NULL && m->of->parameter[shares[k]] > 1) {
+            wrong(ck, node->at, parameter_key[shares[k]], node->text, "more than 1");
+        }
+    }
+}
+
 void rg_flaw_rule(rg_check *ck) {
     const rg_material_check *m = &ck->material;
     const rg_deshpande_evans *p = &m->of->deshpande_evans;

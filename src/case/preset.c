@@ -5,6 +5,14 @@
 #include "base/mem.h"
 #include "case/check.h"
 
+#define JH2                                                                                                  \
+    "D. S. Cronin and others, 4th European LS-DYNA Users Conf. (2003), D-I-47, from memory; young and "      \
+    "poisson "                                                                                               \
+    "from its G and K1"
+#define CRUSHED "under pressure as fitted to plate impact; in tension cracks between elements break it first"
+#define COOK    "G. R. Johnson & W. H. Cook, 7th Int. Symp. Ballistics (1983) 541, from memory"
+#define DUCTILE "up to rates of 1e5/s; conducts no heat, and has no damage of its own"
+
 /* Where a source gives a fracture toughness, energy is K_Ic^2 (1 - nu^2)/E of it. */
 const rg_preset rg_preset_list[RG_PRESETS] = {
     {"alumina-seagraves", "alumina of the thesis",
@@ -49,6 +57,56 @@ const rg_preset rg_preset_list[RG_PRESETS] = {
      "others, "
      "Comput. Methods Appl. Mech. Eng. 217 (2012) 77",
      "brittle failure below 20 to 30 m/s of impact, where no shear band forms"},
+    {"alumina-jh2", "alumina that is crushed, by Johnson and Holmquist",
+     "{model: johnson-holmquist-2, young: 220e9, poisson: 0.22, density: 3700, reference_rate: 1, "
+     "hugoniot_limit: 2.79e9, hugoniot_pressure: 1.46e9, intact_strength: 0.93, intact_power: 0.6, "
+     "crushed_strength: 0.31, crushed_power: 0.6, tensile_limit: 0.2e9, failure_strain: 0.005, "
+     "failure_power: 1, bulking: 1}",
+     262e6, 52, JH2 "; cracks: as alumina-ad995", CRUSHED},
+    {"boron-carbide-jh2", "boron carbide that is crushed, by Johnson and Holmquist",
+     "{model: johnson-holmquist-2, young: 461.06e9, poisson: 0.1702, density: 2510, reference_rate: 1, "
+     "rate_sensitivity: 0.005, hugoniot_limit: 19e9, hugoniot_pressure: 8.71e9, intact_strength: 0.927, "
+     "intact_power: 0.67, crushed_strength: 0.7, crushed_power: 0.85, crushed_limit: 0.2, tensile_limit: "
+     "0.26e9, failure_strain: 0.001, failure_power: 0.5, bulk_2: -593e9, bulk_3: 2800e9, bulking: 1}",
+     350e6, 13.2,
+     "G. R. Johnson & T. J. Holmquist, J. Appl. Phys. 85 (1999) 8060, from memory; cracks: as boron-carbide",
+     CRUSHED "; the fit ends where boron carbide becomes amorphous, beyond 20 GPa"},
+    {"silicon-carbide-jh2", "silicon carbide that is crushed, by Johnson and Holmquist",
+     "{model: johnson-holmquist-2, young: 423e9, poisson: 0.15574, density: 3163, reference_rate: 1, "
+     "hugoniot_limit: 14.567e9, hugoniot_pressure: 5.9e9, intact_strength: 0.96, intact_power: 0.65, "
+     "crushed_strength: 0.35, crushed_power: 1, tensile_limit: 0.37e9, failure_strain: 0.48, failure_power: "
+     "0.48, bulking: 1}",
+     250e6, 22.6, JH2 "; cracks: as silicon-carbide", CRUSHED},
+    {"float-glass-jh2", "float glass that is crushed, by Johnson and Holmquist",
+     "{model: johnson-holmquist-2, young: 74.56e9, poisson: 0.22629, density: 2530, reference_rate: 1, "
+     "rate_sensitivity: 0.003, hugoniot_limit: 5.95e9, hugoniot_pressure: 2.92e9, intact_strength: 0.93, "
+     "intact_power: 0.77, crushed_strength: 0.088, crushed_power: 0.35, crushed_limit: 0.5, tensile_limit: "
+     "0.15e9, failure_strain: 0.053, failure_power: 0.85, bulk_2: -138e9, bulk_3: 290e9, bulking: 1}",
+     60e6, 7.4,
+     JH2 ", after T. J. Holmquist and others, 15th Int. Symp. Ballistics (1995); cracks: as soda-lime-glass",
+     CRUSHED},
+    {"steel-4340", "4340 steel, by Johnson and Cook",
+     "{model: johnson-cook, young: 200e9, poisson: 0.29, density: 7830, yield_stress: 792e6, "
+     "hardening_modulus: 510e6, hardening_power: 0.26, rate_sensitivity: 0.014, reference_rate: 1, "
+     "softening_power: 1.03, melting_temperature: 1793, room_temperature: 294, heat_capacity: 477, "
+     "heat_fraction: 0.9}",
+     2.4e9, 20e3, COOK ": Rockwell C-30; strength and energy of cracks: of the order of such steels",
+     DUCTILE},
+    {"copper-ofhc", "oxygen-free copper, by Johnson and Cook",
+     "{model: johnson-cook, young: 124e9, poisson: 0.34, density: 8960, yield_stress: 90e6, "
+     "hardening_modulus: 292e6, hardening_power: 0.31, rate_sensitivity: 0.025, reference_rate: 1, "
+     "softening_power: 1.09, melting_temperature: 1356, room_temperature: 294, heat_capacity: 383, "
+     "heat_fraction: 0.9}",
+     1.2e9, 20e3, COOK "; strength and energy of cracks: of the order of its spall", DUCTILE},
+    {"pmma-viscoelastic", "polymethyl methacrylate that relaxes",
+     "{model: viscoelastic, young: 6e9, poisson: 0.33, density: 1190, shear_fraction_1: 0.15, "
+     "shear_fraction_2: "
+     "0.15, shear_fraction_3: 0.16, relaxation_time_1: 1e-6, relaxation_time_2: 1e-4, relaxation_time_3: "
+     "1e-2}",
+     129.6e6, 352.3,
+     "moduli from speeds of sound, 2.73 and 1.38 km/s, and 3.3 GPa in quasi-static tests, from memory; times "
+     "spread over the decades between; cracks: as pmma",
+     "stiffness by rate, roughly: a spectrum of three times, bulk modulus constant, room temperature"},
 };
 
 const rg_preset *rg_preset_find(const char *name) {

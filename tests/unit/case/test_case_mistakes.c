@@ -475,6 +475,42 @@ static void test_metal(void **state) {
         "belongs to deshpande-evans\n");
 }
 
+/* Parameters that go together, above or below each other, and shares. */
+static void test_laws_of_flow(void **state) {
+    (void)state;
+    write_changed(elastic, "material:\n  model: johnson-cook\n  young: 200e9\n  yield_stress: 8e8\n  "
+                           "hardening_power: 0.3\n  reference_rate: 1\n");
+    static const char *const soft[] = {"material.softening_power=1", "material.heat_capacity=400"};
+    expect_messages(2, soft,
+                    "--set material.softening_power=1: material.softening_power: not used without "
+                    "material.melting_temperature\n"
+                    "--set material.heat_capacity=400: material.heat_capacity: not used without "
+                    "material.heat_fraction\n");
+    static const char *const cold[] = {"material.softening_power=1", "material.melting_temperature=300",
+                                       "material.room_temperature=300", "material.heat_capacity=400",
+                                       "material.heat_fraction=1.1"};
+    expect_messages(5, cold,
+                    "--set material.melting_temperature=300: material.melting_temperature: 300: not above "
+                    "material.room_temperature, 300\n"
+                    "--set material.heat_fraction=1.1: material.heat_fraction: 1.1: more than 1\n");
+    write_changed(elastic, "material:\n  preset: float-glass-jh2\n");
+    static const char *const crushed[] = {"material.hugoniot_pressure=6e9", "material.bulking=2",
+                                          "material.bulk_2=-1e9"};
+    expect_messages(3, crushed,
+                    ":5:11: material.hugoniot_limit: 5.95e9: not above material.hugoniot_pressure, 6e+09\n"
+                    "--set material.bulking=2: material.bulking: 2: more than 1\n");
+    write_changed(elastic, "material:\n  preset: pmma-viscoelastic\n");
+    static const char *const relaxed[] = {"material.shear_fraction_3=0.8", "material.bulk_fraction_1=0.1",
+                                          "material.relaxation_time_1=0"};
+    expect_messages(
+        3, relaxed,
+        ":5:11: material.shear_fraction_1: not used without material.relaxation_time_1\n"
+        "--set material.shear_fraction_3=0.8: material.shear_fraction_3: 0.8: the shares that relax "
+        "come to 1.1: not below 1\n"
+        "--set material.bulk_fraction_1=0.1: material.bulk_fraction_1: not used without "
+        "material.relaxation_time_1\n");
+}
+
 #endif
 
 /* One run shows all problems, in the order of the file, those of overrides last. */
@@ -519,7 +555,7 @@ int main(void) {
         cmocka_unit_test(test_mistakes),     cmocka_unit_test(test_nul_byte),
         cmocka_unit_test(test_deep_nesting), cmocka_unit_test(test_override_mistakes),
 #ifndef RG_SINGLE
-        cmocka_unit_test(test_metal),
+        cmocka_unit_test(test_metal),        cmocka_unit_test(test_laws_of_flow),
 #endif
         cmocka_unit_test(test_ceramic),      cmocka_unit_test(test_all_at_once),
         cmocka_unit_test(test_unreadable),

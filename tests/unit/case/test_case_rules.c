@@ -475,7 +475,7 @@ static const mistake materials[] = {
      ":13:86: materials[2].name: given twice, first at line 13 column 6\n"
      ":14:5: materials[3].name: missing; allowed: text\n"
      ":14:76: materials[3].yield_stress: 3: not used, because materials[3].model is linear-elastic; it "
-     "belongs to deshpande-evans, j2\n"},
+     "belongs to deshpande-evans, j2, johnson-cook\n"},
     {"  density: 3690\n",
      "  density: 3690\n"
      "  name: steel\n"

@@ -117,9 +117,13 @@ static void test_rows(void **state) {
         {"material.hardening",
          "material.hardening\n    number >= 0 (Pa); default: 0; of j2\n    slope of the yield stress over "
          "plastic strain\n"
+         "\nmaterial.hardening_modulus\n    number >= 0 (Pa); default: 0; of johnson-cook\n    B: what "
+         "hardening adds to the yield stress at a plastic strain of 1\n"
+         "\nmaterial.hardening_power\n    number > 0; required; of johnson-cook\n    n: hardening goes with "
+         "the plastic strain to this power\n"
          "\nmaterial.hardening_exponent\n    number >= 0 and <= 1; default: 0.1; of deshpande-evans\n"
          "    the yield stress goes with the plastic strain to this power\n",
-         2},
+         4},
         {"boundary[].v",
          "boundary[].velocity\n    number or expression in x, y, z, t (m/s); this or another motion\n    "
          "prescribed velocity\n",

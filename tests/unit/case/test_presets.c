@@ -49,7 +49,8 @@ static void test_refused(void **state) {
     (void)state;
 #define NAMES                                                                                                \
     "allowed: alumina-seagraves, alumina-ad995, silicon-carbide, boron-carbide, soda-lime-glass, pmma, "     \
-    "granite, concrete, maraging-steel"
+    "granite, concrete, maraging-steel, alumina-jh2, boron-carbide-jh2, silicon-carbide-jh2, "               \
+    "float-glass-jh2, steel-4340, copper-ofhc, pmma-viscoelastic"
     write_bytes(of_name, strlen(of_name));
     static const char *const near[] = {"material.preset=pma"};
     expect_messages(1, near,
@@ -74,6 +75,11 @@ static void test_each(void **state) {
         char change[80];
         snprintf(change, sizeof change, "material.preset=%s", p->name);
         const char *const set[] = {change};
+#ifdef RG_SINGLE /* the others are refused */
+        if (strstr(p->block, "neo-hookean") == NULL) {
+            continue;
+        }
+#endif
         rg_case *c = read_good(path, 1, set);
         const rg_material_input *m = &c->material;
         double nu = m->poisson, speed = sqrt(m->young * (1 - nu) / ((1 + nu) * (1 - 2 * nu)) / m->density);

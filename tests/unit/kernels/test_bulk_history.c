@@ -56,15 +56,93 @@ static size_t at(int f, size_t slot, size_t row) {
 
 /* ---- States ---- */
 
-/* Metals: linear hardening, one that saturates soon, none. */
-static const double metals[3][RG_PARAMETERS] = {
-    {[RG_PARAMETER_YIELD_STRESS] = 1e9, [RG_PARAMETER_HARDENING] = 2e9},
-    {[RG_PARAMETER_YIELD_STRESS] = 1e9,
-     [RG_PARAMETER_HARDENING] = 1e9,
-     [RG_PARAMETER_SATURATION_STRESS] = 2e9,
-     [RG_PARAMETER_SATURATION_RATE] = 400},
-    {[RG_PARAMETER_YIELD_STRESS] = 2e9}};
-static int metal; /* under test */
+/* Solids that flow. Of J2: linear hardening, one that saturates soon, none. Of Johnson and Cook: all of it,
+ * and no more than hardening. Of Johnson and Holmquist: silicon carbide as published, all of it with a
+ * pressure that stiffens and a strength that falls slowly, one that is crushed at once. And one that relaxes.
+ */
+static const struct {
+    rg_material_model model;
+    double parameter[RG_PARAMETERS];
+} solids[] = {
+    {RG_MATERIAL_J2, {[RG_PARAMETER_YIELD_STRESS] = 1e9, [RG_PARAMETER_HARDENING] = 2e9}},
+    {RG_MATERIAL_J2,
+     {[RG_PARAMETER_YIELD_STRESS] = 1e9,
+      [RG_PARAMETER_HARDENING] = 1e9,
+      [RG_PARAMETER_SATURATION_STRESS] = 2e9,
+      [RG_PARAMETER_SATURATION_RATE] = 400}},
+    {RG_MATERIAL_J2, {[RG_PARAMETER_YIELD_STRESS] = 2e9}},
+    {RG_MATERIAL_JOHNSON_COOK,
+     {[RG_PARAMETER_YIELD_STRESS] = 0.8e9,
+      [RG_PARAMETER_HARDENING_MODULUS] = 3e9,
+      [RG_PARAMETER_HARDENING_POWER] = 0.3,
+      [RG_PARAMETER_RATE_SENSITIVITY] = 0.02,
+      [RG_PARAMETER_REFERENCE_RATE] = 1e5,
+      [RG_PARAMETER_SOFTENING_POWER] = 1.1,
+      [RG_PARAMETER_MELTING_TEMPERATURE] = 1000,
+      [RG_PARAMETER_ROOM_TEMPERATURE] = 300,
+      [RG_PARAMETER_HEAT_CAPACITY] = 500,
+      [RG_PARAMETER_HEAT_FRACTION] = 0.9}},
+    {RG_MATERIAL_JOHNSON_COOK,
+     {[RG_PARAMETER_YIELD_STRESS] = 1.5e9,
+      [RG_PARAMETER_HARDENING_MODULUS] = 1e9,
+      [RG_PARAMETER_HARDENING_POWER] = 1.2,
+      [RG_PARAMETER_REFERENCE_RATE] = 1}},
+    {RG_MATERIAL_JOHNSON_HOLMQUIST,
+     {[RG_PARAMETER_RATE_SENSITIVITY] = 0.009,
+      [RG_PARAMETER_REFERENCE_RATE] = 1,
+      [RG_PARAMETER_HUGONIOT_LIMIT] = 11.7e9,
+      [RG_PARAMETER_HUGONIOT_PRESSURE] = 5.13e9,
+      [RG_PARAMETER_INTACT_STRENGTH] = 0.96,
+      [RG_PARAMETER_INTACT_POWER] = 0.65,
+      [RG_PARAMETER_CRUSHED_STRENGTH] = 0.35,
+      [RG_PARAMETER_CRUSHED_POWER] = 1,
+      [RG_PARAMETER_TENSILE_LIMIT] = 0.75e9,
+      [RG_PARAMETER_FAILURE_STRAIN] = 0.48,
+      [RG_PARAMETER_FAILURE_POWER] = 0.48,
+      [RG_PARAMETER_BULK_2] = 361e9,
+      [RG_PARAMETER_BULKING] = 1}},
+    {RG_MATERIAL_JOHNSON_HOLMQUIST,
+     {[RG_PARAMETER_RATE_SENSITIVITY] = 0.02,
+      [RG_PARAMETER_REFERENCE_RATE] = 1e5,
+      [RG_PARAMETER_HUGONIOT_LIMIT] = 3e9,
+      [RG_PARAMETER_HUGONIOT_PRESSURE] = 1.5e9,
+      [RG_PARAMETER_INTACT_STRENGTH] = 0.9,
+      [RG_PARAMETER_INTACT_POWER] = 0.6,
+      [RG_PARAMETER_CRUSHED_STRENGTH] = 0.6,
+      [RG_PARAMETER_CRUSHED_POWER] = 0.6,
+      [RG_PARAMETER_CRUSHED_LIMIT] = 0.4,
+      [RG_PARAMETER_TENSILE_LIMIT] = 0.3e9,
+      [RG_PARAMETER_FAILURE_STRAIN] = 0.05,
+      [RG_PARAMETER_FAILURE_POWER] = 0.5,
+      [RG_PARAMETER_BULK_2] = -600e9,
+      [RG_PARAMETER_BULK_3] = 2800e9,
+      [RG_PARAMETER_BULKING] = 0.7}},
+    {RG_MATERIAL_JOHNSON_HOLMQUIST,
+     {[RG_PARAMETER_REFERENCE_RATE] = 1,
+      [RG_PARAMETER_HUGONIOT_LIMIT] = 3e9,
+      [RG_PARAMETER_HUGONIOT_PRESSURE] = 1.5e9,
+      [RG_PARAMETER_INTACT_STRENGTH] = 0.9,
+      [RG_PARAMETER_INTACT_POWER] = 0.6,
+      [RG_PARAMETER_TENSILE_LIMIT] = 0.3e9,
+      [RG_PARAMETER_BULKING] = 1}},
+    {RG_MATERIAL_VISCOELASTIC,
+     {[RG_PARAMETER_SHEAR_FRACTION_1] = 0.2,
+      [RG_PARAMETER_SHEAR_FRACTION_2] = 0.3,
+      [RG_PARAMETER_SHEAR_FRACTION_3] = 0.1,
+      [RG_PARAMETER_BULK_FRACTION_1] = 0.1,
+      [RG_PARAMETER_BULK_FRACTION_2] = 0.2,
+      [RG_PARAMETER_RELAXATION_TIME_1] = 1e-7,
+      [RG_PARAMETER_RELAXATION_TIME_2] = 3e-9,
+      [RG_PARAMETER_RELAXATION_TIME_3] = 1e-10}},
+};
+enum { SOLIDS = sizeof solids / sizeof *solids, SATURATES = 1 };
+static int solid; /* under test, unless the model is the ceramic */
+
+/* Where the history of a model keeps the plastic strain and the flow. */
+static void places(size_t *strain, size_t *flow) {
+    *strain = model == RG_MATERIAL_DESHPANDE_EVANS ? (size_t)RG_DE_STRAIN : 0;
+    *flow = values() - 6;
+}
 
 /* A mesh of the material under test whose strains are `size` times a per cent. */
 static input *make_input(double size, uint64_t order) {
@@ -76,25 +154,46 @@ static input *make_input(double size, uint64_t order) {
     if (model == RG_MATERIAL_DESHPANDE_EVANS)
         in->material.of.deshpande_evans.parameters = rg_deshpande_evans_alumina();
     else
-        memcpy(in->material.of.parameter, metals[metal], sizeof metals[metal]);
+        memcpy(in->material.of.parameter, solids[solid].parameter, sizeof solids[solid].parameter);
     rg_material_prepare(&in->material, DT);
     return in;
 }
 
-/* Each element's own past, wherever it sits: cracks from none to saturated, a tenth of them hardened; of the
- * metal, half. */
+/* Of Johnson and Holmquist's solid: a third of the points is intact, a third crushed; some have just flowed.
+ */
+static void make_crushed(dice *d, double *history) {
+    double kind = 3 * dice_unit(d);
+    history[RG_JH_DAMAGE] = kind < 1 ? 0 : kind < 2 ? 1 : dice_unit(d);
+    history[RG_JH_BULKING] = kind < 1 ? 0 : 0.5e9 * dice_unit(d);
+    history[RG_JH_LAST] = kind < 1 ? 0 : fmax(0, 2e-3 * dice_sign(d));
+}
+
+/* Each element's own past, wherever it sits: cracks from none to saturated, a tenth of them hardened; of
+ * those that flow, half. */
 static void make_history(const input *in, double *history) {
     const bool ceramic = model == RG_MATERIAL_DESHPANDE_EVANS;
-    const size_t skipped = ceramic ? 0 : 1; /* the metal has all but the growth of cracks */
     double most = ceramic ? in->material.of.deshpande_evans.constants.growth_max : 0;
+    size_t strain, flow;
+    places(&strain, &flow);
     for (size_t e = 0; e < INPUT_ELEMENTS; e++) {
         dice d = {100 + e, 0};
         for (size_t g = 0; g < RG_GAUSS; g++) {
             double growth = dice_unit(&d) < 0.5 ? 0.2 * dice_unit(&d) : most * dice_unit(&d);
             double ep = dice_unit(&d) < (ceramic ? 0.9 : 0.5) ? 0 : 0.01 * dice_unit(&d);
+            double past[24] = {0};
             point_state s = state_make(&d, growth, ep, ep, 0, 1e-3);
+            if (ceramic)
+                past[RG_DE_GROWTH] = growth;
+            else if (model == RG_MATERIAL_JOHNSON_COOK)
+                past[RG_JC_RISE] = 1e4 * ep * (1 + dice_unit(&d)); /* some beyond the melting point */
+            else if (model == RG_MATERIAL_JOHNSON_HOLMQUIST)
+                make_crushed(&d, past);
+            past[strain] = ep;
+            for (size_t k = 0; model == RG_MATERIAL_VISCOELASTIC && k < values(); k++)
+                past[k] = 0.005 * dice_sign(&d);
+            memcpy(past + flow, s.history + RG_DE_FLOW, 6 * sizeof *past);
             for (size_t k = 0; k < values(); k++)
-                history[at(PAST, in->element[e], g * values() + k)] = s.history[skipped + k];
+                history[at(PAST, in->element[e], g * values() + k)] = past[k];
         }
     }
 }
@@ -153,8 +252,9 @@ static void count(const input *in, const output *out, census *c) {
     make_history(in, before);
     for (size_t e = 0; e < INPUT_ELEMENTS; e++)
         for (size_t g = 0; g < RG_GAUSS; g++) {
-            size_t first = at(PAST, in->element[e], g * values());
-            size_t strain = model == RG_MATERIAL_DESHPANDE_EVANS ? first + RG_LANES : first;
+            size_t first = at(PAST, in->element[e], g * values()), strain, flow;
+            places(&strain, &flow);
+            strain = first + strain * RG_LANES;
             const double *after = out->value[PAST];
             c->regime[(int)out->value[INTERNAL][at(INTERNAL, in->element[e], g * RG_INTERNAL + 1)]]++;
             c->grown += strain != first && after[first] > before[first];
@@ -199,33 +299,34 @@ static void test_ceramic(void **state) {
     }
 }
 
-static void test_metals(void **state) {
+static void test_solids_that_flow(void **state) {
     const rg_kernels *sets[INPUT_SETS];
     int n = rg_kernels_available(sets, INPUT_SETS);
     (void)state;
-    model = RG_MATERIAL_J2;
-    for (metal = 0; metal < 3; metal++)
+    for (solid = 0; solid < SOLIDS; solid++)
         for (int s = 0; s < n; s++) {
             census c = {{0}, 0, 0}, rest = {{0}, 0, 0};
+            model = solids[solid].model;
             check_set(sets[s], RG_GRADIENT_LIFTED, true, &c);
             check_set(sets[s], RG_GRADIENT_OWN, true, &c);
             check_set(sets[s], RG_GRADIENT_LIFTED, false, &rest);
-            print_message("# %s: metal %d, %d of %d points flow\n", sets[s]->name, metal, c.flown,
+            print_message("# %s: solid %d, %d of %d points flow\n", sets[s]->name, solid, c.flown,
                           c.regime[0]);
-            assert_true(c.flown > 1000 && c.regime[0] - c.flown > 1000 && rest.flown == 0);
+            assert_true(c.flown > 1000 && c.regime[0] - c.flown > 500 && rest.flown == 0);
         }
-    metal = 0;
+    solid = 0;
 }
 
 /* ---- What holds exactly ---- */
 
 static void for_each_material(void (*test)(void)) {
-    static const rg_material_model models[] = {RG_MATERIAL_DESHPANDE_EVANS, RG_MATERIAL_J2};
-    for (size_t k = 0; k < sizeof models / sizeof *models; k++) {
-        model = models[k];
-        metal = 1;
+    model = RG_MATERIAL_DESHPANDE_EVANS;
+    test();
+    for (solid = SATURATES; solid < SOLIDS; solid++) {
+        model = solids[solid].model;
         test();
     }
+    solid = 0;
 }
 
 /* An element's results do not depend on where it sits and with whom. */
@@ -257,8 +358,8 @@ static void test_any_place(void **state) {
 }
 
 /* The forces of a step are those of its end: at rest in the new state they are the same to rounding, and the
- * energy that the step set free is what it took from the stored one; of the metal, less than that: the work
- * of the yield curve. */
+ * energy that the step set free is what it took from the stored one; of solids that flow, less than that: the
+ * work of the yield curve. */
 static void check_end_of_step(void) {
     const rg_kernels *sets[INPUT_SETS];
     int n = input_sets(sets, INPUT_SETS);
@@ -281,10 +382,11 @@ static void check_end_of_step(void) {
             for (size_t k = 0; k < RG_RELEASED; k++)
                 released += after.value[PAST][at(PAST, slot, history_rows() - RG_RELEASED + k)];
             double kept = scale - after.value[ENERGY][at(ENERGY, slot, 0)] - released;
-            if (model == RG_MATERIAL_J2)
-                assert_true(kept > -1e-11 * scale && released >= 0);
-            else
+            if (model == RG_MATERIAL_DESHPANDE_EVANS)
                 assert_true(fabs(kept) < 1e-11 * scale);
+            else if (model != RG_MATERIAL_JOHNSON_HOLMQUIST && model != RG_MATERIAL_VISCOELASTIC)
+                /* the others may have begun with another stress */
+                assert_true(kept > -1e-11 * scale && released >= 0);
         }
         free_output(&before);
         free_output(&after);
@@ -301,7 +403,7 @@ static void test_end_of_step(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_ceramic),
-        cmocka_unit_test(test_metals),
+        cmocka_unit_test(test_solids_that_flow),
         cmocka_unit_test(test_any_place),
         cmocka_unit_test(test_end_of_step),
     };

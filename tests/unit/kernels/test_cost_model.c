@@ -129,6 +129,37 @@ static void list_arrays(call *c) {
         touch_real(c, c->history, INPUT_EBLOCKS, history_block(c));
 }
 
+static const double parameters[RG_PARAMETERS] = {
+    [RG_PARAMETER_YIELD_STRESS] = 1e9,
+    [RG_PARAMETER_HARDENING] = 2e9,
+    [RG_PARAMETER_HARDENING_MODULUS] = 3e9,
+    [RG_PARAMETER_HARDENING_POWER] = 0.31,
+    [RG_PARAMETER_RATE_SENSITIVITY] = 0.025,
+    [RG_PARAMETER_REFERENCE_RATE] = 1,
+    [RG_PARAMETER_SOFTENING_POWER] = 1.09,
+    [RG_PARAMETER_MELTING_TEMPERATURE] = 1356,
+    [RG_PARAMETER_ROOM_TEMPERATURE] = 294,
+    [RG_PARAMETER_HEAT_CAPACITY] = 383,
+    [RG_PARAMETER_HEAT_FRACTION] = 0.9,
+    [RG_PARAMETER_HUGONIOT_LIMIT] = 11.7e9,
+    [RG_PARAMETER_HUGONIOT_PRESSURE] = 5.13e9,
+    [RG_PARAMETER_INTACT_STRENGTH] = 0.1,
+    [RG_PARAMETER_INTACT_POWER] = 0.65,
+    [RG_PARAMETER_CRUSHED_STRENGTH] = 0.03,
+    [RG_PARAMETER_CRUSHED_POWER] = 1,
+    [RG_PARAMETER_TENSILE_LIMIT] = 0.75e9,
+    [RG_PARAMETER_FAILURE_STRAIN] = 0.48,
+    [RG_PARAMETER_FAILURE_POWER] = 0.48,
+    [RG_PARAMETER_BULK_2] = 361e9,
+    [RG_PARAMETER_BULKING] = 1,
+    [RG_PARAMETER_SHEAR_FRACTION_1] = 0.2,
+    [RG_PARAMETER_SHEAR_FRACTION_2] = 0.15,
+    [RG_PARAMETER_SHEAR_FRACTION_3] = 0.1,
+    [RG_PARAMETER_RELAXATION_TIME_1] = 1e-6,
+    [RG_PARAMETER_RELAXATION_TIME_2] = 1e-5,
+    [RG_PARAMETER_RELAXATION_TIME_3] = 1e-4,
+};
+
 /* A virgin ceramic or metal with the same strain everywhere, in which nothing happens, or cracks grow, or the
  * solid flows. */
 static void make_history(call *c) {
@@ -140,8 +171,7 @@ static void make_history(call *c) {
     if (v->model == RG_MATERIAL_DESHPANDE_EVANS) {
         in->material.of.deshpande_evans.parameters = rg_deshpande_evans_alumina();
     } else {
-        in->material.of.parameter[RG_PARAMETER_YIELD_STRESS] = 1e9;
-        in->material.of.parameter[RG_PARAMETER_HARDENING] = 2e9;
+        memcpy(in->material.of.parameter, parameters, sizeof parameters);
         in->material.of.parameter[RG_PARAMETER_SATURATION_STRESS] = v->newton > 0 ? 2e9 : 0;
         in->material.of.parameter[RG_PARAMETER_SATURATION_RATE] = v->newton > 0 ? 100 : 0;
     }
@@ -223,8 +253,10 @@ static call *make_call(const char *name, rg_cost_kernel kernel, rg_cost_variant 
     list_arrays(c);
     run_all(c);
     for (int i = 0; variant.model == RG_MATERIAL_DESHPANDE_EVANS && variant.flowing > 0 && i < 300; i++)
-        run_all(c);                      /* till a step changes little */
-    if (variant.model == RG_MATERIAL_J2) /* it would not flow again at the strain to which it has flowed */
+        run_all(c); /* till a step changes little */
+    if (c->history != NULL &&
+        variant.model !=
+            RG_MATERIAL_DESHPANDE_EVANS) /* it would not flow again at the strain to which it has flowed */
         memset(c->history, 0, INPUT_EBLOCKS * history_block(c) * sizeof(double));
     return c;
 }
@@ -243,6 +275,9 @@ static void free_call(call *c) {
 #define CRYSTAL   RG_MATERIAL_ANISOTROPIC
 #define RUBBER    RG_MATERIAL_MOONEY_RIVLIN
 #define J2        RG_MATERIAL_J2
+#define COOK      RG_MATERIAL_JOHNSON_COOK
+#define CRUSHED   RG_MATERIAL_JOHNSON_HOLMQUIST
+#define RELAXING  RG_MATERIAL_VISCOELASTIC
 
 /* Every kernel with every flag. */
 static const struct {
@@ -297,6 +332,38 @@ static const struct {
     {"J2 saturating", RG_COST_BULK, {.model = J2, .advance = true, .flowing = 1, .newton = 3}, {0.4, 1.8}},
     {"J2 state, energy", RG_COST_BULK_STATE, {.gradient = RG_GRADIENT_LIFTED, .model = J2}, {3.2, 3.8}},
     {"J2 state, stress", RG_COST_BULK_STATE, {.model = J2, .cauchy = true}, {-0.4, 0.8}},
+    {"Johnson-Cook at rest", RG_COST_BULK, {.gradient = RG_GRADIENT_LIFTED, .model = COOK}, {-0.4, 0.7}},
+    {"Johnson-Cook elastic", RG_COST_BULK, {.model = COOK, .advance = true}, {-0.6, 0.7}},
+    {"Johnson-Cook flowing",
+     RG_COST_BULK,
+     {.model = COOK, .advance = true, .flowing = 1, .newton = 5},
+     {0.8, 1.6}},
+    {"Johnson-Cook state, energy",
+     RG_COST_BULK_STATE,
+     {.gradient = RG_GRADIENT_LIFTED, .model = COOK},
+     {3.2, 3.7}},
+    {"Johnson-Cook state, stress", RG_COST_BULK_STATE, {.model = COOK, .cauchy = true}, {-0.4, 0.5}},
+    {"Johnson-Holmquist at rest",
+     RG_COST_BULK,
+     {.gradient = RG_GRADIENT_LIFTED, .model = CRUSHED},
+     {-1.1, 0.2}},
+    {"Johnson-Holmquist elastic", RG_COST_BULK, {.model = CRUSHED, .advance = true}, {-1.4, -0.1}},
+    {"Johnson-Holmquist flowing",
+     RG_COST_BULK,
+     {.model = CRUSHED, .advance = true, .flowing = 1},
+     {-0.5, 2.9}},
+    {"Johnson-Holmquist state, energy",
+     RG_COST_BULK_STATE,
+     {.gradient = RG_GRADIENT_LIFTED, .model = CRUSHED},
+     {2.3, 3.0}},
+    {"Johnson-Holmquist state, stress", RG_COST_BULK_STATE, {.model = CRUSHED, .cauchy = true}, {-1.2, -0.3}},
+    {"viscoelastic at rest", RG_COST_BULK, {.gradient = RG_GRADIENT_LIFTED, .model = RELAXING}, {3.0, 5.6}},
+    {"viscoelastic", RG_COST_BULK, {.model = RELAXING, .advance = true}, {-0.6, 1.5}},
+    {"viscoelastic state, energy",
+     RG_COST_BULK_STATE,
+     {.gradient = RG_GRADIENT_LIFTED, .model = RELAXING},
+     {-3.9, -2.6}},
+    {"viscoelastic state, stress", RG_COST_BULK_STATE, {.model = RELAXING, .cauchy = true}, {-3.4, -2.2}},
     {"bulk state, energy", RG_COST_BULK_STATE, {.gradient = RG_GRADIENT_LIFTED}, {-0.3, -0.1}},
     {"bulk state, stress", RG_COST_BULK_STATE, {.cauchy = true}, {-0.3, 0.5}},
     {"interface", RG_COST_INTERFACE, {.damaged = 0}, {-2.8, -0.1}},
