@@ -11,7 +11,7 @@ from conftest import ENVIRONMENT, PROGRAM, ROOT, SINGLE
 
 RECORDS = ROOT / "perf/results"
 PRINTED = {
-    "time of a step": ("perf/README.md", "perf/table", RECORDS / "2026-11-22-epyc-2core-tiles.json"),
+    "time of a step": ("perf/README.md", "perf/table", RECORDS / "2026-11-30-epyc-2core-step.json"),
     "efficiency": ("perf/README.md", "perf/table", RECORDS / "2026-11-22-epyc-2core-efficiency.json"),
     "scaling": ("perf/README.md", "bench/scaling", "plot", RECORDS, "--out", "{out}/picture"),
     "simulated clusters": ("perf/README.md", "perf/simulate", "table", RECORDS / "2026-11-22-simulated.json"),
