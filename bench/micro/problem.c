@@ -7,6 +7,7 @@
 
 #include "base/hash.h"
 #include "base/mem.h"
+#include "cost/solids.h"
 #include "domain/element.h"
 
 #define CELL     1e-4 /* edge of a cube of six tetrahedra (m) */
@@ -140,40 +141,6 @@ static void fill_inputs(bench_problem *p) {
     }
 }
 
-/* OFHC copper's curve at the level of alumina, and silicon carbide. */
-static const double parameters[RG_PARAMETERS] = {
-    [RG_PARAMETER_YIELD_STRESS] = 1e9,
-    [RG_PARAMETER_HARDENING] = 2e9,
-    [RG_PARAMETER_SATURATION_STRESS] = 2e9,
-    [RG_PARAMETER_SATURATION_RATE] = 100,
-    [RG_PARAMETER_HARDENING_MODULUS] = 3e9,
-    [RG_PARAMETER_HARDENING_POWER] = 0.31,
-    [RG_PARAMETER_RATE_SENSITIVITY] = 0.025,
-    [RG_PARAMETER_REFERENCE_RATE] = 1,
-    [RG_PARAMETER_SOFTENING_POWER] = 1.09,
-    [RG_PARAMETER_MELTING_TEMPERATURE] = 1356,
-    [RG_PARAMETER_ROOM_TEMPERATURE] = 294,
-    [RG_PARAMETER_HEAT_CAPACITY] = 383,
-    [RG_PARAMETER_HEAT_FRACTION] = 0.9,
-    [RG_PARAMETER_HUGONIOT_LIMIT] = 11.7e9,
-    [RG_PARAMETER_HUGONIOT_PRESSURE] = 5.13e9,
-    [RG_PARAMETER_INTACT_STRENGTH] = 0.1,
-    [RG_PARAMETER_INTACT_POWER] = 0.65,
-    [RG_PARAMETER_CRUSHED_STRENGTH] = 0.03,
-    [RG_PARAMETER_CRUSHED_POWER] = 1,
-    [RG_PARAMETER_TENSILE_LIMIT] = 0.75e9,
-    [RG_PARAMETER_FAILURE_STRAIN] = 0.48,
-    [RG_PARAMETER_FAILURE_POWER] = 0.48,
-    [RG_PARAMETER_BULK_2] = 361e9,
-    [RG_PARAMETER_BULKING] = 1,
-    [RG_PARAMETER_SHEAR_FRACTION_1] = 0.2,
-    [RG_PARAMETER_SHEAR_FRACTION_2] = 0.15,
-    [RG_PARAMETER_SHEAR_FRACTION_3] = 0.1,
-    [RG_PARAMETER_RELAXATION_TIME_1] = 1e-6,
-    [RG_PARAMETER_RELAXATION_TIME_2] = 1e-5,
-    [RG_PARAMETER_RELAXATION_TIME_3] = 1e-4,
-};
-
 static rg_material make_material(rg_material_model model) {
     rg_material m = {.model = model, .lambda = LAMBDA, .mu = MU, .density = DENSITY};
     if (model == RG_MATERIAL_DESHPANDE_EVANS) {
@@ -187,7 +154,7 @@ static rg_material make_material(rg_material_model model) {
         }
         m.of.anisotropic.softest = m.of.anisotropic.stiffest = LAMBDA + 2 * MU;
     } else {
-        memcpy(m.of.parameter, parameters, sizeof parameters);
+        memcpy(m.of.parameter, rg_cost_parameters, sizeof rg_cost_parameters);
         m.of.parameter[RG_PARAMETER_BULK] = LAMBDA + 2 * MU / 3;
         m.of.parameter[RG_PARAMETER_C10] = 0.3 * MU;
         m.of.parameter[RG_PARAMETER_C01] = 0.2 * MU;

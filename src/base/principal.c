@@ -2,6 +2,8 @@
 
 #include <math.h>
 
+#include "base/dense.h"
+
 void rg_principal(const double s[6], double value[3]) {
     const double third = 2.0943951023931954923; /* 2 pi/3 */
     double mean = (s[0] + s[1] + s[2]) / 3, x = s[0] - mean, y = s[1] - mean, z = s[2] - mean;
@@ -14,28 +16,6 @@ void rg_principal(const double s[6], double value[3]) {
     value[0] = mean + 2 * radius * cos(angle);
     value[2] = mean + 2 * radius * cos(angle + third);
     value[1] = 3 * mean - value[0] - value[2];
-}
-
-/* One rotation in the plane (p, q) that makes a[p][q] zero (Golub & Van Loan, Matrix Computations, 8.5). */
-static void rotate(double a[3][3], double v[3][3], int p, int q) {
-    double theta = 0.5 * (a[q][q] - a[p][p]) / a[p][q];
-    double t = (theta < 0 ? -1 : 1) / (fabs(theta) + sqrt(1 + theta * theta));
-    double c = 1 / sqrt(1 + t * t), s = t * c;
-    for (int k = 0; k < 3; k++) {
-        double x = a[k][p], y = a[k][q];
-        a[k][p] = c * x - s * y;
-        a[k][q] = s * x + c * y;
-    }
-    for (int k = 0; k < 3; k++) {
-        double x = a[p][k], y = a[q][k];
-        a[p][k] = c * x - s * y;
-        a[q][k] = s * x + c * y;
-        x = v[p][k];
-        y = v[q][k];
-        v[p][k] = c * x - s * y;
-        v[q][k] = s * x + c * y;
-    }
-    a[p][q] = a[q][p] = 0;
 }
 
 static void positive(double axis[3]) {
@@ -55,7 +35,9 @@ void rg_principal_axes(const double s[6], double value[3], double axis[3][3]) {
     for (int k = 0; k < 3 * SWEEPS; k++) {
         int p = k % 3 == 2 ? 1 : 0, q = k % 3 == 0 ? 1 : 2;
         if (a[p][q] != 0) {
-            rotate(a, v, p, q);
+            double turn[2];
+            rg_dense_rotate(3, a[0], p, q, turn);
+            rg_dense_turn(3, 1, v[p], v[q], turn);
         }
     }
     int order[3] = {0, 1, 2};

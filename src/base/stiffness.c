@@ -17,30 +17,13 @@ int rg_stiffness_place(int i, int j) {
 
 /* ---- Eigenvalues ---- */
 
-/* Zeroes m[p][q] of a symmetric matrix of six (Golub & Van Loan, Matrix Computations, 8.5). */
-static void rotate(double m[6][6], int p, int q) {
-    double theta = 0.5 * (m[q][q] - m[p][p]) / m[p][q];
-    double t = (theta < 0 ? -1 : 1) / (fabs(theta) + sqrt(1 + theta * theta));
-    double c = 1 / sqrt(1 + t * t), s = t * c;
-    for (int k = 0; k < 6; k++) {
-        double x = m[k][p], y = m[k][q];
-        m[k][p] = c * x - s * y;
-        m[k][q] = s * x + c * y;
-    }
-    for (int k = 0; k < 6; k++) {
-        double x = m[p][k], y = m[q][k];
-        m[p][k] = c * x - s * y;
-        m[q][k] = s * x + c * y;
-    }
-    m[p][q] = m[q][p] = 0;
-}
-
 static double least_eigenvalue(double m[6][6]) {
     enum { SWEEPS = 20 }; /* it converges quadratically: eight are plenty */
     for (int n = 0; n < SWEEPS * 36; n++) {
         int p = n % 36 / 6, q = n % 6;
         if (p < q && m[p][q] != 0) {
-            rotate(m, p, q);
+            double turn[2];
+            rg_dense_rotate(6, m[0], p, q, turn);
         }
     }
     double least = m[0][0];

@@ -11,6 +11,7 @@
 #include <cmocka.h>
 
 #include "cost/model.h"
+#include "cost/solids.h"
 #include "support/instruction_count.h"
 #include "support/kernel_input.h"
 
@@ -129,37 +130,6 @@ static void list_arrays(call *c) {
         touch_real(c, c->history, INPUT_EBLOCKS, history_block(c));
 }
 
-static const double parameters[RG_PARAMETERS] = {
-    [RG_PARAMETER_YIELD_STRESS] = 1e9,
-    [RG_PARAMETER_HARDENING] = 2e9,
-    [RG_PARAMETER_HARDENING_MODULUS] = 3e9,
-    [RG_PARAMETER_HARDENING_POWER] = 0.31,
-    [RG_PARAMETER_RATE_SENSITIVITY] = 0.025,
-    [RG_PARAMETER_REFERENCE_RATE] = 1,
-    [RG_PARAMETER_SOFTENING_POWER] = 1.09,
-    [RG_PARAMETER_MELTING_TEMPERATURE] = 1356,
-    [RG_PARAMETER_ROOM_TEMPERATURE] = 294,
-    [RG_PARAMETER_HEAT_CAPACITY] = 383,
-    [RG_PARAMETER_HEAT_FRACTION] = 0.9,
-    [RG_PARAMETER_HUGONIOT_LIMIT] = 11.7e9,
-    [RG_PARAMETER_HUGONIOT_PRESSURE] = 5.13e9,
-    [RG_PARAMETER_INTACT_STRENGTH] = 0.1,
-    [RG_PARAMETER_INTACT_POWER] = 0.65,
-    [RG_PARAMETER_CRUSHED_STRENGTH] = 0.03,
-    [RG_PARAMETER_CRUSHED_POWER] = 1,
-    [RG_PARAMETER_TENSILE_LIMIT] = 0.75e9,
-    [RG_PARAMETER_FAILURE_STRAIN] = 0.48,
-    [RG_PARAMETER_FAILURE_POWER] = 0.48,
-    [RG_PARAMETER_BULK_2] = 361e9,
-    [RG_PARAMETER_BULKING] = 1,
-    [RG_PARAMETER_SHEAR_FRACTION_1] = 0.2,
-    [RG_PARAMETER_SHEAR_FRACTION_2] = 0.15,
-    [RG_PARAMETER_SHEAR_FRACTION_3] = 0.1,
-    [RG_PARAMETER_RELAXATION_TIME_1] = 1e-6,
-    [RG_PARAMETER_RELAXATION_TIME_2] = 1e-5,
-    [RG_PARAMETER_RELAXATION_TIME_3] = 1e-4,
-};
-
 /* A virgin ceramic or metal with the same strain everywhere, in which nothing happens, or cracks grow, or the
  * solid flows. */
 static void make_history(call *c) {
@@ -171,7 +141,7 @@ static void make_history(call *c) {
     if (v->model == RG_MATERIAL_DESHPANDE_EVANS) {
         in->material.of.deshpande_evans.parameters = rg_deshpande_evans_alumina();
     } else {
-        memcpy(in->material.of.parameter, parameters, sizeof parameters);
+        memcpy(in->material.of.parameter, rg_cost_parameters, sizeof rg_cost_parameters);
         in->material.of.parameter[RG_PARAMETER_SATURATION_STRESS] = v->newton > 0 ? 2e9 : 0;
         in->material.of.parameter[RG_PARAMETER_SATURATION_RATE] = v->newton > 0 ? 100 : 0;
     }
