@@ -1,0 +1,104 @@
+"""Inputs as people have them, each one body written in another way: all of it comes in, or it is refused by keyword and line."""
+
+import itertools
+
+import pytest
+from conftest import ROOT, launch
+from test_abaqus import ELEMENTS, NODES, SIDES, corners, found, on_plane
+
+INPUTS = ROOT / "tests" / "inputs"
+TET = {e: frozenset(NODES[n] for n in nodes) for e, nodes in ELEMENTS.items()}
+ALL, LOW, UP = (set(TET.values()) if part is None else {TET[e] for e in part} for part in (None, range(1, 25), range(25, 49)))
+FACE = [(e, corners(e, f)) for e, f in SIDES]
+SKIN = {(TET[e], frozenset(NODES[n] for n in nodes)) for e, nodes in FACE}
+BOTTOM, TOP = ({(TET[e], frozenset(NODES[n] for n in nodes)) for e, nodes in FACE if on_plane(nodes, 2, z)} for z in (0, 2))
+
+# Volume sets, surface sets; without an entry those of plain.inp. `moved`: where the body is.
+PLAIN = {"all": ALL}, {"top": TOP, "bottom": BOTTOM}
+SETS = {
+    "c3d10-and-c3d4": ({"low": LOW, "up": UP}, PLAIN[1]),
+    "c3d10-gaps": ({"Eall": ALL}, {"top": TOP, "Nall": SKIN}),
+    "elcopy": ({"low": LOW, "up": UP}, {}),
+    "instance-moved": ({}, {}),
+    "kw-continued-surface": (PLAIN[0], {"top": TOP}),
+    "kw-solid-blanks": ({"low": LOW, "up": UP, "all": ALL}, PLAIN[1]),
+    "mixed-DC3D4": ({"low": LOW, "up": UP}, {}),
+    "node-surface": (PLAIN[0], {"FIX": BOTTOM, "fix": BOTTOM}),
+    "nset-only": (PLAIN[0], {"FIX": BOTTOM, "LOAD": TOP}),
+    "overlap-elsets": ({"everything": ALL, "low": LOW}, PLAIN[1]),
+    "overlap-elsets-section": ({"everything": ALL, "low": LOW}, PLAIN[1]),
+    "overlap-surfaces": (PLAIN[0], {**PLAIN[1], "outside": TOP | BOTTOM}),
+    "quoted": ({"my part, left": ALL}, {"top, face": TOP}),
+    "set-of-later-set": ({"both": ALL, "low": LOW, "up": UP}, {}),
+    "surface-free": (PLAIN[0], {"skin": SKIN}),
+    "surface-instance": ({}, {"top": set(), "bottom": BOTTOM}),
+    "surface-set-later": ({"all": ALL, "st3": {tet for tet, _ in TOP}}, {"top": TOP}),
+    "triangles-S3": ({}, {"top": TOP}),
+    "two-instances-moved": ({}, {}),
+}
+MOVED = {"instance-moved": (10, 0, 0), "system-moved": (10, 0, 0)}
+REFUSED = {
+    "two-instances": "elements 1 and 101 have different vertices at the same place (0, 0, 0) m: the mesh is open there; merge its "
+                     "duplicate nodes (rhegma mesh --merge)\n",
+    "type-short": "two-words.inp:29: *ELEM is not a keyword that is known here, and might change the mesh: without it, the mesh could be "
+                  "another one\n",
+}
+
+
+def shifted(thing, by):
+    """A tetrahedron, a face, sets of them: by a vector."""
+    if isinstance(thing, (set, frozenset)):
+        return type(thing)(shifted(t, by) for t in thing)
+    if isinstance(thing[0], frozenset):
+        return tuple(shifted(t, by) for t in thing)
+    return tuple(x + d for x, d in zip(thing, by))
+
+
+def moved(sets, by):
+    return {name: shifted(members, by) for name, members in sets.items()}
+
+
+@pytest.mark.parametrize("name", sorted(path.stem for path in (INPUTS / "inp").glob("*.inp") if path.stem not in REFUSED))
+def test_one_body_in_many_words(tmp_path, name):
+    process = launch("mesh", INPUTS / "inp" / f"{name}.inp", "-o", tmp_path / "a.h5")
+    assert process.returncode == 0, process.stderr
+    assert "keywords skipped, which say nothing of the mesh" in process.stdout
+    volumes, surfaces = SETS.get(name, PLAIN)
+    whole = {"": ALL | shifted(ALL, (0, 0, 5)) if name == "two-instances-moved" else ALL}
+    by = MOVED.get(name, (0, 0, 0))
+    rounding = 1e-5 if name == "node-system-C" else 1e-14  # its numbers have six digits
+    assert found(tmp_path / "a.h5", rounding) == (moved({**whole, **volumes}, by), moved(surfaces, by))
+    assert (process.stderr != "") == (name in ("surface-instance", "two-instances-moved"))  # a surface without faces; two parts
+
+
+@pytest.mark.parametrize("name", sorted(REFUSED))
+def test_what_is_refused(tmp_path, name):
+    process = launch("mesh", INPUTS / "inp" / f"{name}.inp", "-o", tmp_path / "a.h5")
+    assert process.returncode == 2 and not (tmp_path / "a.h5").exists()
+    assert REFUSED[name].replace("two-words", name) in process.stderr
+
+
+def test_many_grains(tmp_path):
+    """A set of elements for each of 125 cubes."""
+    side = range(6)
+    deck = "*NODE\n" + "".join(f"{1 + i + 6 * j + 36 * k}, {i}., {j}., {k}.\n" for k, j, i in itertools.product(side, repeat=3))
+    cell = [(1, 1 + a, 1 + a + b, 44) for a, b in itertools.permutations((1, 6, 36), 2)]
+    for g, (k, j, i) in enumerate(itertools.product(range(5), repeat=3)):
+        deck += f"*ELEMENT, TYPE=C3D4, ELSET=grain{g + 1}\n"
+        deck += "".join(f"{6 * g + t + 1}, " + ", ".join(str(n + i + 6 * j + 36 * k) for n in cell[t]) + "\n" for t in range(6))
+    (tmp_path / "grains.inp").write_text(deck)
+    process = launch("mesh", tmp_path / "grains.inp", "-o", tmp_path / "a.h5")
+    assert process.returncode == 0, process.stderr
+    volumes, surfaces = found(tmp_path / "a.h5")
+    assert surfaces == {} and len(volumes.pop("")) == 750
+    for g, (k, j, i) in enumerate(itertools.product(range(5), repeat=3)):
+        inside = volumes.pop(f"grain{g + 1}")
+        assert len(inside) == 6 and {tuple(min(x[c] for x in tet) for c in range(3)) for tet in inside} == {(i, j, k)}
+    assert volumes == {}
+
+
+@pytest.mark.parametrize("name", sorted(path.name for path in (INPUTS / "vtk").iterdir()))
+def test_regions_of_vtk(tmp_path, name):
+    process = launch("mesh", INPUTS / "vtk" / name, "-o", tmp_path / "a.h5")
+    assert process.returncode == 0 and process.stderr == "", process.stderr
+    assert found(tmp_path / "a.h5") == ({"": ALL, "block.0": LOW, "block.1": UP}, {})
