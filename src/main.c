@@ -13,6 +13,7 @@
 #include "base/interrupt.h"
 #include "base/mem.h"
 #include "case/read.h"
+#include "export_command.h"
 #include "keys_command.h"
 #include "layout.h"
 #include "materials_command.h"
@@ -221,6 +222,10 @@ int main(int argc, char **argv) {
     }
     if (argc > 1 && strcmp(argv[1], "materials") == 0 && !asks_for_help(argc, argv)) {
         return answer(rg_materials_command(argc, argv));
+    }
+    if (argc > 1 && strcmp(argv[1], "export") == 0 && !asks_for_help(argc, argv)) {
+        setenv("HDF5_USE_FILE_LOCKING", "FALSE", 0); /* the run may be writing */
+        return answer(rg_export_command(argc, argv));
     }
     /* Open MPI's own I/O layer has been reported to hang or corrupt HDF5's collective writes
      * (HDFGroup/hdf5#1227, open-mpi/ompi#12718): use ROMIO unless the user chose otherwise. */

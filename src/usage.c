@@ -9,6 +9,7 @@ static const char overview[] =
     "       rhegma keys [PREFIX]               the keys of a case file, with units, ranges, defaults\n"
     "       rhegma materials [NAME]            solids that a case may name, with values and sources\n"
     "       rhegma mesh IN -o OUT.h5 [options] make a mesh file, or show what is in one\n"
+    "       rhegma export DIR -o OUT           fields or cracks of a run as a .vtu, .vtp or .stl file\n"
     "       rhegma verify                      check the program on this machine against theory\n"
     "       rhegma --version | --help\n"
     "rhegma COMMAND --help says more of each.\n";
@@ -45,6 +46,13 @@ static const struct {
      "       rhegma keys --schema                a JSON Schema of case files, for editors. To use it, begin\n"
      "                                           a case with\n"
      "                                           # yaml-language-server: $schema=PATH\n"},
+    {"export",
+     "usage: rhegma export DIR -o OUT.vtu [--time T]   the body with all fields, at one moment of a run\n"
+     "       rhegma export DIR -o OUT.vtp|OUT.stl [--time T]   its crack surface, as it stands then\n"
+     "       rhegma export DIR                 numbers and times of the moments that are there\n"
+     "  --time T   the moment nearest to T (s) in place of the last one\n"
+     "  --crack    the crack surface in OUT.vtu too, as triangles\n"
+     "VTK, ParaView and meshio open .vtu, VTK and ParaView .vtp, with all fields; CAD programs .stl.\n"},
     {"materials",
      "usage: rhegma materials          names of solids for material.preset, one a line\n"
      "       rhegma materials NAME     its values, with cohesive ones beside them, source and validity\n"},

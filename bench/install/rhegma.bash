@@ -8,18 +8,22 @@ _rhegma() {
         compopt -o nospace 2>/dev/null
         return
         ;;
-    -o | --restart) COMPREPLY=($(compgen -d -- "$word")) && return ;;
+    -o | --restart)
+        COMPREPLY=($(compgen $([[ $command == export || $command == mesh ]] && echo -f || echo -d) -- "$word"))
+        return
+        ;;
     --unit) COMPREPLY=($(compgen -W "m cm mm um nm in ft" -- "$word")) && return ;;
-    --walltime | --scale | --merge | --extrude | --size | --curvature) return ;;
+    --walltime | --time | --scale | --merge | --extrude | --size | --curvature) return ;;
     esac
     case $command in
     run) options+=" --restart --overwrite --walltime" ;;
     mesh) options="-o --unit --scale --merge --extrude --split --size --curvature --improve --set --info --case --partition --help" ;;
     keys) options="--markdown --schema --help" ;;
+    export) options="-o --time --crack --help" ;;
     verify | materials) options="--help" ;;
     esac
     if [ "$COMP_CWORD" = 1 ]; then
-        COMPREPLY=($(compgen -W "run check keys materials verify mesh --version --help" -- "$word"))
+        COMPREPLY=($(compgen -W "run check export keys materials verify mesh --version --help" -- "$word"))
     elif [[ $word == -* ]]; then
         COMPREPLY=($(compgen -W "$options" -- "$word"))
     elif [ "$command" = materials ]; then

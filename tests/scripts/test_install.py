@@ -49,7 +49,7 @@ def test_the_schema_is_the_programs(prefix):
 @pytest.mark.skipif(SINGLE, reason="once is enough")
 def test_the_page_and_the_completion_name_every_option(prefix):
     """Of those that the usage names."""
-    usage = "".join(command(PROGRAM, word, "--help") for word in ("run", "check", "verify", "keys", "mesh"))
+    usage = "".join(command(PROGRAM, word, "--help") for word in ("run", "check", "verify", "export", "keys", "mesh"))
     options = set(re.findall(r"(?<![\w-])--?[a-z][\w-]*", usage)) - {"-n", "-language-server"}
     page = (prefix / "share/man/man1/rhegma.1").read_text().replace("\\-", "-")
     completion = (ROOT / "bench/install/rhegma.bash").read_text()

@@ -105,17 +105,18 @@ def test_a_finished_run_is_not_replaced_in_silence(tmp_path):
                               "pictures there are still of that one\n")
 
 
-HELP = {"": "run check keys materials mesh verify --version --help",
+HELP = {"": "run check export keys materials mesh verify --version --help",
         "run": "--set -o -q --quiet --restart --overwrite --walltime USR1 TERM mpirun OMP_NUM_THREADS RHEGMA_ISA",
         "check": "--set mpirun OMP_NUM_THREADS RHEGMA_ISA",
         "verify": "theory mpirun",
+        "export": "-o --time --crack .vtu .vtp .stl",
         "keys": "PREFIX --markdown --schema yaml-language-server expressions",
         "materials": "NAME material.preset",
         "mesh": "-o --scale --unit --merge --extrude --split --size --curvature --improve --info --case --partition --set"}
 
 
 @pytest.mark.parametrize("arguments", [["--help"], ["-h"], ["run", "--help"], ["check", "a.yaml", "-h"], ["verify", "--help"],
-                                       ["keys", "--help"], ["materials", "--help"], ["mesh", "-h"]])
+                                       ["keys", "--help"], ["materials", "--help"], ["export", "--help"], ["mesh", "-h"]])
 def test_help_names_every_option(arguments):
     """Of a command its own, in lines that fit a terminal of 110 columns."""
     process = launch(*arguments)
