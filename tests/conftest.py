@@ -34,6 +34,8 @@ EVERYWHERE = {  # changes of fragments.yaml that must not change the bits, on an
                                  {"where": "abs(z - 5.3e-4) < 5e-5 && abs(nz) > 0.8", "open": True, "at": 6e-8}],
               "tables": {"pulse": {"points": [[0, 0], [5e-8, 1], [2e-7, 0.2]], "smooth": True}},
               "output.crack_tips": [{"name": "right", "direction": [1, 0, 0], "where": "abs(nz) > 0.5", "distance": 5e-5}, {"name": "up", "direction": [0, 0, 2]}],
+              "output.crack_fronts": [{"name": "front", "at": [0, 0, 0], "direction": [2, 0, 0], "normal": [0, 0, 1], "radius": {"inner": 5e-5, "outer": 1.6e-4}, "length": 3e-4,
+                                       "tip": "right", "values": ["J"]}],
               "output.sensors": [{"name": "end", "set": "z+", "values": ["uz", "vz", "szz"], "measures": ["mean", "min", "max", "integral"]},
                                  {"name": "core", "where": "abs(z) < 5e-4", "values": ["von_mises", "vx"], "measures": ["mean", "max"]}],
               "loads": [{"name": "pull", "set": "z+", "traction": {"x": "2e7*pulse(t)*(1 + 1e3*y)", "z": "3e8*pulse(t)"}},

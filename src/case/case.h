@@ -202,6 +202,30 @@ typedef struct {
     double distance;     /* over which its speed is taken (m) */
 } rg_crack_tip_input;
 
+/* What is known at the front of a crack, X(NAME, word, meaning); those that the opening tells last. */
+#define RG_FRONT_VALUE(X)                                                                                    \
+    X(RELEASE, "J", "energy release rate by the domain integral with inertia (J/m2)")                        \
+    X(INTENSITY, "K",                                                                                        \
+      "sqrt(J E/(1 - nu^2)), of either sign: K_I of a resting crack in plane strain (Pa sqrt(m))")           \
+    X(OPENING, "KI", "from the opening behind the front, extrapolated to it")                                \
+    X(SLIDING, "KII", "from the slip along the direction")                                                   \
+    X(TEARING, "KIII", "from the slip along the front, direction x normal")
+#define RG_FRONT_ENUM(NAME, word, meaning) RG_FRONT_##NAME,
+enum { RG_FRONT_VALUE(RG_FRONT_ENUM) RG_FRONT_VALUES };
+
+/* A straight piece of the front of a crack. */
+typedef struct {
+    char *name;                            /* column prefix in history.csv */
+    double at[3], direction[3], normal[3]; /* of reference (m); of any length */
+    struct {
+        double inner, outer;
+    } radius;        /* (m) */
+    double length;   /* of the piece about `at` (m); 0: the whole front */
+    bool symmetric;  /* the body is the half on one side of the crack's plane */
+    char *tip;       /* of crack_tips, that it moves with; NULL: it rests */
+    unsigned values; /* bits */
+} rg_crack_front_input;
+
 /* A rigid body that the solid's surface touches; it moves without turning. Values that the shape or the
  * motion has no use for are 0. */
 typedef struct {
@@ -295,6 +319,8 @@ typedef struct {
         rg_sensor_input *sensor;
         int crack_tips;
         rg_crack_tip_input *crack_tip;
+        int crack_fronts;
+        rg_crack_front_input *crack_front;
         unsigned fields;
         rg_expr *region; /* fields of the elements at whose centroid this is not 0; NULL: of all */
         rg_output_precision precision; /* of the fields on the disk */

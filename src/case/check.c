@@ -156,6 +156,8 @@ static void check_entry(rg_check *ck, const rg_key *key, const rg_node *list, co
         rg_probe_rule(ck, list, i, item, good);
     } else if (key->entry == &rg_crack_tip_table) {
         rg_crack_tip_rule(ck, list, i, item, good);
+    } else if (key->entry == &rg_crack_front_table) {
+        rg_crack_front_rule(ck, list, i, item, good);
     } else if (key->entry == &rg_sensor_table) {
         rg_sensor_rule(ck, list, i, item, good);
     } else if (key->entry == &rg_material_table) {

@@ -117,6 +117,7 @@ void rg_boundary_rule(rg_check *ck, const rg_node *list, int i, const char *path
 void rg_load_rule(rg_check *ck, const rg_node *list, int i, const char *path, bool good);
 void rg_body_rule(rg_check *ck, const rg_node *list, int i, const char *path, bool good);
 void rg_probe_rule(rg_check *ck, const rg_node *list, int i, const char *path, bool good);
+void rg_crack_front_rule(rg_check *ck, const rg_node *list, int i, const char *path, bool good);
 void rg_crack_tip_rule(rg_check *ck, const rg_node *list, int i, const char *path, bool good);
 void rg_sensor_rule(rg_check *ck, const rg_node *list, int i, const char *path, bool good);
 void rg_material_rule(rg_check *ck, const rg_node *list, int i, const char *path);

@@ -65,6 +65,8 @@ static const char *const sensor_values[] = {RG_SENSOR_VALUE(SENSOR_WORD) NULL};
 static const char *const sensor_values_meaning[] = {RG_SENSOR_VALUE(SENSOR_MEANING)};
 static const char *const sensor_measures[] = {RG_SENSOR_MEASURE(SENSOR_WORD) NULL};
 static const char *const sensor_measures_meaning[] = {RG_SENSOR_MEASURE(SENSOR_MEANING)};
+static const char *const front_values[] = {RG_FRONT_VALUE(SENSOR_WORD) NULL};
+static const char *const front_values_meaning[] = {RG_FRONT_VALUE(SENSOR_MEANING)};
 /* clang-format off */
 static const char *const interactions[] = {"thesis", "derived", NULL};
 static const char *const interactions_meaning[] = {
@@ -300,6 +302,8 @@ static const rg_key case_keys[] = {
      .offset_count = offsetof(rg_case, output.sensors), MEANS("means, extremes and integrals over parts of the body, recorded in every step: columns NAME_VALUE_MEASURE of history.csv")},
     {.name = "output.crack_tips", .type = RG_KEY_LIST, ELSE("none"), GROUP(COHESIVE), CASE(output.crack_tip), .entry = &rg_crack_tip_table,
      .offset_count = offsetof(rg_case, output.crack_tips), MEANS("how far cracks have come and how fast, recorded in every step: columns NAME_tip (m; nan before there is one) and NAME_speed (m/s) of history.csv")},
+    {.name = "output.crack_fronts", .type = RG_KEY_LIST, ELSE("none"), CASE(output.crack_front), .entry = &rg_crack_front_table,
+     .offset_count = offsetof(rg_case, output.crack_fronts), MEANS("energy release rate and stress intensity at straight fronts of cracks, recorded in every step: columns NAME_VALUE of history.csv")},
     {.name = "output.fields", .type = RG_KEY_FLAGS, .choice = fields, .choice_meaning = fields_meaning, DEFAULT(0), MAY_CHANGE,
      .absent = "all that the materials have but rank, and triaxiality and material where there is cause",
      CASE(output.fields), MEANS("what to write; [] for none")},
@@ -484,6 +488,22 @@ static const rg_key crack_tip_keys[] = {
      MEANS("the speed is that over at least this distance; 0: from one point to the next, which leaps")},
 };
 
+#define FRONT(member) .offset = offsetof(rg_crack_front_input, member)
+static const rg_key crack_front_keys[] = {
+    {.name = "name", .type = RG_KEY_TEXT, REQUIRED, FRONT(name), MEANS("column prefix in history.csv: letters, digits, _ and -")},
+    {.name = "at", .unit = "m", REAL3, ANY, REQUIRED, FRONT(at), MEANS("a point of the front, of reference; with `length` the middle of the piece")},
+    {.name = "direction", REAL3, ANY, REQUIRED, FRONT(direction), MEANS("in which the crack would grow, in its plane: of any length")},
+    {.name = "normal", REAL3, ANY, REQUIRED, FRONT(normal), MEANS("of the plane of the crack, at right angles to the direction: of any length")},
+    {.name = "radius.inner", .unit = "m", REAL, ABOVE(0), REQUIRED, FRONT(radius.inner), MEANS("about the front, of what the integral encloses: the cohesive zone, and an element or two")},
+    {.name = "radius.outer", .unit = "m", REAL, ABOVE(0), REQUIRED, FRONT(radius.outer),
+     MEANS("the integral's weight falls from 1 to 0 between them; openings are those between them. There the solid should be elastic, all faces behind the front free, and no load")},
+    {.name = "length", .unit = "m", REAL, ABOVE(0), ELSE("the whole front, through a body of one thickness"), FRONT(length),
+     MEANS("of a piece of the front, about `at`; its weight falls linearly from its middle to its ends")},
+    {.name = "symmetric", .type = RG_KEY_BOOL, ELSE("false"), FRONT(symmetric), MEANS("true: the body is one half, on rollers in the plane of the crack ahead of it")},
+    {.name = "tip", .type = RG_KEY_TEXT, ELSE("it rests at `at`"), FRONT(tip), MEANS("name in output.crack_tips: the front is where that tip was in the step before, at `at` as long as there is none")},
+    {.name = "values", .type = RG_KEY_FLAGS, .choice = front_values, .choice_meaning = front_values_meaning, DEFAULT(0), .absent = "[J, K]", FRONT(values), MEANS("what is recorded")},
+};
+
 #define SENSOR(member) .offset = offsetof(rg_sensor_input, member)
 static const rg_key sensor_keys[] = {
     {.name = "name", .type = RG_KEY_TEXT, REQUIRED, SENSOR(name), MEANS("column prefix in history.csv: letters, digits, _ and -")},
@@ -511,6 +531,7 @@ const rg_key_table rg_body_table = TABLE(body_keys, rg_body_input);
 const rg_key_table rg_initial_set_table = TABLE(initial_set_keys, rg_initial_set);
 const rg_key_table rg_sensor_table = TABLE(sensor_keys, rg_sensor_input);
 const rg_key_table rg_crack_tip_table = TABLE(crack_tip_keys, rg_crack_tip_input);
+const rg_key_table rg_crack_front_table = TABLE(crack_front_keys, rg_crack_front_input);
 const rg_key_table rg_probe_table = TABLE(probe_keys, rg_probe);
 
 _Static_assert(sizeof(case_keys) / sizeof(case_keys[0]) <= RG_MAX_KEYS, "RG_MAX_KEYS is too small");

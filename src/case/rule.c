@@ -284,8 +284,12 @@ static const char *column_name(const rg_case *c, int i, bool *end) {
         return c->output.sensor[i].name;
     }
     i -= c->output.sensors;
-    *end = i >= c->output.crack_tips;
-    return *end ? NULL : c->output.crack_tip[i].name;
+    if (i < c->output.crack_tips) {
+        return c->output.crack_tip[i].name;
+    }
+    i -= c->output.crack_tips;
+    *end = i >= c->output.crack_fronts;
+    return *end ? NULL : c->output.crack_front[i].name;
 }
 
 /* Whether an entry before that of `name` has the same one. */

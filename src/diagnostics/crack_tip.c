@@ -94,6 +94,14 @@ void rg_crack_tips_next(rg_crack_tips *r) {
     clear(r);
 }
 
+double rg_crack_tips_furthest(const rg_crack_tips *r, int k) {
+    return r->furthest[(r->samples - 1) * r->count + k];
+}
+
+const double *rg_crack_tips_along(const rg_crack_tips *r, int k) {
+    return r->along[k];
+}
+
 /* Takes the speed of a tip that has come far enough. */
 static void take_speed(memory *is, double place, double time, double distance) {
     if (!(place > -DBL_MAX) ||

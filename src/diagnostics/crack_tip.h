@@ -25,6 +25,11 @@ void rg_crack_tips_watch(rg_crack_tips *r, const rg_solver *s, size_t tile);
 void rg_crack_tips_open(rg_crack_tips *r, int capacity);
 void rg_crack_tips_next(rg_crack_tips *r);
 const double *rg_crack_tips_collect(rg_crack_tips *r, const double *time);
+/* Tip k at the sample that was closed last, as far as this rank knows, along its unit vector (m); -DBL_MAX:
+ * there is none. */
+double rg_crack_tips_furthest(const rg_crack_tips *r, int k);
+const double *rg_crack_tips_along(const rg_crack_tips *r, int k);
+
 void rg_crack_tips_print(const rg_crack_tips *r, FILE *out);
 
 /* Registers what goes on (solver/state.h): nothing may wait to be collected. */

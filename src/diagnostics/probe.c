@@ -10,6 +10,7 @@
 #include "base/files.h"
 #include "base/mem.h"
 #include "base/first_bad.h"
+#include "diagnostics/crack_front.h"
 #include "diagnostics/crack_tip.h"
 #include "diagnostics/sensor.h"
 #include "domain/element.h"
@@ -44,15 +45,18 @@ struct rg_probes {
     double *time, *value, *total; /* [CAPACITY], [CAPACITY][row]; total: on rank 0 */
     rg_sensors *sensors;
     rg_crack_tips *tips;
+    rg_crack_fronts *fronts;
     FILE *file;
 };
 
 static int columns(const rg_probes *p) {
-    return p->row + rg_sensors_columns(p->sensors) + rg_crack_tips_columns(p->tips);
+    return p->row + rg_sensors_columns(p->sensors) + rg_crack_tips_columns(p->tips) +
+           rg_crack_fronts_columns(p->fronts);
 }
 
 static int capacity(const rg_probes *p) {
-    return rg_sensors_columns(p->sensors) > 0 ? CAPACITY_OF_SUMS : CAPACITY;
+    return rg_sensors_columns(p->sensors) + rg_crack_fronts_columns(p->fronts) > 0 ? CAPACITY_OF_SUMS
+                                                                                   : CAPACITY;
 }
 
 /* The element with the lowest number that contains probe i. */
@@ -110,6 +114,7 @@ static void write_header(rg_probes *p, const rg_case *c) {
     }
     rg_sensors_header(p->sensors, p->file);
     rg_crack_tips_header(p->tips, p->file);
+    rg_crack_fronts_header(p->fronts, p->file);
     fputc('\n', p->file);
 }
 
@@ -154,6 +159,7 @@ static void watch(void *context, rg_solver *s, size_t tile, const rg_workspace *
     }
     rg_sensors_watch(p->sensors, s, tile, w);
     rg_crack_tips_watch(p->tips, s, tile);
+    rg_crack_fronts_watch(p->fronts, s, tile, w);
 }
 
 rg_probes *rg_probes_find(const rg_solver *s) {
@@ -167,6 +173,7 @@ rg_probes *rg_probes_find(const rg_solver *s) {
                      .account = s->account};
     p->sensors = rg_sensors_make(s);
     p->tips = rg_crack_tips_make(s);
+    p->fronts = rg_crack_fronts_make(s);
     p->slot = RG_NEW(rg_lid, (size_t)p->probes);
     p->at = rg_alloc((size_t)p->probes, sizeof *p->at);
     for (int i = 0; i < p->probes; i++) {
@@ -187,10 +194,12 @@ static void begin(rg_probes *p, rg_solver *s) {
         }
     }
     for (size_t t = 0; t < s->domain->tiles; t++) {
-        s->watched[t] |= rg_sensors_want(p->sensors, t) || rg_crack_tips_want(p->tips, t);
+        s->watched[t] |= rg_sensors_want(p->sensors, t) || rg_crack_tips_want(p->tips, t) ||
+                         rg_crack_fronts_want(p->fronts, t);
     }
     rg_sensors_open(p->sensors, capacity(p));
     rg_crack_tips_open(p->tips, capacity(p));
+    rg_crack_fronts_open(p->fronts, capacity(p));
     s->watch = watch;
     s->watch_context = p;
 }
@@ -238,6 +247,7 @@ void rg_probes_next(rg_probes *p, double time) {
     }
     rg_sensors_next(p->sensors);
     rg_crack_tips_next(p->tips);
+    rg_crack_fronts_next(p->fronts, p->tips);
     double *values = p->value + p->samples * p->row + p->probes * VALUES;
     sample_bodies(p, values);
     sample_account(p, values + p->bodies->count * BODY);
@@ -249,13 +259,14 @@ void rg_probes_next(rg_probes *p, double time) {
 
 void rg_probes_flush(rg_probes *p) {
     int count = p->samples * p->row, more = rg_sensors_columns(p->sensors);
-    int tips = rg_crack_tips_columns(p->tips);
+    int tips = rg_crack_tips_columns(p->tips), fronts = rg_crack_fronts_columns(p->fronts);
     if (p->samples == 0) {
         return;
     }
     /* One rank has each value, the others have zero from the start: the sum only brings them together. */
     MPI_Reduce(p->value, p->total, count, MPI_DOUBLE, MPI_SUM, 0, p->comm);
-    const double *sensed = rg_sensors_collect(p->sensors), *tip = rg_crack_tips_collect(p->tips, p->time);
+    const double *sensed = rg_sensors_collect(p->sensors), *tip = rg_crack_tips_collect(p->tips, p->time),
+                 *front = rg_crack_fronts_collect(p->fronts);
     for (int k = 0; p->rank == 0 && k < p->samples; k++) {
         fprintf(p->file, "%.17g", p->time[k]);
         for (int i = 0; i < p->row; i++) {
@@ -266,6 +277,9 @@ void rg_probes_flush(rg_probes *p) {
         }
         for (int i = 0; i < tips; i++) {
             fprintf(p->file, ",%.17g", tip[k * tips + i]);
+        }
+        for (int i = 0; i < fronts; i++) {
+            fprintf(p->file, ",%.17g", front[k * fronts + i]);
         }
         fputc('\n', p->file);
     }
@@ -287,6 +301,7 @@ void rg_probes_close(rg_probes *p) {
     }
     rg_sensors_free(p->sensors);
     rg_crack_tips_free(p->tips);
+    rg_crack_fronts_free(p->fronts);
     void *blocks[] = {p->slot, p->at, p->time, p->value, p->total, p};
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) {
         rg_free(blocks[i]);
@@ -296,8 +311,10 @@ void rg_probes_close(rg_probes *p) {
 void rg_probes_print(const rg_probes *p, FILE *out) {
     rg_sensors_print(p->sensors, out);
     rg_crack_tips_print(p->tips, out);
+    rg_crack_fronts_print(p->fronts, out);
 }
 
 void rg_probes_register(rg_probes *p, rg_state *st) {
     rg_crack_tips_register(p->tips, st);
+    rg_crack_fronts_register(p->fronts, st);
 }

@@ -1,6 +1,7 @@
 /* What is recorded every step, in history.csv: displacement, velocity and stress at the probes; position,
  * velocity of rigid bodies, and the solid's force on them; force, moment and work of loads and supports that
- * have a name; sensors (diagnostics/sensor.h); tips of cracks (diagnostics/crack_tip.h). */
+ * have a name; sensors (diagnostics/sensor.h); tips of cracks (diagnostics/crack_tip.h) and their fronts
+ * (diagnostics/crack_front.h). */
 #ifndef RG_PROBE_H
 #define RG_PROBE_H
 
@@ -31,7 +32,8 @@ void rg_probes_reopen(rg_probes *p, rg_solver *s, int64_t length);
  * Collective. */
 int64_t rg_probes_sync(rg_probes *p);
 
-/* Closes the record of a kick at `time` (s). Collective only when the buffer is full. */
+/* Closes the record of a kick at `time` (s). Collective only when the buffer is full, or fronts of cracks
+ * move. */
 void rg_probes_next(rg_probes *p, double time);
 
 /* Writes what is buffered. Collective. */

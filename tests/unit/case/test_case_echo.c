@@ -61,6 +61,7 @@ static const char defaults[] =
     "  probes: []\n"
     "  sensors: []\n"
     "  crack_tips: []\n"
+    "  crack_fronts: []\n"
     "  fields: [displacement, velocity, stress, mean_stress, principal_stress, crack, fragment]\n"
     "  fragments: each\n"
     "  precision: double\n"
@@ -320,6 +321,7 @@ static void test_everything(void **state) {
                 "      at: [-0.875, 2.5, 8.5] # m\n"
                 "  sensors: []\n"
                 "  crack_tips: []\n"
+                "  crack_fronts: []\n"
                 "  fields: [velocity, triaxiality, rank, material]\n"
                 "  fragments: last\n"
                 "  region: \"x > 0\"\n"
@@ -405,7 +407,8 @@ static void test_interval_of_a_long_run(void **state) {
     expect_part("time.end=50", "  dir", "  fields",
                 "  dir: \"results/m\"\n  probes: []\n"
                 "  sensors: []\n"
-                "  crack_tips: []\n"); /* 1 s would be a step */
+                "  crack_tips: []\n"
+                "  crack_fronts: []\n"); /* 1 s would be a step */
 }
 
 #ifndef RG_SINGLE
