@@ -13,7 +13,7 @@ ROOMS = {
                 test_friction.py test_viscosity.py test_laws.py test_ceramic.py test_solids.py test_ledger.py
                 test_spall.py"""),
     "mesh/import": (["src/mesh/import/*"],
-                    """frame gmsh_errors inp inp_nodes inp_sets inp_split import vtk sets mesh mesh_file mesh_command
+                    """frame gmsh_errors inp inp_nodes inp_sets inp_split import unpack vtk test_inputs.py sets mesh mesh_file mesh_command
                     fuzz-inp fuzz-vtk test_abaqus.py test_gmsh.py test_mesh_faults.py test_meshes.py"""),
     "mesh/improve": (["src/mesh/improve/*"], "improve test_meshes.py"),
     "mesh": (["src/mesh/*"],
@@ -39,7 +39,7 @@ ROOMS = {
                     test_fragments.py test_ledger.py test_spall.py test_faults.py test_bimaterials.py test_cli.py
                     test_impact.py test_parallel.py test_restart.py"""),
     "output": (["src/output/*"],
-               """writer slab estimate fragment_table progress snapshot summary xdmf test_output.py test_invariance.py
+               """writer slab estimate fragment_table progress snapshot summary xdmf test_output.py test_export.py test_invariance.py
                test_spall.py test_cli.py test_bimaterials.py test_fragments.py test_faults.py test_parallel.py
                test_restart.py"""),
     "restart": (["src/restart/*"],

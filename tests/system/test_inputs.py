@@ -97,8 +97,12 @@ def test_many_grains(tmp_path):
     assert volumes == {}
 
 
-@pytest.mark.parametrize("name", sorted(path.name for path in (INPUTS / "vtk").iterdir()))
+@pytest.mark.parametrize("name", sorted(path.name for path in (INPUTS / "vtk").iterdir() if not path.stem.startswith("box_")))
 def test_regions_of_vtk(tmp_path, name):
-    process = launch("mesh", INPUTS / "vtk" / name, "-o", tmp_path / "a.h5")
+    """As other programs write them; three pieces with each other's cells as ghosts."""
+    merge = ["--merge", "1e-9"] if name.endswith(".pvtu") else []
+    process = launch("mesh", INPUTS / "vtk" / name, "-o", tmp_path / "a.h5", *merge)
+    if "LZMA" in name and "built without liblzma" in process.stderr:
+        pytest.skip("no liblzma here")
     assert process.returncode == 0 and process.stderr == "", process.stderr
     assert found(tmp_path / "a.h5") == ({"": ALL, "block.0": LOW, "block.1": UP}, {})

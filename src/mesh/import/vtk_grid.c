@@ -24,6 +24,7 @@ static const shape shapes[] = {{5, 3, 3, 2},   {22, 6, 3, 2}, {10, 4, 4, 3},  {2
                                {33, 24, 8, 3}, {13, 6, 6, 3}, {26, 15, 6, 3}, {31, 12, 6, 3}, {32, 18, 6, 3},
                                {14, 5, 5, 3},  {27, 13, 5, 3}};
 enum { WHOLE = 4, PIXEL = 8, VOXEL = 11, NODES = 27 }; /* the first ones are taken without a cut */
+enum { GHOST = -2, DUPLICATE = 1, HIDDEN = 32 }; /* what stands for a cell's type; bits of vtkGhostType */
 
 /* Points, lines and other surfaces, which are left out. */
 static const int flat[] = {0, 1, 2, 3, 4, 6, 7, 8, 9, 21, 23, 28, 30, 34, 35, 36, 68, 69, 70, 75, 76};
@@ -77,7 +78,7 @@ static void exchange(size_t *a, size_t *b) {
 
 static int type_of(const rg_vtk_grid *g, size_t cell) {
     double type = g->type[cell];
-    return type >= 0 && type < 256 ? (int)type : -1;
+    return type == GHOST ? GHOST : type >= 0 && type < 256 ? (int)type : -1;
 }
 
 /* NULL: a cell of another type, or one that is cut, or extruded, where that was not asked for. */
@@ -153,7 +154,7 @@ static void take_cells(building *b) {
             take_solid(b, cell, s);
         } else if (s == NULL && is_flat(type_of(g, cell))) {
             b->left_out++;
-        } else if (s == NULL) {
+        } else if (s == NULL && type_of(g, cell) != GHOST) {
             first = solids++ == 0 ? cell : first;
         }
     }
@@ -280,9 +281,18 @@ static void take_sets(building *b) {
     rg_free(named);
 }
 
-/* ---- the whole ---- */
+/* ---- pieces ---- */
 
-static void free_grid(rg_vtk_grid *g) {
+static rg_vtk_array *array_of(const rg_vtk_grid *g, const char *name) {
+    for (size_t i = 0; i < g->arrays; i++) {
+        if (strcmp(g->array[i].name, name) == 0) {
+            return &g->array[i];
+        }
+    }
+    return NULL;
+}
+
+void rg_vtk_free(rg_vtk_grid *g) {
     for (size_t i = 0; i < g->arrays; i++) {
         rg_free(g->array[i].name);
         rg_free(g->array[i].value);
@@ -294,7 +304,80 @@ static void free_grid(rg_vtk_grid *g) {
     rg_free(g->type);
 }
 
+static void copy(double *to, const double *from, size_t count, double add) {
+    for (size_t i = 0; i < count; i++) {
+        to[i] = from[i] + add;
+    }
+}
+
+/* Copies a piece behind those that are there already. */
+static void put_piece(rg_vtk_grid *all, const rg_vtk_grid *piece) {
+    copy(all->x + 3 * all->points, piece->x, 3 * piece->points, 0);
+    copy(all->start + all->cells, piece->start, piece->cells + 1, (double)all->nodes);
+    copy(all->node + all->nodes, piece->node, piece->nodes, (double)all->points);
+    copy(all->type + all->cells, piece->type, piece->cells, 0);
+    for (size_t i = 0; i < all->arrays; i++) {
+        const rg_vtk_array *a = array_of(piece, all->array[i].name);
+        if (a == NULL) {
+            rg_fatal(RG_USAGE, "%s: cell data '%s' are not in all of its pieces", all->path,
+                     all->array[i].name);
+        }
+        copy(all->array[i].value + all->cells, a->value, piece->cells, 0);
+    }
+    all->points += piece->points;
+    all->cells += piece->cells;
+    all->nodes += piece->nodes;
+}
+
+rg_vtk_grid rg_vtk_join(const char *path, rg_vtk_grid *piece, size_t pieces) {
+    rg_vtk_grid all = {.path = path};
+    size_t points = 0, cells = 0, nodes = 0;
+    for (size_t p = 0; p < pieces; p++) {
+        points += piece[p].points;
+        cells += piece[p].cells;
+        nodes += piece[p].nodes;
+        for (size_t i = 0; i < piece[p].arrays; i++) {
+            if (p > 0 && array_of(&piece[0], piece[p].array[i].name) == NULL) {
+                rg_fatal(RG_USAGE, "%s: cell data '%s' are not in all of its pieces", path,
+                         piece[p].array[i].name);
+            }
+        }
+    }
+    all.x = RG_NEW(double, 3 * points + 1);
+    all.start = RG_NEW(double, cells + 1);
+    all.node = RG_NEW(double, nodes + 1);
+    all.type = RG_NEW(double, cells + 1);
+    for (size_t i = 0; i < piece[0].arrays; i++) {
+        rg_vtk_add_array(&all, piece[0].array[i].name, RG_NEW(double, cells + 1));
+    }
+    for (size_t p = 0; p < pieces; p++) {
+        put_piece(&all, &piece[p]);
+        rg_vtk_free(&piece[p]);
+    }
+    rg_free(piece);
+    return all;
+}
+
+/* ---- the whole ---- */
+
+static void leave_out_ghosts(rg_vtk_grid *g) {
+    rg_vtk_array *ghost = array_of(g, "vtkGhostType");
+    if (ghost == NULL) {
+        return;
+    }
+    for (size_t cell = 0; cell < g->cells; cell++) {
+        double bits = ghost->value[cell];
+        if (bits >= 0 && bits < 256 && ((int)bits & (DUPLICATE | HIDDEN)) != 0) {
+            g->type[cell] = GHOST;
+        }
+    }
+    rg_free(ghost->name);
+    rg_free(ghost->value);
+    *ghost = g->array[--g->arrays];
+}
+
 rg_mesh *rg_vtk_mesh(rg_vtk_grid *g, const rg_import_how *how) {
+    leave_out_ghosts(g);
     building b = {.grid = g, .import = {.path = g->path, .how = *how}};
     take_cells(&b);
     take_sets(&b);
@@ -303,7 +386,7 @@ rg_mesh *rg_vtk_mesh(rg_vtk_grid *g, const rg_import_how *how) {
                 b.left_out);
     }
     rg_free(b.element);
-    free_grid(g);
+    rg_vtk_free(g);
     return rg_import_finish(&b.import);
 }
 

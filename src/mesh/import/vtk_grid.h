@@ -34,7 +34,15 @@ double rg_vtk_decode(const unsigned char *from, rg_vtk_kind kind, size_t bytes, 
  * name. Ends the run where that is too long for a set. */
 void rg_vtk_add_array(rg_vtk_grid *g, const char *name, double *value);
 
-/* The mesh, and frees the grid. Arrays of whole numbers name sets:
+/* Frees what the grid holds. */
+void rg_vtk_free(rg_vtk_grid *g);
+
+/* Makes one grid of pieces, one at least, which it frees with their array. Ends the run where one of them has
+ * cell data that the first has not, or the other way round. */
+rg_vtk_grid rg_vtk_join(const char *path, rg_vtk_grid *piece, size_t pieces);
+
+/* The mesh, and frees the grid. Cells that vtkGhostType says are those of another piece, or hidden, are left
+ * out. Arrays of whole numbers name sets:
  * "array.number" is the volume set of the tetrahedra, and the surface set of the triangles, that have this
  * number. Ends the run where cells are damaged, or solids of another shape. `original` holds the numbers of
  * the cells, from 0 on. */

@@ -8,7 +8,8 @@
  * rg_vtk_mesh. The caller frees it. */
 rg_mesh *rg_vtk_read(const char *path, const rg_import_how *how);
 
-/* The same of an XML file (.vtu) of one piece: text, base64 or appended, compressed by zlib or not. */
+/* The same of an XML file (.vtu, or .pvtu, which names others) of any pieces: text, base64 or appended,
+ * compressed by zlib, LZ4 or LZMA or not. */
 rg_mesh *rg_vtu_read(const char *path, const rg_import_how *how);
 
 #endif

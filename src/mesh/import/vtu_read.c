@@ -3,29 +3,42 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <zlib.h>
 
 #include "base/error.h"
 #include "base/mem.h"
+#include "mesh/import/unpack.h"
 #include "mesh/import/vtk_grid.h"
 #include "mesh/import/vtk_read.h"
 
-enum { WORD = 256, MOST_RATIO = 1100 /* zlib makes no more of a byte */ };
+enum {
+    WORD = 256,
+    MOST_RATIO = 1100, /* zlib makes no more of a byte; LZMA may of an array, but hardly of a whole file */
+    MOST_PIECES = 100000
+};
 
 typedef enum { NOTHING, POINTS, CELLS, CELL_DATA } part;
+
+/* With points, connectivity, offsets and types. */
+struct pieces {
+    rg_vtk_grid *of;
+    size_t count, room;
+};
 
 typedef struct {
     const char *path;
     char *text; /* of the whole file, with a zero behind it */
     size_t size;
     const char *at, *end; /* where we are in it */
-    bool big_endian, compressed;
-    size_t header; /* bytes of a length before data */
-    size_t pieces;
-    part part;            /* where we are */
-    const char *appended; /* the appended data, NULL: none */
-    bool raw;             /* they are bytes, not base64 */
-    rg_vtk_grid grid;
+    bool big_endian;
+    rg_packing packing;
+    size_t header;           /* bytes of a length before data; 0: no VTKFile yet */
+    bool parallel, is_piece; /* it names other files; it is named by one */
+    part part;               /* where we are */
+    const char *appended;    /* the appended data, NULL: none */
+    bool raw;                /* they are bytes, not base64 */
+    rg_vtk_grid grid;        /* of the piece */
+    size_t begun;            /* pieces, also those that a .pvtu names */
+    struct pieces *done;
 } reader;
 
 static _Noreturn void refuse(const reader *r, const char *what, const char *which) {
@@ -191,9 +204,9 @@ static unsigned char *take_blocks(const reader *r, stream *s, size_t *bytes) {
         packed[i] = take_length(r, s);
     }
     for (size_t i = 0; i < blocks && good; i++) {
-        uLongf room = (uLongf)(*bytes - done);
+        size_t room = *bytes - done;
         good = packed[i] <= r->size && take_bytes(s, from, packed[i]) &&
-               uncompress(out + done, &room, from, (uLong)packed[i]) == Z_OK;
+               rg_unpack(r->packing, from, packed[i], out + done, &room);
         done += good ? room : 0;
     }
     good = good && done == *bytes;
@@ -258,7 +271,7 @@ static double *read_bytes(const reader *r, const tag *t, const char *name, strea
     if (k == sizeof known_type / sizeof *known_type) {
         refuse(r, ": its type is not known", name);
     }
-    unsigned char *data = r->compressed ? take_blocks(r, s, &bytes) : take_block(r, s, &bytes);
+    unsigned char *data = r->packing != RG_PLAIN ? take_blocks(r, s, &bytes) : take_block(r, s, &bytes);
     if (data == NULL) {
         refuse(r, ": its data are damaged", name);
     }
@@ -338,17 +351,36 @@ static void load(reader *r) {
     r->end = r->text + r->size;
 }
 
+static rg_packing packing_of(const reader *r, const char *compressor) {
+    static const struct {
+        const char *name;
+        rg_packing packing;
+    } known[] = {{"vtkZLibDataCompressor", RG_ZLIB},
+                 {"vtkLZ4DataCompressor", RG_LZ4},
+                 {"vtkLZMADataCompressor", RG_LZMA}};
+    for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
+        if (strcmp(known[i].name, compressor) == 0) {
+            if (!rg_can_unpack(known[i].packing)) {
+                refuse(r, ": this program was built without liblzma (Debian: liblzma-dev)", compressor);
+            }
+            return known[i].packing;
+        }
+    }
+    refuse(r, ": a compressor that is not known", compressor);
+}
+
 static void read_head(reader *r, const tag *t) {
     char value[WORD];
     r->header = attribute(r, t, "header_type", value) && strcmp(value, "UInt64") == 0 ? 8 : 4;
     r->big_endian = attribute(r, t, "byte_order", value) && strcmp(value, "BigEndian") == 0;
-    r->compressed = attribute(r, t, "compressor", value);
-    if (r->compressed && strcmp(value, "vtkZLibDataCompressor") != 0) {
-        refuse(r, ": only vtkZLibDataCompressor can be read", value);
+    if (attribute(r, t, "compressor", value) && value[0] != '\0') {
+        r->packing = packing_of(r, value);
     }
-    if (!attribute(r, t, "type", value) || strcmp(value, "UnstructuredGrid") != 0) {
+    if (!attribute(r, t, "type", value) || strcmp(value + (value[0] == 'P'), "UnstructuredGrid") != 0 ||
+        (value[0] == 'P' && r->is_piece)) {
         refuse(r, "only an UnstructuredGrid can be read", "");
     }
+    r->parallel = value[0] == 'P';
 }
 
 /* Appended data begin behind an underscore. */
@@ -366,16 +398,51 @@ static void find_appended(reader *r) {
     r->at = r->text;
 }
 
+static void end_piece(reader *r) {
+    const rg_vtk_grid *g = &r->grid;
+    bool good = g->x != NULL && g->start != NULL && g->node != NULL && g->type != NULL;
+    if (!good && (g->points > 0 || g->cells > 0 || (r->begun < 2 && !r->is_piece))) {
+        refuse(r, "points, connectivity, offsets or types of cells are not there", "");
+    }
+    if (good) {
+        r->done->of = rg_grow(r->done->of, &r->done->room, r->done->count, sizeof *r->done->of);
+        r->done->of[r->done->count++] = r->grid;
+    } else {
+        rg_vtk_free(&r->grid);
+    }
+    r->grid = (rg_vtk_grid){.path = r->path};
+}
+
+static void read_file(const char *path, bool is_piece, struct pieces *done);
+
+/* A file that a .pvtu names, beside it unless the name begins with '/'. */
+static void read_named(reader *r, const tag *t) {
+    char name[WORD];
+    if (!attribute(r, t, "Source", name)) {
+        refuse(r, "a Piece without a Source", "");
+    }
+    if (++r->begun > MOST_PIECES) {
+        refuse(r, "too many pieces", "");
+    }
+    const char *slash = name[0] != '/' ? strrchr(r->path, '/') : NULL;
+    size_t folder = slash != NULL ? (size_t)(slash + 1 - r->path) : 0;
+    char *path = RG_NEW(char, folder + strlen(name) + 1);
+    memcpy(path, r->path, folder);
+    strcpy(path + folder, name);
+    read_file(path, true, r->done);
+    rg_free(path);
+}
+
 static void read_tag(reader *r, const tag *t) {
     static const char *const names[] = {[POINTS] = "Points", [CELLS] = "Cells", [CELL_DATA] = "CellData"};
     if (t->name[0] == '/') {
         r->part = has_name(t, "/DataArray") ? r->part : NOTHING;
     } else if (has_name(t, "VTKFile")) {
         read_head(r, t);
+    } else if (has_name(t, "Piece") && r->parallel) {
+        read_named(r, t);
     } else if (has_name(t, "Piece")) {
-        if (r->pieces++ > 0) {
-            refuse(r, "a second Piece: only one can be read", "");
-        }
+        r->begun++ > 0 ? end_piece(r) : (void)0;
         r->grid.points = count_of(r, t, "NumberOfPoints", 0);
         r->grid.cells = count_of(r, t, "NumberOfCells", 0);
     } else if (has_name(t, "DataArray")) {
@@ -386,8 +453,8 @@ static void read_tag(reader *r, const tag *t) {
     }
 }
 
-rg_mesh *rg_vtu_read(const char *path, const rg_import_how *how) {
-    reader r = {.path = path, .grid = {.path = path}};
+static void read_file(const char *path, bool is_piece, struct pieces *done) {
+    reader r = {.path = path, .grid = {.path = path}, .is_piece = is_piece, .done = done};
     tag t;
     load(&r);
     find_appended(&r);
@@ -397,9 +464,22 @@ rg_mesh *rg_vtu_read(const char *path, const rg_import_how *how) {
     if (r.header == 0) {
         refuse(&r, "not an XML file of VTK: it has no VTKFile", "");
     }
-    if (r.grid.x == NULL || r.grid.start == NULL || r.grid.node == NULL || r.grid.type == NULL) {
-        refuse(&r, "points, connectivity, offsets or types of cells are not there", "");
-    }
+    r.parallel ? (void)0 : end_piece(&r);
     rg_free(r.text);
-    return rg_vtk_mesh(&r.grid, how);
+}
+
+rg_mesh *rg_vtu_read(const char *path, const rg_import_how *how) {
+    struct pieces all = {.count = 0};
+    read_file(path, false, &all);
+    if (all.count == 0) {
+        rg_fatal(RG_USAGE, "%s: no piece has any cells", path);
+    }
+    rg_vtk_grid whole = all.of[0];
+    if (all.count > 1) {
+        whole = rg_vtk_join(path, all.of, all.count);
+    } else {
+        rg_free(all.of);
+    }
+    whole.path = path;
+    return rg_vtk_mesh(&whole, how);
 }

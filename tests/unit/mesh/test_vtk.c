@@ -15,9 +15,11 @@
 #include "base/mem.h"
 
 #include "base/error.h"
+#include "mesh/import/unpack.h"
 #include "mesh/import/vtk_read.h"
 #include "support/mesh_text.h"
 
+static char folder[] = "/tmp/test_vtk.XXXXXX";
 static rg_import_how how = {.scale = 1};
 
 static void read_legacy(void) {
@@ -407,6 +409,9 @@ static void test_binary(void **state) {
         "Int32", "offsets", "") "4 7 11</DataArray>" ARRAY("UInt8", "types",                                 \
                                                            "") "10 5 10</DataArray></Cells>\n"
 #define XML_END "</Piece></UnstructuredGrid></VTKFile>\n"
+#define REGIONS "<CellData Scalars='r'>" ARRAY("Int32", "r", "") "3 7 -4</DataArray></CellData>"
+#define NONE    "<Piece NumberOfPoints='0' NumberOfCells='0'>"
+#define PVTU    "<VTKFile type='PUnstructuredGrid'><PUnstructuredGrid>"
 #define WARNED  "rhegma: warning: a.vtu: "
 
 static void test_xml(void **state) {
@@ -429,14 +434,21 @@ static void test_xml(void **state) {
         {"nothing", "not an XML file of VTK: it has no VTKFile"},
         {"<VTKFile type='PolyData'>", "only an UnstructuredGrid can be read"},
         {"<VTKFile>", "only an UnstructuredGrid can be read"},
-        {VTU(" compressor='vtkLZ4DataCompressor'"),
-         "vtkLZ4DataCompressor: only vtkZLibDataCompressor can be read"},
+        {VTU(" compressor='vtkBestDataCompressor'"), "vtkBestDataCompressor: a compressor that is not known"},
         {VTU("") PIECE XML_POINTS XML_END, "points, connectivity, offsets or types of cells are not there"},
         {VTU("") PIECE XML_POINTS "<Cells>" ARRAY("Int32", "offsets", "") "4 7 11</DataArray>" ARRAY(
              "UInt8", "types", "") "10 5 10</DataArray></Cells>" XML_END,
          "points, connectivity, offsets or types of cells are not there"},
         {VTU("") PIECE XML_CELLS XML_END, "points, connectivity, offsets or types of cells are not there"},
-        {VTU("") PIECE XML_POINTS XML_CELLS PIECE, "a second Piece: only one can be read"},
+        {VTU("") PIECE PIECE, "points, connectivity, offsets or types of cells are not there"},
+        {VTU("") PIECE XML_POINTS XML_CELLS PIECE XML_POINTS XML_END,
+         "points, connectivity, offsets or types of cells are not there"},
+        {VTU("") PIECE XML_POINTS XML_CELLS REGIONS "</Piece>" PIECE XML_POINTS XML_CELLS XML_END,
+         "cell data 'r' are not in all of its pieces"},
+        {VTU("") PIECE XML_POINTS XML_CELLS "</Piece>" PIECE XML_POINTS XML_CELLS REGIONS XML_END,
+         "cell data 'r' are not in all of its pieces"},
+        {PVTU "<Piece/>", "a Piece without a Source"},
+        {PVTU "</VTKFile>", "no piece has any cells"},
         {VTU("") PIECE XML_POINTS XML_POINTS, "Points: it comes twice"},
         {VTU("") PIECE XML_CELLS XML_CELLS, "connectivity: it comes twice"},
         {VTU("") "<Piece NumberOfPoints='-5'>", "NumberOfPoints: no number of what this file could hold"},
@@ -479,10 +491,50 @@ static void test_xml(void **state) {
     expect_said(read_xml, RG_USAGE, "rhegma: a.vtu: cannot be read: No such file or directory\n");
 }
 
+/* Pieces: the points of each are its own; other ranks' cells and hidden ones are none. */
+static void test_pieces(void **state) {
+    (void)state;
+    static const char twice[] = X5 "x 5: 1 2 3\nx 6: 5 2 3.5\nx 7: 1.5 7 3\nx 8: 1 2.5 9\nx 9: 6 8 10\n"
+                                   "e 0: 0 1 2 3 in r.3, r.7 at 3\ne 2: 1 2 3 4 in r.-4\n"
+                                   "e 3: 5 6 7 8 in r.3, r.7 at 3\ne 5: 6 7 8 9 in r.-4\n";
+    expect_xml(VTU("") PIECE XML_POINTS XML_CELLS REGIONS
+               "</Piece>" NONE "</Piece>" PIECE REGIONS XML_CELLS XML_POINTS XML_END,
+               RG_OK, twice);
+    static const char one[] = VTU("") PIECE XML_POINTS XML_CELLS REGIONS XML_END;
+    write_bytes("b 1.vtu", one, strlen(one));
+    expect_xml(PVTU "<Piece Source='b 1.vtu'/><Piece Source='b 1.vtu'/></PUnstructuredGrid></VTKFile>", RG_OK,
+               twice);
+    expect_xml(PVTU "<Piece Source='b 1.vtu'/>", RG_OK, IN_SETS);
+    char words[200];
+    snprintf(words, sizeof words, PVTU "<Piece Source='%s/b 1.vtu'/>", folder);
+    expect_xml(words, RG_OK, IN_SETS);
+    static const char none[] = VTU("") NONE XML_END;
+    write_bytes("none.vtu", none, strlen(none));
+    expect_xml(PVTU "<Piece Source='none.vtu'/><Piece Source='b 1.vtu'/>", RG_OK, IN_SETS);
+    expect_xml(PVTU "<Piece Source='c.vtu'/>", RG_USAGE,
+               "rhegma: c.vtu: cannot be read: No such file or directory\n");
+    expect_xml(PVTU "<Piece Source='a.vtu'/>", RG_USAGE,
+               "rhegma: a.vtu: only an UnstructuredGrid can be read\n");
+    static const char *const ghosts[] = {"0 0 1", "0 0 32", "0 2 33"};
+    for (size_t i = 0; i < 3; i++) {
+        snprintf(words, sizeof words, "%s", ghosts[i]);
+        char text[2000];
+        snprintf(text, sizeof text, "%s%s</DataArray></CellData>%s",
+                 VTU("") PIECE XML_POINTS XML_CELLS "<CellData>" ARRAY("UInt8", "vtkGhostType", ""), words,
+                 XML_END);
+        expect_xml(text, RG_OK,
+                   "rhegma: warning: a.vtu: 1 nodes belong to no tetrahedron and are left out; the first is "
+                   "node 4 at "
+                   "(6, 8, 10) m\nx 0: 1 2 3\nx 1: 5 2 3.5\nx 2: 1.5 7 3\nx 3: 1 2.5 9\ne 0: 0 1 2 3\n");
+    }
+    unlink("b 1.vtu");
+    unlink("none.vtu");
+}
+
 /* How binary data are stored. */
 typedef struct {
-    bool big, wide, compressed, raw, appended,
-        together; /* together: header and data are one piece of base64 */
+    bool big, wide, raw, appended, together; /* together: header and data are one piece of base64 */
+    rg_packing packing;
 } storage;
 
 static void add_base64(bytes *to, const bytes *from) {
@@ -520,10 +572,23 @@ static void add_piece(bytes *to, const storage *s, const bytes *header, const by
     }
 }
 
+/* LZ4 of bytes as they are. */
+static size_t pack(rg_packing p, const unsigned char *from, size_t size, unsigned char *to) {
+    if (p == RG_ZLIB) {
+        uLongf room = 200;
+        assert_int_equal(compress(to, &room, from, size), Z_OK);
+        return room;
+    }
+    to[0] = (unsigned char)((size < 15 ? size : 15) << 4);
+    to[1] = (unsigned char)(size - 15);
+    memcpy(to + (size < 15 ? 1 : 2), from, size);
+    return size + (size < 15 ? 1 : 2);
+}
+
 /* Compressed in blocks of 40 bytes. */
 static void add_stored(bytes *to, const storage *s, const bytes *data) {
     bytes header = {.size = 0}, body = {.size = 0};
-    if (!s->compressed) {
+    if (s->packing == RG_PLAIN) {
         add_header(&header, s, data->size);
         add_piece(to, s, &header, data);
         return;
@@ -534,9 +599,7 @@ static void add_stored(bytes *to, const storage *s, const bytes *data) {
     add_header(&header, s, data->size % 40);
     for (size_t i = 0; i < blocks; i++) {
         size_t left = data->size - 40 * i;
-        uLongf size = 200;
-        assert_int_equal(compress(body.data + body.size, &size, data->data + 40 * i, left < 40 ? left : 40),
-                         Z_OK);
+        size_t size = pack(s->packing, data->data + 40 * i, left < 40 ? left : 40, body.data + body.size);
         add_header(&header, s, size);
         body.size += size;
     }
@@ -559,7 +622,9 @@ static void write_stored(const storage *s) {
     sprintf(words,
             "<VTKFile type=\"UnstructuredGrid\" byte_order=\"%s\"%s%s><UnstructuredGrid>\n" PIECE "<Points>",
             s->big ? "BigEndian" : "LittleEndian", s->wide ? " header_type=\"UInt64\"" : "",
-            s->compressed ? " compressor=\"vtkZLibDataCompressor\"" : "");
+            s->packing == RG_ZLIB  ? " compressor=\"vtkZLibDataCompressor\""
+            : s->packing == RG_LZ4 ? " compressor=\"vtkLZ4DataCompressor\""
+                                   : "");
     add_text(&b, words);
     for (int i = 0; i < 15; i++) {
         add_real(&data, x[i], s->wide ? 8 : 4, s->big);
@@ -591,22 +656,20 @@ static void write_stored(const storage *s) {
 
 static void test_stored(void **state) {
     (void)state;
-    for (unsigned k = 0; k < 64; k++) {
+    for (unsigned k = 0; k < 96; k++) {
         storage s = {.big = k & 1,
                      .wide = k >> 1 & 1,
-                     .compressed = k >> 2 & 1,
-                     .raw = k >> 3 & 1,
-                     .appended = k >> 4 & 1,
-                     .together = k >> 5 & 1};
-        if ((s.raw && !s.appended) || (s.together && (s.raw || s.compressed))) {
+                     .raw = k >> 2 & 1,
+                     .appended = k >> 3 & 1,
+                     .together = k >> 4 & 1,
+                     .packing = k >> 5};
+        if ((s.raw && !s.appended) || (s.together && (s.raw || s.packing != RG_PLAIN))) {
             continue;
         }
         write_stored(&s);
         expect_said(read_xml, RG_OK, IN_SETS);
     }
 }
-
-static char folder[] = "/tmp/test_vtk.XXXXXX";
 
 static int set_up(void **state) {
     (void)state;
@@ -624,7 +687,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_legacy), cmocka_unit_test(test_regions),         cmocka_unit_test(test_cells),
         cmocka_unit_test(test_split),  cmocka_unit_test(test_legacy_mistakes), cmocka_unit_test(test_binary),
-        cmocka_unit_test(test_xml),    cmocka_unit_test(test_stored),
+        cmocka_unit_test(test_xml),    cmocka_unit_test(test_stored),          cmocka_unit_test(test_pieces),
     };
     int failed = cmocka_run_group_tests_name("vtk", tests, set_up, tear_down);
     return failed + (rg_alloc_blocks() > 0); /* all is given back */
