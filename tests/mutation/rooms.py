@@ -8,10 +8,10 @@ import fnmatch
 ROOMS = {
     "kernels": (["kernels/*"],
                 """kernels mixed_mode interface tile_faces reference laws friction viscosity elastic j2 johnson_cook johnson_holmquist
-                viscoelastic bulk_history
+                viscoelastic bulk_history anisotropic contact
                 deshpande_evans deshpande_evans_kernel cost_model material step test_invariance.py test_contact.py
                 test_friction.py test_viscosity.py test_laws.py test_ceramic.py test_solids.py test_ledger.py
-                test_spall.py"""),
+                test_crystals.py test_fragment_contact.py test_spall.py"""),
     "mesh/import": (["src/mesh/import/*"],
                     """frame gmsh_errors inp inp_nodes inp_sets inp_split import unpack vtk test_inputs.py sets mesh mesh_file mesh_command
                     fuzz-inp fuzz-vtk test_abaqus.py test_gmsh.py test_mesh_faults.py test_meshes.py"""),
@@ -20,24 +20,27 @@ ROOMS = {
              """sets mesh mesh_check mesh_command mesh_damage mesh_info mesh_file tiles part part_read domain
              fuzz-mesh test_mesh_faults.py test_meshes.py test_invariance.py test_partition.py test_cli.py"""),
     "partition": (["src/partition/*"],
-                  """tiles part part_read patch material materials material_map spectrum step verify
+                  """tiles part part_read patch material materials material_map anisotropic spectrum step verify
                   test_mesh_faults.py test_bimaterials.py test_partition.py test_meshes.py test_cli.py
-                  test_continuous.py test_parallel.py"""),
+                  test_continuous.py test_crystals.py test_parallel.py"""),
+    "contact": (["src/contact/*"], "search contact balance test_fragment_contact.py test_parallel.py test_restart.py"),
     "domain": (["src/domain/*"],
                """domain assembly slab patch step spectrum fragment verify fragment_twin ledger snapshot
                test_invariance.py test_contact.py test_bodies.py test_continuous.py test_fragments.py
-               test_solids.py test_bimaterials.py test_ledger.py test_spall.py test_parallel.py"""),
+               test_solids.py test_bimaterials.py test_open_faces.py test_ledger.py test_spall.py test_parallel.py"""),
     "solver": (["src/solver/*"],
                """step spectrum balance body law load mixed_mode checkpoint step_limiter strength patch material verify case
                checkpoint_file ledger snapshot test_invariance.py test_contact.py test_friction.py
                test_viscosity.py test_bodies.py test_output.py test_continuous.py test_ceramic.py test_laws.py
                test_ledger.py test_spall.py test_solids.py test_waves.py test_bimaterials.py test_fragments.py
-               test_impact.py test_partition.py test_parallel.py test_restart.py"""),
+               test_impact.py test_partition.py test_moments.py test_open_faces.py test_loads.py test_sides.py
+               test_supports.py test_static.py test_crystals.py test_fragment_contact.py test_parallel.py
+               test_restart.py"""),
     "diagnostics": (["src/diagnostics/*"],
                     """step exact_sum fragment fragment_table fragment_twin ledger probe verify test_output.py
                     test_invariance.py test_friction.py test_viscosity.py test_bodies.py test_ceramic.py
-                    test_fragments.py test_ledger.py test_spall.py test_faults.py test_bimaterials.py test_cli.py
-                    test_impact.py test_parallel.py test_restart.py"""),
+                    test_fragments.py test_sensors.py test_moments.py test_sides.py test_ledger.py test_spall.py
+                    test_faults.py test_bimaterials.py test_cli.py test_impact.py test_parallel.py test_restart.py"""),
     "output": (["src/output/*"],
                """writer slab estimate fragment_table progress snapshot summary xdmf test_output.py test_export.py test_invariance.py
                test_spall.py test_cli.py test_bimaterials.py test_fragments.py test_faults.py test_parallel.py
@@ -47,11 +50,12 @@ ROOMS = {
                 test_faults.py test_cli.py test_restart.py test_partition.py"""),
     "verify": (["src/verify/*"], "verify test_verify.py"),
     "case": (["src/case/*"],
-             """case tables presets load case_text case_echo case_ranges case_rules case_values case_mistakes keys expressions
+             """case case_anisotropic tables presets load case_text case_echo case_ranges case_rules case_values case_mistakes
+             keys expressions
              numbers strength fuzz-case test_keys.py test_output.py test_laws.py test_bodies.py test_cli.py
-             test_bimaterials.py test_continuous.py test_restart.py"""),
+             test_sensors.py test_supports.py test_static.py test_loads.py test_bimaterials.py test_continuous.py test_restart.py"""),
     "base": (["src/*"],
-             """numbers mem exact_sum exchange files interrupt run mesh_command h5_parallel rebalance slab checksum
+             """numbers mem stiffness exact_sum exchange files interrupt run mesh_command h5_parallel rebalance slab checksum
              writer fragment verify checkpoint_file fragment_table fragment_twin ledger probe summary test_keys.py
              test_output.py test_mesh_faults.py test_faults.py test_cli.py test_fragments.py test_meshes.py
              test_partition.py test_restart.py"""),
@@ -59,7 +63,8 @@ ROOMS = {
               "bench/page.py"],
              "test_plot.py test_page.py test_bench_modules.py test_plot_impact.py test_studies.py test_scripts.py"),
 }
-ELSEWHERE = ("test_count.py", "test_documents.py", "test_mutate.py", "test_perf.py", "test_scaling.py")  # tests of no room here
+ELSEWHERE = ("test_count.py", "test_curves.py", "test_documents.py", "test_figures.py", "test_install.py", "test_mutate.py",
+             "test_perf.py", "test_rooms.py", "test_scaling.py", "test_validate.py")  # tests of no room here
 LEAST = 8  # faults of a room in a campaign
 PASSED_BY = ("src/main.c", "src/gmsh_main.c", "src/usage.c")  # the words of the command line, and nothing else
 
