@@ -279,7 +279,7 @@ static void print_smallest(const rg_mesh *mesh, const struct totals *t, FILE *ou
 static void print_classes(const struct totals *t, double speed, FILE *out) {
     fprintf(out, "time steps     smallest height over %g m/s, in factors of 2\n", speed);
     int last = MOST_CLASSES - 1;
-    while (last > 0 && t->classes[last] == 0) {
+    while (t->classes[last] == 0) { /* the smallest element is of class 0 */
         last--;
     }
     for (int k = 0; k <= last; k++) {

@@ -65,7 +65,7 @@ class Bench:
     def make(self):
         """Sets the build up and builds the tree as it is; raises where that fails."""
         if not (self.build / "build.ninja").exists():
-            status, output = command(["meson", "setup", "build", "-Dtests=true", "-Dbench=true"], self.tree, 600)
+            status, output = command(["meson", "setup", "build", "-Dwerror=true", "-Dtests=true", "-Dbench=true"], self.tree, 600)
             if status != 0:
                 raise RuntimeError(output)
         status, output = self.ninja()

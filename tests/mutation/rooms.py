@@ -23,7 +23,7 @@ ROOMS = {
                   """tiles part part_read patch material materials material_map anisotropic spectrum step verify
                   test_mesh_faults.py test_bimaterials.py test_partition.py test_meshes.py test_cli.py
                   test_continuous.py test_crystals.py test_parallel.py"""),
-    "contact": (["src/contact/*"], "search contact balance test_fragment_contact.py test_parallel.py test_restart.py"),
+    "contact": (["src/contact/*"], "search contact_twin contact balance test_fragment_contact.py test_parallel.py test_restart.py"),
     "domain": (["src/domain/*"],
                """domain assembly slab patch step spectrum fragment verify fragment_twin ledger snapshot
                test_invariance.py test_contact.py test_bodies.py test_continuous.py test_fragments.py

@@ -105,12 +105,41 @@ static void test_each(void **state) {
     free(text);
 }
 
+/* Strength (Pa) and energy (J/m2) of cracks, read from the sources a second time: a slip of the keyboard in a
+ * table is seen by nothing else. */
+static void test_cracks(void **state) {
+    (void)state;
+    static const struct {
+        const char *name;
+        double strength, energy;
+    } known[] = {{"alumina-seagraves", 4e8, 34},
+                 {"alumina-ad995", 2.62e8, 52},
+                 {"silicon-carbide", 2.5e8, 22.6},
+                 {"boron-carbide", 3.5e8, 13.2},
+                 {"soda-lime-glass", 6e7, 7.4},
+                 {"pmma", 1.296e8, 352.3},
+                 {"granite", 1.28e7, 24},
+                 {"concrete", 3.8e6, 65},
+                 {"maraging-steel", 8.44e8, 22130},
+                 {"alumina-jh2", 2.62e8, 52},
+                 {"boron-carbide-jh2", 3.5e8, 13.2},
+                 {"silicon-carbide-jh2", 2.5e8, 22.6},
+                 {"float-glass-jh2", 6e7, 7.4},
+                 {"steel-4340", 2.4e9, 2e4},
+                 {"copper-ofhc", 1.2e9, 2e4},
+                 {"pmma-viscoelastic", 1.296e8, 352.3}};
+    assert_int_equal(sizeof known / sizeof *known, RG_PRESETS);
+    for (int i = 0; i < RG_PRESETS; i++) {
+        const rg_preset *p = rg_preset_find(known[i].name);
+        assert_non_null(p);
+        assert_true(p->strength == known[i].strength && p->energy == known[i].energy);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_fills),
-        cmocka_unit_test(test_other_models),
-        cmocka_unit_test(test_refused),
-        cmocka_unit_test(test_each),
+        cmocka_unit_test(test_fills), cmocka_unit_test(test_other_models), cmocka_unit_test(test_refused),
+        cmocka_unit_test(test_each),  cmocka_unit_test(test_cracks),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

@@ -1,0 +1,413 @@
+/* Contact of debris drawn at random, against all pairs of faces of the whole mesh, with the faces that stand
+ * for them by quadrature and the forces by their virtual work, on any number of ranks. Prints TAP from rank
+ * 0. */
+#include <inttypes.h>
+#include <math.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "contact/contact.h"
+#include "domain/element.h"
+#include "partition/material.h"
+#include "reference/reference.h"
+#include "support/random_state.h"
+#include "support/tap_memory.h"
+
+enum { SEED = 41 };
+static const double DT = 3e-9, DT_NOW = 1.1e-9;
+
+/* As contact.c has them: of the height of an element. */
+static const rg_search by = {.penalty = 4, .skin = 2e-3, .reach = 0.5};
+static const double FAT = 0.2;
+
+/* ---- What is drawn besides the state ---- */
+
+static uint8_t drawn_exposure(rg_gid face) {
+    double x = drawn(SEED, DRAW_OTHER, face, 0);
+    return x < -0.6 ? RG_UNEXPOSED : x < -0.4 ? RG_SEPARATED : x < 0.5 ? RG_EXPOSED : RG_NEWLY_EXPOSED;
+}
+
+/* Of a side, by the number of its face (m). */
+static double drawn_sunk(rg_gid side) {
+    double x = drawn(SEED, DRAW_OTHER, side, 1);
+    return x < 0 ? 0 : 8e-6 * x;
+}
+
+/* ---- The faces of the whole mesh ---- */
+
+typedef struct {
+    rg_exposed_face is;
+    bool newly;
+    double sunk, mean[RG_FNODES][3]; /* part of each node in the corners, in the order of the face's nodes */
+    int order[3];                    /* corner i, of the face's nodes */
+} body_face;
+
+typedef double nodal[RG_NODES][3];
+
+typedef struct {
+    int faces, pairs, touching;
+    body_face *face;
+    double fat, energy, *depth_of; /* [face]: beyond the skin (m) */
+    nodal *force;                  /* [element] (N) */
+    double *felt;                  /* [element]: sum of the sizes (N) */
+    char words[200];
+} twin;
+
+/* u^ of a unit displacement of each node: int l_i (u^ - u) = 0 by a rule of degree 4. */
+static void project(double mean[RG_FNODES][3]) {
+    memset(mean, 0, RG_FNODES * sizeof *mean);
+    for (int q = 0; q < RG_POINTS; q++) {
+        double l[3], N[RG_FNODES], weight = rg_reference_face_point(q, l);
+        rg_reference_face_shape(l, N);
+        for (int n = 0; n < RG_FNODES; n++) {
+            for (int i = 0; i < 3; i++) { /* inverse of (I + 1 1')/12: 12 (I - 1 1'/4), and sum l = 1 */
+                mean[n][i] += 12 * weight * (l[i] - 0.25) * N[n];
+            }
+        }
+    }
+}
+
+static double volume_of(double x[4][3]) {
+    double e[3][3], cross[3];
+    for (int k = 0; k < 9; k++) {
+        e[k / 3][k % 3] = x[k / 3 + 1][k % 3] - x[0][k % 3];
+    }
+    rg_reference_cross(e[1], e[2], cross);
+    return fabs(rg_reference_dot(e[0], cross)) / 6;
+}
+
+/* (b - a) x (c - a). */
+static void twice_area(const double a[3], const double b[3], const double c[3], double out[3]) {
+    double p[3], q[3];
+    for (int k = 0; k < 3; k++) {
+        p[k] = b[k] - a[k];
+        q[k] = c[k] - a[k];
+    }
+    rg_reference_cross(p, q, out);
+}
+
+/* Corners by ascending place in the element, the last two exchanged where they would run round the inward
+ * normal. */
+static body_face make_face(const random_state *r, rg_gid e, int k) {
+    double x[4][3], normal[3];
+    mesh_corners(r->mesh, e, x);
+    rg_gid inner = face_key(r->mesh, e, k);
+    const rg_material *m = &r->solver->model->material[mesh_material(r, e)];
+    body_face f = {.is = {.id = 4 * e + k, .former = inner >= 0, .modulus = rg_material_modulus(m)},
+                   .newly = inner >= 0 && drawn_exposure(inner) == RG_NEWLY_EXPOSED,
+                   .sunk = inner >= 0 ? drawn_sunk(4 * e + k) : 0,
+                   .order = {0, 1, 2}};
+    const int *node = rg_face_node[k];
+    int opposite = 6 - node[0] - node[1] - node[2];
+    twice_area(x[node[0]], x[node[1]], x[node[2]], normal);
+    double out = 0, area = sqrt(rg_reference_dot(normal, normal)) / 2;
+    for (int c = 0; c < 3; c++) {
+        out += normal[c] * (x[node[0]][c] - x[opposite][c]);
+    }
+    if (out < 0) {
+        f.order[1] = 2;
+        f.order[2] = 1;
+    }
+    f.is.height = 3 * volume_of(x) / area;
+    project(f.mean);
+    for (int i = 0; i < 3; i++) {
+        for (int c = 0; c < 3; c++) {
+            double sum = 0;
+            for (int n = 0; n < RG_FNODES; n++) {
+                sum += f.mean[n][f.order[i]] * drawn_u(SEED, e, node[n], c);
+            }
+            f.is.rest[3 * i + c] = x[node[f.order[i]]][c];
+            f.is.corner[3 * i + c] = f.is.rest[3 * i + c] + sum;
+        }
+    }
+    return f;
+}
+
+static void list_faces(const random_state *r, twin *t) {
+    t->face = RG_NEW(body_face, 4 * (size_t)r->mesh->elements);
+    for (rg_gid k = 0; k < 4 * r->mesh->elements; k++) {
+        rg_gid inner = face_key(r->mesh, k / 4, (int)(k % 4));
+        if (inner < 0 || drawn_exposure(inner) >= RG_EXPOSED) {
+            t->face[t->faces++] = make_face(r, k / 4, (int)(k % 4));
+            t->fat += FAT * t->face[t->faces - 1].is.height;
+        }
+    }
+    t->fat /= t->faces;
+}
+
+/* Adds what the corners of a face feel to the nodes of its element, by the work of their motion. */
+static void feel(twin *t, const body_face *f, const double force[9]) {
+    rg_gid e = f->is.id / 4;
+    double sum[3] = {0, 0, 0};
+    for (int i = 0; i < 3; i++) {
+        for (int c = 0; c < 3; c++) {
+            for (int n = 0; n < RG_FNODES; n++) {
+                t->force[e][rg_face_node[f->is.id % 4][n]][c] += f->mean[n][f->order[i]] * force[3 * i + c];
+            }
+            sum[c] += force[3 * i + c];
+        }
+    }
+    t->felt[e] += sqrt(rg_reference_dot(sum, sum));
+}
+
+static void meet(twin *t, int a, int b, rg_contact_pair *pair) {
+    const body_face *f[2] = {&t->face[a], &t->face[b]};
+    double corner[18], sunk[2] = {f[0]->sunk, f[1]->sunk}, force[18], energy, depth;
+    memcpy(corner, f[0]->is.corner, sizeof f[0]->is.corner);
+    memcpy(corner + 9, f[1]->is.corner, sizeof f[1]->is.corner);
+    pair->face[0] = 0;
+    pair->face[1] = 1;
+    rg_reference_contact(&(rg_contact_args){corner, sunk, pair, force, &energy, &depth}, 0, 1);
+    t->depth_of[a] = fmax(t->depth_of[a], depth - pair->skin);
+    t->depth_of[b] = fmax(t->depth_of[b], depth - pair->skin);
+    if (!(energy > 0)) {
+        return;
+    }
+    if (t->touching++ == 0) {
+        double middle[3];
+        for (int c = 0; c < 3; c++) {
+            middle[c] = (corner[c] + corner[3 + c] + corner[6 + c]) / 3;
+        }
+        snprintf(t->words, sizeof t->words,
+                 "elements %" PRId64 " and %" PRId64 " lie in each other at (%.6g, %.6g, %.6g)",
+                 f[0]->is.id / 4, f[1]->is.id / 4, middle[0], middle[1], middle[2]);
+    }
+    t->energy += energy;
+    feel(t, f[0], force);
+    feel(t, f[1], force + 9);
+}
+
+static twin make_twin(const random_state *r) {
+    twin t = {0};
+    size_t elements = (size_t)r->mesh->elements;
+    list_faces(r, &t);
+    t.depth_of = RG_NEW(double, (size_t)t.faces);
+    t.force = RG_NEW(nodal, elements);
+    t.felt = RG_NEW(double, elements);
+    for (int a = 0; a < t.faces; a++) {
+        for (int b = a + 1; b < t.faces; b++) {
+            rg_contact_pair pair;
+            if (t.face[a].is.id / 4 != t.face[b].is.id / 4 &&
+                rg_search_may_touch(&by, &t.face[a].is, &t.face[b].is, &pair)) {
+                t.pairs++;
+                meet(&t, a, b, &pair);
+            }
+        }
+    }
+    return t;
+}
+
+static void free_twin(twin *t) {
+    rg_free(t->face);
+    rg_free(t->depth_of);
+    rg_free(t->force);
+    rg_free(t->felt);
+}
+
+/* ---- The solver's ---- */
+
+/* Where the solver keeps by how much face k of an element has sunk; NULL on the surface. */
+static rg_real *sunk_at(const rg_solver *s, const rg_tile *t, size_t slot, int k, size_t *interface) {
+    int32_t link = s->domain->interface[rg_link_index(slot, k)];
+    if (link < 0 || rg_surface_has(s->domain, slot, k)) {
+        return NULL;
+    }
+    *interface = t->ibegin * RG_LANES + (size_t)link / 4;
+    return &s->contact_sunk[(*interface / RG_LANES * 2 + (size_t)(link % 2)) * RG_LANES +
+                            *interface % RG_LANES];
+}
+
+typedef void visitor(const random_state *r, rg_real *sunk, size_t interface, rg_gid side, void *context);
+
+/* Visits the sides of the interfaces of elements here. */
+static void visit(const random_state *r, visitor *see, void *context) {
+    const rg_domain *d = r->solver->domain;
+    for (size_t n = 0; n < d->tiles; n++) {
+        const rg_tile *t = &d->tile[n];
+        for (size_t k = 4 * t->begin * RG_LANES; k < 4 * t->end * RG_LANES; k++) {
+            size_t interface = 0;
+            rg_gid e = d->id[k / 4];
+            rg_real *sunk = e < 0 ? NULL : sunk_at(r->solver, t, k / 4, (int)(k % 4), &interface);
+            if (sunk != NULL) {
+                see(r, sunk, interface, 4 * e + (rg_gid)(k % 4), context);
+            }
+        }
+    }
+}
+
+static void draw_side(const random_state *r, rg_real *sunk, size_t interface, rg_gid side, void *context) {
+    (void)context;
+    *sunk = (rg_real)drawn_sunk(side);
+    r->solver->exposed[interface] = drawn_exposure(face_key(r->mesh, side / 4, (int)(side % 4)));
+}
+
+static void place(const random_state *r) {
+    const rg_solver *s = r->solver;
+    for (size_t t = 0; t < s->domain->tiles; t++) {
+        rg_contacts_place(s->contacts, t, s->u, s->contact_sunk);
+    }
+    rg_halo *halo = rg_contacts_halo(s->contacts);
+    rg_halo_pack(halo);
+    rg_halo_start(halo);
+    rg_halo_finish(halo);
+#pragma omp parallel
+    rg_contacts_meet(s->contacts, s->kernels);
+}
+
+typedef struct {
+    const twin *t;
+    bool sunk, newly;
+} sides;
+
+static const body_face *face_of(const twin *t, rg_gid id, int *at) {
+    for (*at = 0; *at < t->faces; ++*at) {
+        if (t->face[*at].is.id == id) {
+            return &t->face[*at];
+        }
+    }
+    return NULL;
+}
+
+static bool near(double found, double wanted, double most) {
+    bool good = fabs(found - wanted) <= most;
+    if (!good) {
+        printf("# %.17g, not %.17g: %.2g of what may be\n", found, wanted, fabs(found - wanted) / most);
+    }
+    return good;
+}
+
+/* Lengths of 1e-6 m between corners at 1e-3. */
+#define LENGTH 3e-18
+
+static void judge_pushed(const random_state *r, rg_real *sunk, size_t interface, rg_gid side, void *context) {
+    sides *of = context;
+    int at;
+    (void)r, (void)interface;
+    const body_face *f = face_of(of->t, side, &at);
+    double wanted = drawn_sunk(side);
+    if (f != NULL) {
+        wanted = fmin(wanted, of->t->depth_of[at]);
+    }
+    of->sunk = of->sunk && near(*sunk, wanted, LENGTH);
+}
+
+static void judge_newly(const random_state *r, rg_real *sunk, size_t interface, rg_gid side, void *context) {
+    sides *of = context;
+    int at;
+    (void)r, (void)interface;
+    const body_face *f = face_of(of->t, side, &at);
+    of->newly = of->newly && (f == NULL || !f->newly || near(*sunk, of->t->depth_of[at], LENGTH));
+}
+
+/* Of forces: where faces lie 1e-8 m in each other, their places of 1e-3 m are known to 1e-11 of that. */
+#define ROUNDED 2e-11
+
+/* M dv = dt f, and the impulse, of the elements here. */
+static bool pushed_well(const random_state *r, const twin *t, const rg_real *v, double dt) {
+    const rg_domain *d = r->solver->domain;
+    bool good = true;
+    for (size_t slot = 0; good && slot < d->blocks * RG_LANES; slot++) {
+        rg_gid e = d->id[slot];
+        double x[4][3];
+        if (e < 0) {
+            continue;
+        }
+        mesh_corners(r->mesh, e, x);
+        double mass = r->solver->model->material[mesh_material(r, e)].density * volume_of(x);
+        for (int k = 0; good && k < 3 * RG_NODES; k++) {
+            double found = 0;
+            for (int b = 0; b < RG_NODES; b++) {
+                found += mass * rg_mass_entry(r->input->mass, k / 3, b) * v[rg_node_index(slot, b, k % 3)];
+            }
+            good = near(found / dt, t->force[e][k / 3][k % 3], ROUNDED * (t->felt[e] + 1));
+        }
+    }
+    return good;
+}
+
+static bool impulse_good(const random_state *r, const twin *t, const double *impulse) {
+    const rg_domain *d = r->solver->domain;
+    bool good = true;
+    for (size_t slot = 0; good && slot < d->blocks * RG_LANES; slot++) {
+        rg_gid e = d->id[slot];
+        good = e < 0 || near(impulse[slot] / DT, t->felt[e], ROUNDED * (t->felt[e] + 1));
+    }
+    return good;
+}
+
+static void check_forces(const random_state *r, const twin *t) {
+    const rg_solver *s = r->solver;
+    size_t slots = s->domain->blocks * RG_LANES, values = 3 * RG_NODES * slots;
+    rg_real *v = RG_NEW(rg_real, values), *w = RG_NEW(rg_real, values);
+    double *impulse = RG_NEW(double, slots);
+    rg_push push = {.dt = DT, .dt_now = DT_NOW, .velocity = v, .step_velocity = w};
+    for (size_t n = 0; n < s->domain->tiles; n++) {
+        rg_contacts_push(s->contacts, n, &push, DT, impulse, s->contact_sunk);
+    }
+    report(pushed_well(r, t, v, DT) && pushed_well(r, t, w, DT_NOW), "contact", "forces on elements");
+    report(impulse_good(r, t, impulse), "contact", "impulse");
+    rg_free(impulse);
+    rg_free(v);
+    rg_free(w);
+}
+
+static void check_sums(const random_state *r, const twin *t) {
+    const rg_solver *s = r->solver;
+    rg_exact_sum energy = {0};
+    for (size_t n = 0; n < s->domain->tiles; n++) {
+        rg_contacts_energy(s->contacts, n, &energy);
+    }
+    rg_exact_allreduce(&energy, 1, MPI_COMM_WORLD);
+    report(near(rg_exact_value(&energy), t->energy, 1e-13 * t->energy), "contact", "energy, each pair once");
+    int64_t touching = rg_contacts_touching(s->contacts);
+    MPI_Allreduce(MPI_IN_PLACE, &touching, 1, MPI_INT64_T, MPI_SUM, MPI_COMM_WORLD);
+    report(touching == t->touching && touching > 100 && rg_contacts_any(s->contacts), "contact",
+           "pairs that touch");
+    char words[200] = "";
+    bool told = rg_contacts_overlap(s->contacts, words, sizeof words);
+    report(told && strcmp(words, t->words) == 0, "contact", "the lowest pair is told");
+}
+
+/* All is moved along y by a part of what faces may move between two searches. */
+static void check_moved(const random_state *r, const twin *t) {
+    const rg_solver *s = r->solver;
+    bool good = near(rg_contacts_moved(s->contacts), 0, 1e-12);
+    for (int pass = 1; pass < 3; pass++) {
+        for (size_t slot = 0; slot < s->domain->blocks * RG_LANES; slot++) {
+            for (int n = 0; n < RG_NODES; n++) {
+                s->u[rg_node_index(slot, n, 1)] += (rg_real)(0.1 * t->fat);
+            }
+        }
+        place(r);
+        good = near(rg_contacts_moved(s->contacts), 0.1 * pass + 2 * 0.1, 1e-10) && good;
+    }
+    report(good, "contact", "knows how far faces have moved");
+}
+
+static void check(void) {
+    const char *change[] = {"contact={model: general, penalty: 4}", "bodies=[]"};
+    random_state r = random_state_make(2, change, MPI_COMM_WORLD);
+    random_state_draw(&r, SEED);
+    twin t = make_twin(&r);
+    visit(&r, draw_side, NULL);
+    rg_contacts_search(r.solver->contacts, r.solver->exposed, r.solver->u);
+    place(&r);
+    sides of = {&t, true, true};
+    check_sums(&r, &t);
+    check_forces(&r, &t);
+    visit(&r, judge_pushed, &of);
+    rg_contacts_sink(r.solver->contacts, r.solver->exposed, r.solver->contact_sunk);
+    visit(&r, judge_newly, &of);
+    report(of.sunk, "contact", "what has sunk falls with its depth");
+    report(of.newly, "contact", "newly exposed sides begin as far sunk as they are");
+    check_moved(&r, &t);
+    free_twin(&t);
+    random_state_free(&r);
+}
+
+int main(int argc, char **argv) {
+    MPI_Init(&argc, &argv);
+    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+    check();
+    return finish_with_nothing_left();
+}
