@@ -28,6 +28,8 @@ typedef struct {
     rg_vec sliding_square;             /* |D_t|^2 (m^2) */
     rg_vec effective;                  /* sqrt(beta^2 |D_t|^2 + max(0, D_n)^2) (m) */
     rg_vec before;                     /* largest effective opening before this state (m) */
+    rg_vec onset; /* of a law with RG_FOLLOWS: opening at which it starts, 0 but of a conserving activation
+                     (m); its largest openings are counted from it */
 } rg_law_point;
 
 typedef struct {

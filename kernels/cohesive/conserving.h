@@ -27,7 +27,9 @@
  *
  * Serves laws that unload to the origin, whose secant falls only while the largest opening grows, and whose
  * envelope of slow opening is sigma_c (1 - d/delta_c) (RG_ENVELOPE): they are asked at d in place of both
- * delta and delta_max, so that to them a point opens and never turns back. A rate is that of d. */
+ * delta and delta_max, so that to them a point opens and never turns back. A rate is that of d. A law whose
+ * secant also falls below the largest opening (RG_FOLLOWS) is asked at delta, knows eps, and stores
+ * s (delta^2 - eps^2)/2 by its secant s. */
 #ifndef RG_COHESIVE_CONSERVING_H
 #define RG_COHESIVE_CONSERVING_H
 

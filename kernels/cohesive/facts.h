@@ -12,6 +12,11 @@ enum {
     RG_ENVELOPE =
         16, /* unloads to the origin; its secant falls only while the largest opening grows, and is that
               of strength times (1 - x) where it does so slowly: fit for a conserving activation */
+    RG_FOLLOWS =
+        64, /* with RG_ENVELOPE: its secant falls also below the largest opening, so that a conserving
+               activation asks it at the opening and tells the onset, from which it counts its energy */
+    RG_WORKLESS = 128, /* no work of separation: all that a conserving activation sets free is unresolved */
+    RG_CONSERVES = RG_ENVELOPE | RG_WORKLESS, /* a conserving activation can serve it */
     RG_MIXED = 32, /* each point has a critical opening of its own, from the share of shear at its switch: its
                       memory begins with what that is larger by, over the law's */
 };

@@ -1,5 +1,6 @@
 /* No tension and no memory: a point that has switched bears contact alone; for tests, and to see what a body
- * does whose cracks cost nothing. Uses strength, in the criterion. Work of separation 0.
+ * does whose cracks cost nothing. Uses strength, in the criterion. Work of separation 0, so that a conserving
+ * activation books all that a switch sets free as `unresolved` (RG_WORKLESS).
  *
  * The time step of the intrinsic form is found with this law: shape[0] and shape[1] are stiffnesses of the
  * opening and of sliding (Pa/m) without end, zero in every run. */
@@ -33,5 +34,6 @@ static void rg_free_reference(const rg_law_query *p, double state[], rg_law_answ
 #endif
 
 #ifdef RG_LAW
-RG_LAW(FREE, free, "free", "no traction at all: for tests", RG_FORMS_DG | RG_FORMS_INTRINSIC, 0, 0, 0, 0, 0)
+RG_LAW(FREE, free, "free", "no traction at all: for tests", RG_FORMS_DG | RG_FORMS_INTRINSIC | RG_WORKLESS, 0,
+       0, 0, 0, 0)
 #endif

@@ -116,13 +116,17 @@ RG_INLINE rg_activation shifted(const interface *s) {
 
 /* A law that a conserving activation cannot serve has nothing there: no case has it. */
 #define RG_LAW(NAME, name, word, meaning, forms, work, separation, normal_slope, shear_slope, memory)        \
-    static const law_functions law_##name = {rg_##name##_respond, rg_##name##_energy, memory,                \
-                                             ((forms)&RG_MIXED) != 0 ? (memory) : 0};                        \
+    static const law_functions law_##name = {rg_##name##_respond,                                            \
+                                             rg_##name##_energy,                                             \
+                                             memory,                                                         \
+                                             ((forms)&RG_MIXED) != 0 ? (memory) : 0,                         \
+                                             ((forms)&RG_FOLLOWS) != 0,                                      \
+                                             ((forms)&RG_WORKLESS) != 0};                                    \
     static __attribute__((noinline)) void damaged_##name(interface *s) {                                     \
         damaged(s, law_##name, shifted(s));                                                                  \
     }                                                                                                        \
     static __attribute__((noinline)) void damaged_conserving_##name(interface *s) {                          \
-        if (((forms)&RG_ENVELOPE) != 0) {                                                                    \
+        if (((forms)&RG_CONSERVES) != 0) {                                                                   \
             damaged(s, law_##name, RG_ACTIVATION_CONSERVING);                                                \
         }                                                                                                    \
     }
@@ -198,7 +202,7 @@ RG_INLINE void broken_energy(const interface *s, int q, const vec3 n, rg_mask br
     sum[RG_E_CONTACT] += weight * contact_energy(s, &o, broken);
     sum[RG_E_DISSIPATED] += weight * rg_select(broken, e.dissipated, zero);
     if (activation == RG_ACTIVATION_CONSERVING) {
-        sum[RG_E_UNRESOLVED] += weight * rg_select(broken, unresolved_energy(s, q, law.mixed), zero);
+        sum[RG_E_UNRESOLVED] += weight * rg_select(broken, unresolved_energy(s, q, law), zero);
     }
 }
 
@@ -223,7 +227,7 @@ RG_INLINE void crack_energy(interface *s, rg_vec sum[RG_E_INTERFACE], law_functi
     }                                                                                                        \
     static                                                                                                   \
         __attribute__((noinline)) void energy_conserving_##name(interface *s, rg_vec sum[RG_E_INTERFACE]) {  \
-        if (((forms)&RG_ENVELOPE) != 0) {                                                                    \
+        if (((forms)&RG_CONSERVES) != 0) {                                                                   \
             crack_energy(s, sum, law_##name, RG_ACTIVATION_CONSERVING);                                      \
         }                                                                                                    \
     }

@@ -10,7 +10,8 @@
 typedef struct {
     void (*respond)(const rg_law_point *p, rg_law_state *state, rg_law_response *r);
     void (*energy)(const rg_law_point *p, const rg_law_state *state, rg_law_energy *e);
-    int memory, mixed; /* mixed: as mixed_memory */
+    int memory, mixed;      /* mixed: as mixed_memory */
+    bool follows, workless; /* RG_FOLLOWS, RG_WORKLESS */
 } law_functions;
 
 RG_INLINE rg_law_point law_point(const interface *s, const point_opening *o, rg_vec before) {
@@ -25,6 +26,16 @@ RG_INLINE rg_law_point law_point(const interface *s, const point_opening *o, rg_
                           .sliding_square = rg_dot(o->tangential, o->tangential),
                           .effective = o->effective,
                           .before = before};
+}
+
+/* A conserving activation asks a law at its damage, or tells it the onset (cohesive/conserving.h). */
+RG_INLINE void ask_at(rg_law_point *p, rg_vec damage, rg_vec onset, law_functions law,
+                      rg_activation activation) {
+    if (activation == RG_ACTIVATION_CONSERVING && law.follows) {
+        p->onset = onset;
+    } else if (activation == RG_ACTIVATION_CONSERVING) {
+        p->effective = damage;
+    }
 }
 
 RG_INLINE void load_memory(const interface *s, int memory, int q, rg_law_state *state) {
@@ -70,12 +81,10 @@ RG_INLINE void cohesive_traction(const interface *s, int q, const point_opening 
         note_separation(s, q, acting, before, state.largest);
     }
     rg_law_point p = law_point(s, o, before);
-    if (conserving) {
-        p.effective = state.largest;
-    }
+    ask_at(&p, state.largest, eps, law, activation);
     load_memory(s, law.memory, q, &state);
     law.respond(&p, &state, r);
-    if (conserving) {
+    if (conserving && !law.follows) {
         rg_conserving_respond(state.largest, eps, r);
     }
     store_memory(s, law.memory, q, acting, &state);
@@ -87,21 +96,21 @@ RG_INLINE void cohesive_energy(const interface *s, int q, const point_opening *o
     bool conserving = activation == RG_ACTIVATION_CONSERVING;
     rg_law_state state = {.largest = rg_load(crack_state(s, q, RG_CRACK_OPENING))};
     rg_law_point p = law_point(s, o, state.largest);
+    rg_vec eps = point_onset(s, q, activation);
     load_memory(s, law.memory, q, &state);
-    if (conserving) {
-        p.effective = state.largest;
-    }
+    ask_at(&p, state.largest, eps, law, activation);
     law.energy(&p, &state, e);
-    if (conserving) {
-        rg_conserving_energy(state.largest, point_onset(s, q, activation), o->effective, e);
+    if (conserving && !law.follows) {
+        rg_conserving_energy(state.largest, eps, o->effective, e);
     }
 }
 
 /* What came free where a point broke by a conserving activation beyond what its law can take, less what was
  * lent to it (J, of the whole face). */
-RG_INLINE rg_vec unresolved_energy(const interface *s, int q, int mixed) {
+RG_INLINE rg_vec unresolved_energy(const interface *s, int q, law_functions law) {
     rg_vec given = rg_load(crack_state(s, q, RG_CRACK_GIVEN));
-    rg_vec beyond = s->area * s->strength * rg_conserving_unresolved(given, critical_opening(s, q, mixed));
+    rg_vec rest = law.workless ? given : rg_conserving_unresolved(given, critical_opening(s, q, law.mixed));
+    rg_vec beyond = s->area * s->strength * rest;
     return is_frictional(s) ? beyond - rg_load(loan_state(s, q)) : beyond;
 }
 

@@ -1,5 +1,7 @@
 #include "reference/cohesive.h"
 
+#include "cohesive/facts.h"
+
 #define RG_LAW_REFERENCES
 #include "laws.h"
 #undef RG_LAW_REFERENCES
@@ -19,6 +21,10 @@ rg_law_answer rg_reference_conserving(rg_law law, const rg_law_query *p, double 
                                       double state[1 + RG_LAW_MEMORY]) {
     rg_law_query at = *p; /* pure opening by the damage */
     state[0] = fmax(fmax(RG_REFERENCE_NOTHING, state[0]), p->effective - onset);
+    if ((rg_law_facts_of(law, p->shape, p->beta).forms & RG_FOLLOWS) != 0) {
+        at.onset = onset;
+        return rg_reference_law(law, &at, state);
+    }
     at.effective = at.normal = state[0];
     at.sliding = 0;
     rg_law_answer a = rg_reference_law(law, &at, state);

@@ -14,6 +14,7 @@ typedef struct {
     double normal, sliding;   /* D_n, |D_t| (m) */
     double effective;         /* sqrt(beta^2 |D_t|^2 + max(0, D_n)^2) (m) */
     double before;            /* largest effective opening before this state (m) */
+    double onset;             /* of laws with RG_FOLLOWS (m): by rg_reference_conserving */
 } rg_law_query;
 
 typedef struct {

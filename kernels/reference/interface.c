@@ -302,7 +302,8 @@ static rg_law_answer ask(const rg_interface_args *args, const point *p, const op
                           o->normal,
                           sqrt(rg_reference_dot(o->shear, o->shear)),
                           o->effective,
-                          before};
+                          before,
+                          0};
     int memory = rg_law_facts_of(law->law, law->shape, law->beta).memory;
     double state[1 + RG_LAW_MEMORY] = {*k->state[RG_CRACK_OPENING]};
     for (int m = 0; m < memory; m++)
@@ -616,9 +617,12 @@ static void point_energy(const rg_interface_args *args, size_t i, int q, double 
         energy[RG_E_CONTACT] += p.weight * p.iso * stretch * stretch / 2;
     }
     energy[RG_E_DISSIPATED] += p.weight * p.area * a.dissipated;
-    if (law->activation == RG_ACTIVATION_CONSERVING)
-        energy[RG_E_UNRESOLVED] += p.weight * p.area * p.strength *
-                                   fmax(0, *k.state[RG_CRACK_GIVEN] - critical_opening(law, &p, &k) / 2);
+    if (law->activation == RG_ACTIVATION_CONSERVING) {
+        double given = *k.state[RG_CRACK_GIVEN], taken = critical_opening(law, &p, &k) / 2;
+        bool workless = (rg_law_facts_of(law->law, law->shape, law->beta).forms & RG_WORKLESS) != 0;
+        energy[RG_E_UNRESOLVED] +=
+            p.weight * p.area * p.strength * (workless ? given : fmax(0, given - taken));
+    }
     if (fades(law, &p)) {
         double x = *k.bond[RG_BOND_STRETCH], y = *k.bond[RG_BOND_STRETCH + 1];
         double more = x * x + y * y - *k.bond[RG_BOND_START];

@@ -6,7 +6,7 @@
 static bool conserves(const rg_case *c) {
     rg_law law = c->interface.law;
     bool falls =
-        law == RG_LAW_NONE || (rg_law_facts_of(law, c->interface.shape[law], 1).forms & RG_ENVELOPE) != 0;
+        law == RG_LAW_NONE || (rg_law_facts_of(law, c->interface.shape[law], 1).forms & RG_CONSERVES) != 0;
     return c->defaults >= 1 && c->interface.form == RG_FORM_VARIATIONAL && falls;
 }
 

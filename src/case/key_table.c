@@ -86,7 +86,7 @@ static const char *const activations[] = {"continuous", "total", "conserving", N
 static const char *const activations_meaning[] = {
     "the opening counts from the jump at the moment of breaking, so the traction is continuous in time (legacy): loses or gains energy at each switch",
     "the whole jump enters at once (legacy, the thesis's): gains energy",
-    "like continuous, and so that the energy of the switch adds up (form variational, contact penalty or potential; law linear, rate or benzeggagh-kenane)"};
+    "like continuous, and so that the energy of the switch adds up (form variational, contact penalty or potential; a law that starts rigid)"};
 static const char *const shears[] = {"released", "fading", NULL};
 static const char *const shears_meaning[] = {
     "it drops from one step to the next, whatever it is",

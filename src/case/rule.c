@@ -66,8 +66,7 @@ static const demand no_law = {0, "form continuous and no interface.faces",
                               "nothing can break, because form continuous has interfaces only on the faces "
                               "that interface.faces selects"};
 
-static const demand falling_law = {RG_ENVELOPE, "activation conserving",
-                                   "needs a law that falls from the strength by opening alone"};
+static const demand falling_law = {RG_CONSERVES, "activation conserving", "needs a law that starts rigid"};
 
 static const demand *demand_of(const rg_case *c) {
     switch (c->interface.form) {

@@ -361,9 +361,9 @@ static void test_forms_and_laws(void **state) {
          "Pa\n  energy: 2 # J/m2\n  beta: 1\n  activation: continuous\n  contact: penalty\n  friction: 0\n"
          "  sets: []\n"},
         {"interface={law: free, strength: 1}",
-         "  form: variational\n  beta_s: 4\n  penalty: elastic\n  law: free\n  strength: 1 # Pa\n  beta: 1\n "
+         "  form: variational\n  beta_s: 2\n  penalty: elastic\n  law: free\n  strength: 1 # Pa\n  beta: 1\n "
          " "
-         "activation: continuous\n  contact: penalty\n  friction: 0\n  sets: []\n"},
+         "activation: conserving\n  onset: 0.5\n  contact: potential\n  friction: 0\n  sets: []\n"},
         {"interface={law: polynomial, form: intrinsic, strength: 1, energy: 2}",
          "  form: intrinsic\n  beta_s: 4\n  law: polynomial\n  strength: 1 # Pa\n  energy: 2 # J/m2\n  "
          "contact: "

@@ -155,11 +155,14 @@ static const mistake mistakes[] = {
      ":12:10: interface.onset: 0: out of range; allowed: number > 0 and <= 1\n"
      ":13:12: interface.contact: flux: brings DG terms back, whose energy activation conserving does not "
      "count; allowed: with activation conserving: penalty, potential\n"},
-    {"  law: linear\n", "  law: fatigue\n  form: incomplete\n  activation: conserving\n",
+    {"  law: linear\n", "  law: exponential\n  form: incomplete\n  activation: conserving\n",
+     ":10:8: interface.law: exponential: starts with a slope, which only form intrinsic can use; allowed: "
+     "with "
+     "form variational or incomplete: $RIGID_LAWS, none\n"
      ":12:15: interface.activation: conserving: counts the energy of the lift, which form variational "
      "alone has; allowed: with this form: continuous, total\n"
-     ":12:15: interface.activation: conserving: needs a law that falls from the strength by opening alone, "
-     "and interface.law is fatigue; allowed: with activation conserving: $FALLING_LAWS\n"},
+     ":12:15: interface.activation: conserving: needs a law that starts rigid, and interface.law is "
+     "exponential; allowed: with activation conserving: $RIGID_LAWS\n"},
     {"  law: linear\n", "  law: exponential\n  form: intrinsic\n  onset: 0.2\n",
      ":12:3: interface.onset: 0.2" BY_FORM},
     {"  law: linear\n", "  law: free\n",

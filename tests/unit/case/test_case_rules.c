@@ -252,11 +252,6 @@ static const mistake law_and_form[] = {
      ":12:15: interface.activation: conserving: counts the energy of the lift, which form variational alone "
      "has; allowed: with this form: continuous, total\n"},
     {"  law: linear\n",
-     "  law: fatigue\n"
-     "  activation: conserving\n",
-     ":11:15: interface.activation: conserving: needs a law that falls from the strength by opening alone, "
-     "and interface.law is fatigue; allowed: with activation conserving: $FALLING_LAWS\n"},
-    {"  law: linear\n",
      "  law: exponential\n"
      "  form: intrinsic\n"
      "  activation: conserving\n",

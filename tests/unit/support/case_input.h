@@ -144,8 +144,7 @@ static const struct {
              {"$ELASTIC_MODELS", name_young_models, RG_TAKES_YOUNG},
              {"$LAWS", name_laws, 0},
              {"$RIGID_LAWS", name_laws, RG_FORMS_DG},
-             {"$SLOPED_LAWS", name_laws, RG_FORMS_INTRINSIC},
-             {"$FALLING_LAWS", name_laws, RG_ENVELOPE}};
+             {"$SLOPED_LAWS", name_laws, RG_FORMS_INTRINSIC}};
 
 static inline void fill_names(char *text, size_t size) {
     for (size_t k = 0; k < sizeof named / sizeof *named; k++) {
