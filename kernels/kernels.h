@@ -198,6 +198,9 @@ typedef struct {
     double limit;     /* faces deeper than this do not see each other (m) */
     double fading;    /* 0; else area of the one face that both were (m^2), which has a contact of its own as
                          long as they lie upon each other */
+    double parting;   /* 0; else an area (m^2): they lie behind each other, as parts of one solid, and touch
+                         once their common corners have come apart by its root */
+    double common[2][3]; /* mean of the corners that they have in common: weights of those of A, of B */
 } rg_contact_pair;
 
 typedef struct {
@@ -207,7 +210,7 @@ typedef struct {
     double *force;  /* out: [pair][A, B][3 corners][3] (N) */
     double *energy; /* out: [pair] (J); 0: they do not touch, and their forces are not written */
     double *depth;  /* out: [pair] largest depth where they are over each other; 0: they are not, or nowhere
-                       less deep than the limit (m) */
+                       less deep than the limit, or have no share (m) */
 } rg_contact_args;
 
 /* A set of kernels. `begin` and `end` count blocks; of contact, pairs. */

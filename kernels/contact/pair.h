@@ -311,31 +311,52 @@ RG_INLINE void add_moment(const seen_face *f, double by_normal[2]) {
     }
 }
 
-/* How much of a former face the interface's own contact still has: r^2, r = 1 - (|w|^2 + 15 w_n^2)/area, down
- * to 0, w the distance of the centroids (element/interface_contact.h). The pair takes 1 - r^2; its gradient
- * over that of its energy goes to the corners and to n. */
+/* The share of a pair whose faces had corners in common, w the distance of the means of these; its gradient
+ * over that of the pair's energy goes to w and to n. */
 typedef struct {
-    double share, by_corner[3], by_normal[2];
+    double share, by_apart[3], by_normal[2];
 } handover;
 
-RG_INLINE handover hand_over(const meeting *m, double area) {
+/* Of a former face what the interface's own contact has not: 1 - r^2, r = 1 - (|w|^2 + 15 w_n^2)/area, down
+ * to 0 (element/interface_contact.h). */
+RG_INLINE void take_over(double area, const double w[3], handover *h) {
+    double r = 1 - (dot3(w, w) + 15 * w[2] * w[2]) / area;
+    if (r > 0) {
+        double by = 2 * r / area;
+        h->share = 1 - r * r;
+        for (int c = 0; c < 3; c++) {
+            h->by_apart[c] = by * (2 * w[c] + (c == 2 ? 30 * w[2] : 0));
+        }
+        h->by_normal[0] = by * 30 * w[2] * w[0];
+        h->by_normal[1] = by * 30 * w[2] * w[1];
+    }
+}
+
+/* Of faces with their solid between them: rises from 0 where |w|^2 is one area to 1 where it is two. */
+RG_INLINE void part(double area, const double w[3], handover *h) {
+    double t = dot3(w, w) / area - 1;
+    if (t < 1) {
+        double rise = t > 0 ? t : 0;
+        h->share = rise * rise * (3 - 2 * rise);
+        for (int c = 0; c < 3; c++) {
+            h->by_apart[c] = 6 * rise * (1 - rise) * 2 * w[c] / area;
+        }
+    }
+}
+
+RG_INLINE handover hand_over(const meeting *m, const rg_contact_pair *pair) {
     handover h = {.share = 1};
     double w[3];
     for (int c = 0; c < 3; c++) {
         w[c] = 0;
         for (int i = 0; i < 3; i++) {
-            w[c] += (m->face[1].x[i][c] - m->face[0].x[i][c]) / 3;
+            w[c] += pair->common[1][i] * m->face[1].x[i][c] - pair->common[0][i] * m->face[0].x[i][c];
         }
     }
-    double r = area > 0 ? 1 - (dot3(w, w) + 15 * w[2] * w[2]) / area : 0;
-    if (r > 0) {
-        double by = 2 * r / area;
-        h.share = 1 - r * r;
-        for (int c = 0; c < 3; c++) {
-            h.by_corner[c] = by * (2 * w[c] + (c == 2 ? 30 * w[2] : 0)) / 3;
-        }
-        h.by_normal[0] = by * 30 * w[2] * w[0];
-        h.by_normal[1] = by * 30 * w[2] * w[1];
+    if (pair->fading > 0) {
+        take_over(pair->fading, w, &h);
+    } else if (pair->parting > 0) {
+        part(pair->parting, w, &h);
     }
     return h;
 }
@@ -378,6 +399,10 @@ RG_INLINE double pair_forces(const rg_contact_pair *pair, double sunk, const dou
     if (!cut_out(&m, &p)) {
         return 0;
     }
+    handover h = hand_over(&m, pair);
+    if (!(h.share > 0)) {
+        return 0;
+    }
     depths_of(&m, &p, range);
     *depth = range[0] < reach && range[1] + skin > 0 ? range[1] + skin : 0;
     if (!cut_pressed(&m, reach, &p)) {
@@ -385,7 +410,6 @@ RG_INLINE double pair_forces(const rg_contact_pair *pair, double sunk, const dou
     }
     integral sum = integrate(&m, reach, &p);
     double slope, weight = weight_of(m.facing, &slope);
-    handover h = hand_over(&m, pair->fading);
     double scale = 0.5 * pair->stiffness * weight * h.share, energy = scale * sum.value;
     if (!(energy > 0)) {
         return 0;
@@ -403,7 +427,7 @@ RG_INLINE double pair_forces(const rg_contact_pair *pair, double sunk, const dou
         for (int i = 0; i < 3; i++) {
             double g[3], sign = k == 0 ? -1 : 1;
             for (int c = 0; c < 3; c++) {
-                g[c] = scale * m.face[k].gradient[i][c] + sign * passed * h.by_corner[c];
+                g[c] = scale * m.face[k].gradient[i][c] + sign * pair->common[k][i] * passed * h.by_apart[c];
             }
             for (int c = 0; c < 3; c++) {
                 force[9 * k + 3 * i + c] =

@@ -110,6 +110,20 @@ static number triangle(const line *depth, double reach, const number *o, const n
     return sum;
 }
 
+/* From 0 at 0 to 1 at 1. */
+static number rising(number t) {
+    return creal(t) <= 0 ? 0 : creal(t) < 1 ? t * t * (3 - 2 * t) : 1;
+}
+
+/* Of a pair with corners in common that have come w apart. */
+static number share_of(const rg_contact_pair *pair, const number w[3], const number n[3]) {
+    if (pair->parting > 0) {
+        return rising(dot(w, w) / pair->parting - 1);
+    }
+    number wn = dot(w, n), root = pair->fading > 0 ? 1 - (dot(w, w) + 15 * wn * wn) / pair->fading : 0;
+    return creal(root) > 0 ? 1 - root * root : 1;
+}
+
 static number energy_of(const rg_contact_pair *pair, double sunk, number x[2][3][3], double *deepest) {
     double skin = pair->skin + sunk, reach = pair->limit - skin, least = INFINITY;
     number normal[2][3], n[3], e[2][3], axis[3] = {0.3, 0.5, -0.8}, p[2][3][2], z[2][3], w[3] = {0, 0, 0};
@@ -140,7 +154,7 @@ static number energy_of(const rg_contact_pair *pair, double sunk, number x[2][3]
             p[k][i][1] = dot(x[k][i], e[1]);
             z[k][i] = dot(x[k][i], n);
             for (int c = 0; c < 3; c++) {
-                w[c] += (k == 1 ? 1 : -1) * x[k][i][c] / 3;
+                w[c] += (k == 1 ? 1 : -1) * pair->common[k][i] * x[k][i][c];
             }
         }
     }
@@ -160,18 +174,17 @@ static number energy_of(const rg_contact_pair *pair, double sunk, number x[2][3]
         least = fmin(least, d);
         *deepest = fmax(*deepest, d);
     }
-    *deepest = least < pair->limit ? *deepest : 0;
+    number share = share_of(pair, w, n);
+    *deepest = least < pair->limit && creal(share) > 0 ? *deepest : 0;
     if (!(reach > 0)) {
         return 0;
     }
     count = corners_of(f, LINES, k);
-    number sum = 0, t = facing / 0.35, wn = dot(w, n);
+    number sum = 0, t = facing / 0.35;
     for (int i = 1; i + 1 < count; i++) {
         sum += triangle(&depth, reach, k[0].p, k[i].p, k[i + 1].p);
     }
-    number root = pair->fading > 0 ? 1 - (dot(w, w) + 15 * wn * wn) / pair->fading : 0;
-    root = creal(root) > 0 ? root : 0;
-    return 0.5 * pair->stiffness * (creal(t) < 1 ? t * t * (3 - 2 * t) : 1) * (1 - root * root) * sum;
+    return 0.5 * pair->stiffness * rising(t) * share * sum;
 }
 
 void rg_reference_contact(const rg_contact_args *args, size_t begin, size_t end) {

@@ -20,14 +20,37 @@ enum { AXIS = 20 }; /* cells number from -2^AXIS to 2^AXIS along each axis */
 
 /* ---- Two faces ---- */
 
-/* How many corners of the undeformed faces are the same points. */
-static int corners_shared(const rg_exposed_face *a, const rg_exposed_face *b) {
+/* How many corners of the undeformed faces are the same points; weights of their mean, how far they have come
+ * apart. */
+static int corners_shared(const rg_exposed_face *a, const rg_exposed_face *b, double common[2][3],
+                          double *apart) {
     int shared = 0;
+    double w[3] = {0, 0, 0};
     for (int i = 0; i < 9; i++) {
         const double *p = a->rest + 3 * (i / 3), *q = b->rest + 3 * (i % 3);
-        shared += memcmp(p, q, 3 * sizeof *p) == 0;
+        if (memcmp(p, q, 3 * sizeof *p) == 0) {
+            common[0][i / 3] = common[1][i % 3] = 1;
+            shared++;
+        }
     }
+    for (int i = 0; shared > 0 && i < 3; i++) {
+        common[0][i] /= shared;
+        common[1][i] /= shared;
+        for (int c = 0; c < 3; c++) {
+            w[c] += common[1][i] * b->corner[3 * i + c] - common[0][i] * a->corner[3 * i + c];
+        }
+    }
+    *apart = sqrt(rg_vector_dot(w, w));
     return shared;
+}
+
+static double area_of(const double *corner) {
+    double edge[2][3], across[3];
+    for (int k = 0; k < 2; k++) {
+        rg_vector_subtract(corner + 3 * (k + 1), corner, edge[k]);
+    }
+    rg_vector_cross(edge[0], edge[1], across);
+    return 0.5 * sqrt(rg_vector_dot(across, across));
 }
 
 /* How far the middle of x is above the plane of `of`, over 3. */
@@ -49,19 +72,20 @@ static bool is_convex_edge(const rg_exposed_face *a, const rg_exposed_face *b, d
 
 bool rg_search_may_touch(const rg_search *by, const rg_exposed_face *a, const rg_exposed_face *b,
                          rg_contact_pair *pair) {
-    double h = fmin(a->height, b->height), edge[2][3], across[3];
-    int shared = corners_shared(a, b);
+    double h = fmin(a->height, b->height), apart;
     *pair = (rg_contact_pair){.stiffness = by->penalty * 0.5 * (a->modulus + b->modulus) / h,
                               .skin = by->skin * h,
                               .limit = (by->skin + by->reach) * h};
-    if (shared == 3 && a->former && b->former) { /* both sides of what was an interface */
-        for (int k = 0; k < 2; k++) {
-            rg_vector_subtract(a->rest + 3 * (k + 1), a->rest, edge[k]);
-        }
-        rg_vector_cross(edge[0], edge[1], across);
-        pair->fading = 0.5 * sqrt(rg_vector_dot(across, across));
+    int shared = corners_shared(a, b, pair->common, &apart);
+    if (a->id / RG_FACES == b->id / RG_FACES) {
+        return false;
     }
-    return a->id / RG_FACES != b->id / RG_FACES && (shared == 0 || !is_convex_edge(a, b, h));
+    if (shared == 3 && a->former && b->former) { /* both sides of what was an interface */
+        pair->fading = area_of(a->rest);
+    } else if (shared > 0 && is_convex_edge(a, b, h)) {
+        pair->parting = fmin(area_of(a->rest), area_of(b->rest));
+    }
+    return apart + 2 * by->fat >= sqrt(pair->parting);
 }
 
 /* A face as it is compared with others. */

@@ -42,8 +42,8 @@ typedef struct {
 rg_candidate *rg_search_pairs(const rg_search *by, const rg_exposed_face *face, size_t faces, size_t *pairs,
                               MPI_Comm comm);
 
-/* Whether these two faces, of different elements, may touch: they are not parts of one convex edge of the
- * solid. Fills in `pair`. */
+/* Whether these two faces, of different elements, may touch before the next search: not if they are parts of
+ * one convex edge of the solid whose corners are still together. Fills in `pair`. */
 bool rg_search_may_touch(const rg_search *by, const rg_exposed_face *a, const rg_exposed_face *b,
                          rg_contact_pair *pair);
 

@@ -127,6 +127,18 @@ static void test_neighbours(void) {
     rg_exposed_face a = at(4, top), b = at(8, side), c = at(12, notch), d = at(16, below), e = at(5, below);
     rg_contact_pair pair;
     report(!rg_search_may_touch(&by, &a, &b, &pair), "search", "leaves out convex edges");
+    rg_exposed_face far = b;
+    for (int i = 0; i < 3; i++) { /* half a face's root area, less what both may move, to go: and past it */
+        far.corner[3 * i + 2] -= sqrt(0.5) - 2 * by.fat - 1e-6;
+    }
+    bool holds = !rg_search_may_touch(&by, &a, &far, &pair);
+    for (int i = 0; i < 3; i++) {
+        far.corner[3 * i + 2] -= 2e-6;
+    }
+    bool parted = rg_search_may_touch(&by, &a, &far, &pair) && pair.parting == 0.5 && pair.fading == 0;
+    static const double ends[2][3] = {{0.5, 0.5, 0}, {0.5, 0, 0.5}};
+    report(holds && parted && memcmp(pair.common, ends, sizeof ends) == 0, "search",
+           "takes them in once they have come apart");
     report(!rg_search_may_touch(&by, &a, &e, &pair), "search", "leaves out faces of one element");
     report(rg_search_may_touch(&by, &a, &c, &pair), "search", "keeps notches");
     bool keeps = rg_search_may_touch(&by, &a, &d, &pair) && pair.fading == 0;
