@@ -29,7 +29,7 @@ ROOMS = {
                test_invariance.py test_contact.py test_bodies.py test_continuous.py test_fragments.py
                test_solids.py test_bimaterials.py test_open_faces.py test_ledger.py test_spall.py test_parallel.py"""),
     "solver": (["src/solver/*"],
-               """step spectrum balance body law load mixed_mode checkpoint step_limiter strength patch material verify case
+               """step spectrum balance body law load sides mixed_mode checkpoint step_limiter strength patch material verify case
                checkpoint_file ledger snapshot test_invariance.py test_contact.py test_friction.py
                test_viscosity.py test_bodies.py test_output.py test_continuous.py test_ceramic.py test_laws.py
                test_ledger.py test_spall.py test_solids.py test_waves.py test_bimaterials.py test_fragments.py
@@ -37,7 +37,7 @@ ROOMS = {
                test_supports.py test_static.py test_crystals.py test_fragment_contact.py test_parallel.py
                test_restart.py"""),
     "diagnostics": (["src/diagnostics/*"],
-                    """step exact_sum fragment fragment_table fragment_twin ledger probe verify test_output.py
+                    """step exact_sum fragment fragment_table fragment_twin ledger probe sensor verify test_output.py
                     test_invariance.py test_friction.py test_viscosity.py test_bodies.py test_ceramic.py
                     test_fragments.py test_sensors.py test_moments.py test_sides.py test_ledger.py test_spall.py
                     test_faults.py test_bimaterials.py test_cli.py test_impact.py test_parallel.py test_restart.py"""),
