@@ -155,6 +155,7 @@ typedef struct {
 typedef struct {
     char *name;   /* column prefix in history.csv */
     double at[3]; /* reference position (m) */
+    bool strain;  /* is recorded besides */
 } rg_probe;
 
 /* What sensors record, X(NAME, word, meaning): values at a place, those of stress last, and what is made of

@@ -473,6 +473,8 @@ static const rg_key probe_keys[] = {
     {.name = "name", .type = RG_KEY_TEXT, REQUIRED, .offset = offsetof(rg_probe, name),
      MEANS("column prefix in history.csv: letters, digits, _ and -")},
     {.name = "at", .unit = "m", REAL3, ANY, REQUIRED, .offset = offsetof(rg_probe, at), MEANS("reference position, inside the body")},
+    {.name = "strain", .type = RG_KEY_BOOL, ELSE("false"), .offset = offsetof(rg_probe, strain),
+     MEANS("true: Green-Lagrange's strain (F'F - 1)/2 too, columns NAME_exx ... NAME_exy, beside displacement, velocity and Cauchy stress")},
 };
 
 #define TIP(member) .offset = offsetof(rg_crack_tip_input, member)

@@ -97,42 +97,6 @@ static bool find_weights(const front *f, double shift, const double *corner, dou
 
 typedef double matrix[3][3];
 
-/* Gradients of the barycentric coordinates. */
-static void find_slopes(const double *x, double slope[4][3]) {
-    double edge[3][3];
-    for (int k = 0; k < 3; k++) {
-        rg_vector_subtract(x + 3 * (k + 1), x, edge[k]);
-    }
-    for (int c = 0; c < 3; c++) {
-        slope[0][c] = 0;
-    }
-    for (int k = 0; k < 3; k++) {
-        rg_vector_cross(edge[(k + 1) % 3], edge[(k + 2) % 3], slope[k + 1]);
-        double six_volumes = rg_vector_dot(edge[k], slope[k + 1]);
-        for (int c = 0; c < 3; c++) {
-            slope[k + 1][c] /= six_volumes;
-            slope[0][c] -= slope[k + 1][c];
-        }
-    }
-}
-
-/* Gradient of a field at the corners; between them it is linear. */
-static void find_gradient(const rg_real *field, size_t slot, double slope[4][3], matrix out[4]) {
-    memset(out, 0, 4 * sizeof *out);
-    for (int n = 0; n < RG_NODES; n++) {
-        int one = rg_node_end[n][0], two = rg_node_end[n][1];
-        for (int at = 0; at < 4; at++) {
-            for (int j = 0; j < 3; j++) {
-                double d = n < 4 ? (at == n ? 3 : -1) * slope[n][j]
-                                 : 4 * ((at == one) * slope[two][j] + (at == two) * slope[one][j]);
-                for (int i = 0; i < 3; i++) {
-                    out[at][i][j] += d * field[rg_node_index(slot, n, i)];
-                }
-            }
-        }
-    }
-}
-
 /* w = u,e q at the nodes: between linear fields a field of the element. */
 static void find_shift(matrix gradient[4], const double e[3], const double q[4], double w[RG_NODES][3]) {
     for (int n = 0; n < RG_NODES; n++) {
@@ -209,7 +173,7 @@ static double release_of(const rg_crack_fronts *r, const rg_solver *s, const ent
     matrix gradient[4];
     double mass = rg_element_mass(s->domain, s->model->material, slot),
            volume = (double)s->domain->geom[rg_geom_index(slot, RG_GEOM_VOLUME)];
-    find_slopes(s->domain->corner + 12 * slot, slope);
+    rg_barycentric_slopes(s->domain->corner + 12 * slot, slope);
     for (int c = 0; c < 4; c++) {
         for (int j = 0; j < 3; j++) {
             fall[j] += q[c] * slope[c][j];
@@ -223,11 +187,11 @@ static double release_of(const rg_crack_fronts *r, const rg_solver *s, const ent
         }
     }
     double stored = b->energy[slot % RG_LANES], kinetic = 0.5 * mass * in_mass(r, v, v);
-    find_gradient(s->u, slot, slope, gradient);
+    rg_corner_gradients(s->u, slot, slope, gradient);
     find_shift(gradient, e, q, w);
     double sum = stress_work(b, slot % RG_LANES, volume, gradient, e, fall) -
                  (stored + kinetic) * rg_vector_dot(e, fall) + mass * in_mass(r, w, a);
-    find_gradient(s->step_velocity, slot, slope, gradient);
+    rg_corner_gradients(s->step_velocity, slot, slope, gradient);
     find_shift(gradient, e, q, w);
     return sum - mass * in_mass(r, w, v);
 }

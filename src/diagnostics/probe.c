@@ -19,6 +19,7 @@
 
 enum {
     VALUES = 12,
+    STRAINS = 6,
     BODY = 9,
     OUTSIDE = 7,
     CAPACITY = 256,
@@ -26,8 +27,9 @@ enum {
 }; /* per probe, body, item of the account and sample; samples between two flushes, with sensors, whose sums
       are large */
 
-static const char *const column[VALUES] = {"ux",  "uy",  "uz",  "vx",  "vy",  "vz",
-                                           "sxx", "syy", "szz", "syz", "sxz", "sxy"};
+static const char *const column[VALUES + STRAINS] = {"ux",  "uy",  "uz",  "vx",  "vy",  "vz",
+                                                     "sxx", "syy", "szz", "syz", "sxz", "sxy",
+                                                     "exx", "eyy", "ezz", "eyz", "exz", "exy"};
 
 static const char *const body_column[BODY] = {"x", "y", "z", "vx", "vy", "vz", "fx", "fy", "fz"};
 
@@ -40,6 +42,8 @@ struct rg_probes {
     int row; /* values of a sample: of the probes, of the bodies, of what has a name in the account */
     const rg_bodies *bodies;
     const rg_account *account;
+    const rg_probe *probe;        /* [probes]: of the case */
+    int *first;                   /* [probes + 1]: where the values of each begin in a row */
     rg_lid *slot;                 /* [probes]; -1 where another rank has it */
     double (*at)[4];              /* [probes]: barycentric coordinates */
     double *time, *value, *total; /* [CAPACITY], [CAPACITY][row]; total: on rank 0 */
@@ -99,8 +103,8 @@ static void write_header(rg_probes *p, const rg_case *c) {
     p->file = rg_open_in(c->output.dir, "history.csv");
     fprintf(p->file, "time");
     for (int i = 0; i < p->probes; i++) {
-        for (int k = 0; k < VALUES; k++) {
-            fprintf(p->file, ",%s_%s", c->output.probe[i].name, column[k]);
+        for (int k = 0; k < p->first[i + 1] - p->first[i]; k++) {
+            fprintf(p->file, ",%s_%s", p->probe[i].name, column[k]);
         }
     }
     for (int i = 0; i < c->bodies * BODY; i++) {
@@ -135,6 +139,26 @@ static void stress_at(const rg_solver *s, const rg_workspace *w, size_t slot, co
     }
 }
 
+/* Green-Lagrange's strain at barycentric point l, by the element's own displacement. */
+static void strain_at(const rg_solver *s, size_t slot, const double l[4], double out[STRAINS]) {
+    static const int first[STRAINS] = {0, 1, 2, 1, 0, 0}, second[STRAINS] = {0, 1, 2, 2, 2, 1};
+    double slope[4][3], corner[4][3][3], H[3][3];
+    rg_barycentric_slopes(s->domain->corner + 12 * slot, slope);
+    rg_corner_gradients(s->u, slot, slope, corner);
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 3; j++) {
+            H[i][j] = 0;
+            for (int c = 0; c < 4; c++) {
+                H[i][j] += l[c] * corner[c][i][j];
+            }
+        }
+    }
+    for (int k = 0; k < STRAINS; k++) {
+        int i = first[k], j = second[k];
+        out[k] = 0.5 * (H[i][j] + H[j][i] + H[0][i] * H[0][j] + H[1][i] * H[1][j] + H[2][i] * H[2][j]);
+    }
+}
+
 static void sample(const rg_solver *s, const rg_workspace *w, size_t slot, const double l[4],
                    double out[VALUES]) {
     double N[RG_NODES];
@@ -154,7 +178,11 @@ static void watch(void *context, rg_solver *s, size_t tile, const rg_workspace *
     rg_probes *p = context;
     for (int i = 0; i < p->probes; i++) {
         if (p->slot[i] >= 0 && rg_tile_of(s->domain, (size_t)p->slot[i]) == &s->domain->tile[tile]) {
-            sample(s, w, (size_t)p->slot[i], p->at[i], p->value + p->samples * p->row + i * VALUES);
+            double *out = p->value + p->samples * p->row + p->first[i];
+            sample(s, w, (size_t)p->slot[i], p->at[i], out);
+            if (p->probe[i].strain) {
+                strain_at(s, (size_t)p->slot[i], p->at[i], out + VALUES);
+            }
         }
     }
     rg_sensors_watch(p->sensors, s, tile, w);
@@ -168,12 +196,18 @@ rg_probes *rg_probes_find(const rg_solver *s) {
     *p = (rg_probes){.comm = s->comm,
                      .rank = s->rank,
                      .probes = probes,
-                     .row = probes * VALUES + s->bodies->count * BODY + named_items(s->account) * OUTSIDE,
+                     .probe = s->input->output.probe,
+                     .row = s->bodies->count * BODY + named_items(s->account) * OUTSIDE,
                      .bodies = s->bodies,
                      .account = s->account};
     p->sensors = rg_sensors_make(s);
     p->tips = rg_crack_tips_make(s);
     p->fronts = rg_crack_fronts_make(s);
+    p->first = RG_NEW(int, (size_t)probes + 1);
+    for (int i = 0; i < probes; i++) {
+        p->first[i + 1] = p->first[i] + VALUES + (p->probe[i].strain ? STRAINS : 0);
+    }
+    p->row += p->first[probes];
     p->slot = RG_NEW(rg_lid, (size_t)p->probes);
     p->at = rg_alloc((size_t)p->probes, sizeof *p->at);
     for (int i = 0; i < p->probes; i++) {
@@ -248,7 +282,7 @@ void rg_probes_next(rg_probes *p, double time) {
     rg_sensors_next(p->sensors);
     rg_crack_tips_next(p->tips);
     rg_crack_fronts_next(p->fronts, p->tips);
-    double *values = p->value + p->samples * p->row + p->probes * VALUES;
+    double *values = p->value + p->samples * p->row + p->first[p->probes];
     sample_bodies(p, values);
     sample_account(p, values + p->bodies->count * BODY);
     p->time[p->samples] = time;
@@ -302,7 +336,7 @@ void rg_probes_close(rg_probes *p) {
     rg_sensors_free(p->sensors);
     rg_crack_tips_free(p->tips);
     rg_crack_fronts_free(p->fronts);
-    void *blocks[] = {p->slot, p->at, p->time, p->value, p->total, p};
+    void *blocks[] = {p->first, p->slot, p->at, p->time, p->value, p->total, p};
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) {
         rg_free(blocks[i]);
     }

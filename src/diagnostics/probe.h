@@ -1,7 +1,7 @@
-/* What is recorded every step, in history.csv: displacement, velocity and stress at the probes; position,
- * velocity of rigid bodies, and the solid's force on them; force, moment and work of loads and supports that
- * have a name; sensors (diagnostics/sensor.h); tips of cracks (diagnostics/crack_tip.h) and their fronts
- * (diagnostics/crack_front.h). */
+/* What is recorded every step, in history.csv: displacement, velocity, stress and strain at the probes;
+ * position, velocity of rigid bodies, and the solid's force on them; force, moment and work of loads and
+ * supports that have a name; sensors (diagnostics/sensor.h); tips of cracks (diagnostics/crack_tip.h) and
+ * their fronts (diagnostics/crack_front.h). */
 #ifndef RG_PROBE_H
 #define RG_PROBE_H
 

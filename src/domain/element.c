@@ -2,6 +2,8 @@
 
 #include <string.h>
 
+#include "base/vector.h"
+
 /* Ends of each node: a corner is both ends of itself. */
 const int rg_node_end[RG_NODES][2] = {{0, 0}, {1, 1}, {2, 2}, {3, 3}, {0, 1},
                                       {1, 2}, {0, 2}, {0, 3}, {1, 3}, {2, 3}};
@@ -37,6 +39,40 @@ void rg_shape(const double l[4], double N[RG_NODES]) {
     for (int n = 0; n < RG_NODES; n++) {
         const int *end = rg_node_end[n];
         N[n] = n < 4 ? l[n] * (2 * l[n] - 1) : 4 * l[end[0]] * l[end[1]];
+    }
+}
+
+void rg_barycentric_slopes(const double *corner, double slope[4][3]) {
+    double edge[3][3];
+    for (int k = 0; k < 3; k++) {
+        rg_vector_subtract(corner + 3 * (k + 1), corner, edge[k]);
+    }
+    for (int c = 0; c < 3; c++) {
+        slope[0][c] = 0;
+    }
+    for (int k = 0; k < 3; k++) {
+        rg_vector_cross(edge[(k + 1) % 3], edge[(k + 2) % 3], slope[k + 1]);
+        double six_volumes = rg_vector_dot(edge[k], slope[k + 1]);
+        for (int c = 0; c < 3; c++) {
+            slope[k + 1][c] /= six_volumes;
+            slope[0][c] -= slope[k + 1][c];
+        }
+    }
+}
+
+void rg_corner_gradients(const rg_real *field, size_t slot, double slope[4][3], double out[4][3][3]) {
+    memset(out, 0, 4 * sizeof *out);
+    for (int n = 0; n < RG_NODES; n++) {
+        int one = rg_node_end[n][0], two = rg_node_end[n][1];
+        for (int at = 0; at < 4; at++) {
+            for (int j = 0; j < 3; j++) {
+                double d = n < 4 ? (at == n ? 3 : -1) * slope[n][j]
+                                 : 4 * ((at == one) * slope[two][j] + (at == two) * slope[one][j]);
+                for (int i = 0; i < 3; i++) {
+                    out[at][i][j] += d * field[rg_node_index(slot, n, i)];
+                }
+            }
+        }
     }
 }
 

@@ -18,6 +18,13 @@ void rg_barycentric(const double *corner, const double x[3], double l[4]);
 /* The ten shape functions at barycentric coordinates l. */
 void rg_shape(const double l[4], double N[RG_NODES]);
 
+/* Gradients of the barycentric coordinates of the element with these corners [4][3] (1/m). */
+void rg_barycentric_slopes(const double *corner, double slope[4][3]);
+
+/* Gradient [component][direction] of a field (layout.h) at the corners of an element; in between it is
+ * linear. */
+void rg_corner_gradients(const rg_real *field, size_t slot, double slope[4][3], double out[4][3][3]);
+
 /* Entry (a, b) of the mass matrix over rho V, and of its inverse. */
 double rg_mass_entry(rg_mass kind, int a, int b);
 double rg_inverse_mass_entry(rg_mass kind, int a, int b);

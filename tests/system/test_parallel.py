@@ -6,7 +6,7 @@ import pytest
 from conftest import CASES, EVERYWHERE, example, launch
 
 LAYOUTS = [(1, 2), (2, 1), (2, 2), (3, 1)]  # ranks, threads; all compared with (1, 1)
-PROBES = [{"name": "a", "at": [0.01e-3, 0.03e-3, 0.5e-3]}, {"name": "b", "at": [-0.05e-3, 0.02e-3, -1.1e-3]}]
+PROBES = [{"name": "a", "at": [0.01e-3, 0.03e-3, 0.5e-3]}, {"name": "b", "at": [-0.05e-3, 0.02e-3, -1.1e-3], "strain": True}]
 # 9 elements to a tile: two blocks of them in double precision.
 FRAGMENTS = {"mesh.cells": [2, 2, 24], "time.end": 0.2e-6, "output.interval": 1e-8, "output.probes": PROBES, "output.energy_limit": 1e9}
 VARIANTS = {

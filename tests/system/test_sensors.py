@@ -104,6 +104,23 @@ def test_check_tells_what_sensors_look_at(tmp_path):
     assert told[0] == "sensor         all: 6e-09 m3" and told[2] == "sensor         far: 3e-06 m2" and len(told) == 5
 
 
+def test_strain_at_a_probe(run, scratch, figure):
+    """Green and Lagrange's, of a large displacement that is quadratic; beside probes that have none."""
+    at = np.array([0.31, 0.42, 0.27])
+    case = scratch / "strain.yaml"
+    case.write_text("mesh: {cells: [2, 2, 2], size: [1, 1, 1], jitter: 0.2}\nmaterial: {model: st-venant-kirchhoff, young: 1, poisson: 0.2, density: 1}\ninterface: {law: none}\n"
+                    "initial: {displacement: {x: 0.1*x*x + 0.2*y*z, y: 0.05*y - 0.1*x*z, z: 0.1*z*z + 0.3*x}}\ntime: {end: 1, steps: 1}\n"
+                    "output: {fields: [], probes: [{name: bare, at: [0.5, 0.5, 0.5]}, {name: p, at: [0.31, 0.42, 0.27], strain: true}, {name: last, at: [0.5, 0.5, 0.5]}]}\n")
+    row = run(case).history[0]
+    x, y, z = at
+    F = np.eye(3) + np.array([[0.2 * x, 0.2 * z, 0.2 * y], [-0.1 * z, 0.05, -0.1 * x], [0.3, 0, 0.2 * z]])
+    strain, names = (F.T @ F - np.eye(3)) / 2, ("exx", "eyy", "ezz", "eyz", "exz", "exy")
+    apart = max(abs(row[f"p_{name}"] - strain["xyz".index(name[1]), "xyz".index(name[2])]) for name in names)
+    figure("strain at a probe, of 0.1", apart, bound=rounding(3e-16, 1e-7), why=ROUNDING)
+    assert [name for name in row.dtype.names if "_e" in name] == [f"p_{name}" for name in names]
+    assert row["bare_sxy"] == row["last_sxy"] and row["bare_ux"] == row["last_ux"] == pytest.approx(0.075, rel=1e-6)
+
+
 # ---- Tips of cracks ----
 
 CELLS, EDGE, EVERY = 8, 1e-3, 0.5e-6
