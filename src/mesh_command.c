@@ -15,6 +15,7 @@
 #include "case/read.h"
 #include "mesh/check.h"
 #include "mesh/file.h"
+#include "mesh/import/convert.h"
 #include "mesh/import/inp_read.h"
 #include "mesh/import/vtk_read.h"
 #include "mesh/improve/improve.h"
@@ -23,7 +24,8 @@
 #include "partition/mesh_case.h"
 
 static const char usage[] =
-    "usage: rhegma mesh IN -o OUT.h5 [options]   a mesh file from Abaqus (.inp), VTK (.vtk .vtu .pvtu), or\n"
+    "usage: rhegma mesh IN -o OUT.h5 [options]   a mesh file from Abaqus (.inp), VTK (.vtk .vtu .pvtu),\n"
+    "                                               MED (.med), CGNS (.cgns), or\n"
     "                                               what Gmsh reads or meshes (.msh .bdf .unv .geo .step)\n"
     "         --unit U        lengths of IN are in m, cm, mm, um, nm, in or ft; or\n"
     "         --scale S       S: m per unit of IN; STEP and IGES say their own unit\n"
@@ -150,7 +152,7 @@ static bool is_case(const char *path) {
 /* What is read without Gmsh. */
 static bool is_text(const char *path) {
     return ends_with(path, ".inp") || ends_with(path, ".vtk") || ends_with(path, ".vtu") ||
-           ends_with(path, ".pvtu");
+           ends_with(path, ".pvtu") || rg_is_converted(path);
 }
 
 /* An option that says something of an import; NULL: none is given. */
@@ -330,9 +332,11 @@ static int from_case(const rg_mesh_arguments *a) {
 }
 
 static int from_text(const rg_mesh_arguments *a) {
-    rg_mesh *mesh = ends_with(a->input, ".vtk")    ? rg_vtk_read(a->input, &a->how)
-                    : !ends_with(a->input, ".inp") ? rg_vtu_read(a->input, &a->how)
-                                                   : rg_inp_read(a->input, &a->how, stdout);
+    rg_mesh *mesh = ends_with(a->input, ".vtk") ? rg_vtk_read(a->input, &a->how)
+                    : ends_with(a->input, "vtu")
+                        ? rg_vtu_read(a->input, &a->how)
+                        : rg_inp_read(a->input, rg_is_converted(a->input) ? rg_converted(a->input) : NULL,
+                                      &a->how, stdout);
     rg_mesh_finish(mesh, a);
     rg_mesh_free(mesh);
     return RG_OK;
@@ -352,12 +356,12 @@ static int from_gmsh(int argc, char **argv) {
         copy[i - 1] = argv[i];
     }
     execv(path, copy);
-    rg_fatal(
-        RG_USAGE,
-        "mesh: %s: %s; it reads all but .yaml, .inp, .vtk, .vtu and .pvtu, and is built where Gmsh is there "
-        "(Debian: "
-        "libgmsh-dev; then meson configure build -Dgmsh=enabled)",
-        path, strerror(errno));
+    rg_fatal(RG_USAGE,
+             "mesh: %s: %s; it reads all but .yaml, .inp, .vtk, .vtu, .pvtu, .med and .cgns, and is built "
+             "where Gmsh is there "
+             "(Debian: "
+             "libgmsh-dev; then meson configure build -Dgmsh=enabled)",
+             path, strerror(errno));
 }
 
 /* ---- showing ---- */

@@ -16,7 +16,7 @@ static void body(const uint8_t *data, size_t size) {
                                .merge = size % 3 == 0 ? 1e-3 : 0,
                                .thickness = size % 5 == 0 ? 1 : 0,
                                .layers = 2};
-    rg_mesh *mesh = rg_inp_read(path, &how, nowhere);
+    rg_mesh *mesh = rg_inp_read(path, NULL, &how, nowhere);
     rg_mesh_check_elements(mesh, path);
     rg_mesh_sort(mesh);
     rg_mesh_connect(mesh);

@@ -7,7 +7,7 @@ import subprocess
 import pytest
 from conftest import ENVIRONMENT, PROGRAM, ROOT, SINGLE, TIMEOUT
 
-FILES = """bin/rhegma bin/rhegma-plot share/rhegma/plot share/rhegma/rhegma.py share/rhegma/case.schema.json share/rhegma/examples/spall/spall.yaml
+FILES = """bin/rhegma bin/rhegma-plot bin/rhegma-convert share/rhegma/plot share/rhegma/convert share/rhegma/rhegma.py share/rhegma/case.schema.json share/rhegma/examples/spall/spall.yaml
     share/man/man1/rhegma.1 share/bash-completion/completions/rhegma""".split()
 
 

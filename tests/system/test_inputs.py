@@ -1,7 +1,10 @@
 """Inputs as people have them, each one body written in another way: all of it comes in, or it is refused by keyword and line."""
 
 import itertools
+import shutil
 
+import h5py
+import numpy as np
 import pytest
 from conftest import ROOT, launch
 from test_abaqus import ELEMENTS, NODES, SIDES, corners, found, on_plane
@@ -106,3 +109,80 @@ def test_regions_of_vtk(tmp_path, name):
         pytest.skip("no liblzma here")
     assert process.returncode == 0 and process.stderr == "", process.stderr
     assert found(tmp_path / "a.h5") == ({"": ALL, "block.0": LOW, "block.1": UP}, {})
+
+
+# ---- What rhegma-convert reads ----
+
+
+def converted(tmp_path, source):
+    process = launch("mesh", source, "-o", tmp_path / "a.h5")
+    assert process.returncode == 0, process.stderr
+    return found(tmp_path / "a.h5"), process.stderr
+
+
+def test_cgns(tmp_path):
+    """As the library of CGNS wrote it: two sections of tetrahedra, one of triangles, a boundary condition on these."""
+    sets, said = converted(tmp_path, INPUTS / "hdf5" / "box.cgns")
+    assert sets == ({"": ALL, "low": LOW, "up": UP}, {"bottom faces": BOTTOM, "bottom": BOTTOM})
+    assert len(said.splitlines()) == 1 and "24 of 48 elements have their corners in the order of a negative volume" in said
+
+
+def change_cgns(tmp_path, change):
+    path = shutil.copy(INPUTS / "hdf5" / "box.cgns", tmp_path / "a.cgns")
+    with h5py.File(path, "r+") as file:
+        change(file["Base/body"])
+    return path
+
+
+def put(group, name, values):
+    del group[name]
+    group[name] = np.asarray(values)
+
+
+def mixed(zone):
+    nodes = zone["low/ElementConnectivity/ data"][:].reshape(-1, 4)
+    put(zone["low"], " data", np.array([20, 0], "i4"))
+    put(zone["low/ElementConnectivity"], " data", np.hstack([np.full((24, 1), 10), nodes]).ravel())
+
+
+def by_vertices(zone):
+    """The boundary by vertices, which the top then has."""
+    del zone["ZoneBC/bottom/GridLocation"]
+    put(zone["ZoneBC/bottom/PointRange"], " data", [[19], [27]])
+
+
+@pytest.mark.parametrize("change, surfaces", [(mixed, {"bottom faces": BOTTOM, "bottom": BOTTOM}),
+                                              (by_vertices, {"bottom faces": BOTTOM, "bottom": TOP})])
+def test_cgns_in_other_words(tmp_path, change, surfaces):
+    assert converted(tmp_path, change_cgns(tmp_path, change))[0] == ({"": ALL, "low": LOW, "up": UP}, surfaces)
+
+
+@pytest.mark.parametrize("change, message", [
+    (lambda zone: put(zone["ZoneType"], " data", np.frombuffer(b"Structured", "i1")), "zone 'body' is not unstructured, and cannot be read"),
+    (lambda zone: put(zone["up"], " data", [23, 0]), "section 'up' has elements of type 23 of CGNS, which cannot be read"),
+    (lambda zone: put(zone["ZoneBC/bottom/PointRange"], " data", [[49], [57]]), "boundary 'bottom' names elements that are not there"),
+    (lambda zone: zone["ZoneBC/bottom"].pop("PointRange"), "boundary 'bottom' has neither a list nor a range"),
+    (lambda zone: zone["GridCoordinates"].pop("CoordinateZ"), "zone 'body' has not the coordinates x, y, z"),
+    (lambda zone: zone["low"].pop("ElementConnectivity"), "damaged, or another kind of file: KeyError"),
+])
+def test_cgns_that_is_refused(tmp_path, change, message):
+    process = launch("mesh", change_cgns(tmp_path, change), "-o", tmp_path / "a.h5")
+    assert process.returncode == 2 and not (tmp_path / "a.h5").exists()
+    assert process.stderr.startswith(f"convert: {tmp_path}/a.cgns: {message}") and process.stderr.endswith(
+        f"rhegma: {tmp_path}/a.cgns: it cannot be read\n")
+
+
+def test_med(tmp_path):
+    pytest.importorskip("meshio")
+    sets, _ = converted(tmp_path, INPUTS / "hdf5" / "box.med")
+    assert sets == ({"": ALL, "low": ALL, "odd": {TET[e] for e in range(2, 49, 2)}}, {"bottom": BOTTOM})
+
+
+@pytest.mark.parametrize("name", ["a.med", "a.cgns"])
+def test_what_is_no_such_file(tmp_path, name):
+    (tmp_path / name).write_text("neither\n")
+    process = launch("mesh", tmp_path / name, "-o", tmp_path / "a.h5")
+    assert process.returncode == 2 and process.stderr.startswith(f"convert: {tmp_path / name}: ")
+    assert "Traceback" not in process.stderr and process.stderr.endswith(f"rhegma: {tmp_path / name}: it cannot be read\n")
+    process = launch("mesh", tmp_path / f"no-{name}", "-o", tmp_path / "a.h5")
+    assert process.returncode == 2 and process.stderr == f"rhegma: {tmp_path}/no-{name}: cannot be read: No such file or directory\n"

@@ -40,6 +40,15 @@ void rg_inp_refuse(rg_inp_place at, const char *format, ...) {
 
 /* ---- files ---- */
 
+static void push_stream(rg_inp_lines *l, FILE *stream, const char *path) {
+    l->path = rg_realloc(l->path, l->paths + 1, sizeof *l->path);
+    char *name = l->path[l->paths++] = RG_NEW(char, strlen(path) + 1);
+    rg_inp_file *f = RG_NEW(rg_inp_file, 1);
+    *f = (rg_inp_file){.outer = l->file, .stream = stream, .at = {strcpy(name, path), 0}};
+    l->file = f;
+    l->depth++;
+}
+
 static void push_file(rg_inp_lines *l, const char *path) {
     FILE *stream = rg_open_input(path);
     if (stream == NULL && l->file == NULL) {
@@ -47,12 +56,7 @@ static void push_file(rg_inp_lines *l, const char *path) {
     } else if (stream == NULL) {
         rg_inp_refuse(l->at, "*%s: %s cannot be read: %s", l->keyword, path, strerror(errno));
     }
-    l->path = rg_realloc(l->path, l->paths + 1, sizeof *l->path);
-    char *name = l->path[l->paths++] = RG_NEW(char, strlen(path) + 1);
-    rg_inp_file *f = RG_NEW(rg_inp_file, 1);
-    *f = (rg_inp_file){.outer = l->file, .stream = stream, .at = {strcpy(name, path), 0}};
-    l->file = f;
-    l->depth++;
+    push_stream(l, stream, path);
 }
 
 static void pop_file(rg_inp_lines *l) {
@@ -316,9 +320,13 @@ double rg_inp_value(rg_inp_lines *l) {
 
 /* ---- all lines ---- */
 
-rg_inp_lines *rg_inp_open(const char *path) {
+rg_inp_lines *rg_inp_open(const char *path, FILE *stream) {
     rg_inp_lines *l = RG_NEW(rg_inp_lines, 1);
-    push_file(l, path);
+    if (stream != NULL) {
+        push_stream(l, stream, path);
+    } else {
+        push_file(l, path);
+    }
     return l;
 }
 

@@ -6,6 +6,7 @@
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdio.h>
 
 #include "mesh/mesh.h"
 
@@ -36,8 +37,9 @@ typedef struct {
 
 typedef enum { RG_INP_END, RG_INP_KEYWORD, RG_INP_DATA } rg_inp_kind;
 
-/* Begins with the file at `path`, which messages call so; ends the run if it cannot be read. */
-rg_inp_lines *rg_inp_open(const char *path);
+/* Begins with `stream`, which it closes, or with the file at `path` (NULL), of which it ends the run if that
+ * cannot be read; messages call it `path`. */
+rg_inp_lines *rg_inp_open(const char *path, FILE *stream);
 
 /* The next keyword line or data line that is not blank. *INCLUDE is followed, from the folder of the file
  * that has it; to its caller it is not there. */

@@ -567,8 +567,8 @@ static rg_inp_model *choose_model(reader *r) {
     return r->whole;
 }
 
-rg_mesh *rg_inp_read(const char *path, const rg_import_how *how, FILE *out) {
-    reader r = {.lines = rg_inp_open(path),
+rg_mesh *rg_inp_read(const char *path, FILE *in, const rg_import_how *how, FILE *out) {
+    reader r = {.lines = rg_inp_open(path, in),
                 .whole = rg_inp_model_make(),
                 .section = RG_INP_UNKNOWN,
                 .split = how->split,

@@ -6,11 +6,11 @@
 
 #include "mesh/import/import.h"
 
-/* Reads the mesh of an input file as the manuals define it: nodes and
- * elements, given (*NODE, *ELEMENT, in local systems) and generated (*NGEN, *NFILL, *ELGEN, *ELCOPY), in one
- * body or in parts that instances place, in one file or several. Elements are tetrahedra of any physics, with
- * `split` those too that hexahedra, wedges and pyramids are cut into (solid.h), by their numbers;
- * triangles (S3, CPS6, SFM3D3, ...) only name faces.
+/* Reads the mesh of an input file, or of the stream `in` that messages call so, which it closes, as the
+ * manuals define it: nodes and elements, given (*NODE, *ELEMENT, in local systems) and generated (*NGEN,
+ * *NFILL, *ELGEN, *ELCOPY), in one body or in parts that instances place, in one file or several. Elements
+ * are tetrahedra of any physics, with `split` those too that hexahedra, wedges and pyramids are cut into
+ * (solid.h), by their numbers; triangles (S3, CPS6, SFM3D3, ...) only name faces.
  *
  * Volume sets are all sets of elements, surface sets all surfaces, sets of triangles, and sets of nodes that
  * hold whole faces; they may overlap. Sets that the preprocessor made for its own use (INTERNAL) are none.
@@ -20,6 +20,6 @@
  * with a warning (elements that are no solids), or ends the run: other solids, keywords and parameters that
  * are not known here. The result is neither sorted nor connected; `original` holds the file's element
  * numbers, in later instances plus a multiple of a power of ten. The caller frees it. */
-rg_mesh *rg_inp_read(const char *path, const rg_import_how *how, FILE *out);
+rg_mesh *rg_inp_read(const char *path, FILE *in, const rg_import_how *how, FILE *out);
 
 #endif

@@ -346,7 +346,7 @@ static void test_limits(void **state) {
     }
     write_input(many);
     FILE *nowhere = fopen("/dev/null", "w");
-    rg_mesh *mesh = rg_inp_read("a.inp", &(rg_import_how){.scale = 1}, nowhere);
+    rg_mesh *mesh = rg_inp_read("a.inp", NULL, &(rg_import_how){.scale = 1}, nowhere);
     fclose(nowhere);
     assert_int_equal(mesh->surface.count, 1000);
     assert_int_equal(mesh->volume.count, 1000);

@@ -125,7 +125,7 @@ static void test_surface_sets(void **state) {
                 "*SURFACE, NAME=a\n1, S1\n*SURFACE, NAME=b\n1, S2\n*SURFACE, NAME=b\n2, S2\n"
                 "*SURFACE, NAME=a\n2, S3\n");
     FILE *nowhere = fopen("/dev/null", "w");
-    rg_mesh *mesh = rg_inp_read("a.inp", &(rg_import_how){.scale = 1}, nowhere);
+    rg_mesh *mesh = rg_inp_read("a.inp", NULL, &(rg_import_how){.scale = 1}, nowhere);
     fclose(nowhere);
     assert_int_equal(mesh->surface.count, 2);
     rg_mesh_free(mesh);

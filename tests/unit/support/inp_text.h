@@ -16,12 +16,12 @@ static bool split;
 
 static inline void read_and_print(void) {
     FILE *nowhere = fopen("/dev/null", "w");
-    rg_mesh *m = rg_inp_read("a.inp", &(rg_import_how){.scale = scale, .split = split}, nowhere);
+    rg_mesh *m = rg_inp_read("a.inp", NULL, &(rg_import_how){.scale = scale, .split = split}, nowhere);
     print_mesh(m, stderr);
 }
 
 static inline void read_and_report(void) {
-    rg_mesh_free(rg_inp_read("a.inp", &(rg_import_how){.scale = scale, .split = split}, stderr));
+    rg_mesh_free(rg_inp_read("a.inp", NULL, &(rg_import_how){.scale = scale, .split = split}, stderr));
 }
 
 static inline void write_input(const char *words) {
