@@ -176,9 +176,22 @@ static void add_friction(rg_exact_sum *sum, const rg_solver *s, size_t i) {
     }
 }
 
+/* What came free at a face of tile t, beyond what the law of its points can take. */
+static void raise_unresolved(rg_peak *most, const rg_solver *s, const rg_tile *t, size_t i, double energy) {
+    size_t link = (size_t)s->domain->side[0][i], slot = t->begin * RG_LANES + link / RG_FACES;
+    rg_peak here = {.value = energy, .face = RG_FACES * s->domain->id[slot] + (int64_t)(link % RG_FACES)};
+    for (int c = 0; c < 3; c++) {
+        for (int a = 0; a < RG_FCORNERS; a++) {
+            here.place[c] +=
+                s->domain->corner[12 * slot + (size_t)(3 * rg_face_node[link % RG_FACES][a] + c)] / 3;
+        }
+    }
+    *most = rg_peak_of(most, &here);
+}
+
 /* Of the two copies of a tile-boundary face one is counted. */
 static void interface_energies(rg_solver *s, const rg_tile *t, const rg_workspace *w, double *energy,
-                               rg_exact_sum *sum) {
+                               rg_exact_sum *sum, rg_peak *unresolved) {
     rg_interface_args interface = rg_tile_interfaces(s, t, w);
     rg_interface_state_args args = {&interface, energy};
     s->kernels->interface_state(&args, 0, rg_tile_iblocks(t));
@@ -191,8 +204,11 @@ static void interface_energies(rg_solver *s, const rg_tile *t, const rg_workspac
             rg_exact_add(&sum[INTERFACE + k], energy[(row * RG_E_INTERFACE + k) * RG_LANES + i % RG_LANES]);
         }
         if (s->broken[i]) {
-            size_t row = (i / RG_LANES - t->ibegin) * RG_E_INTERFACE + RG_E_DISSIPATED;
-            share_out(sum, s, i, energy[row * RG_LANES + i % RG_LANES]);
+            const double *of = energy + (i / RG_LANES - t->ibegin) * RG_E_INTERFACE * RG_LANES + i % RG_LANES;
+            share_out(sum, s, i, of[RG_E_DISSIPATED * RG_LANES]);
+            if (of[RG_E_UNRESOLVED * RG_LANES] != 0) {
+                raise_unresolved(unresolved, s, t, i, of[RG_E_UNRESOLVED * RG_LANES]);
+            }
             if (!rg_face_is_open(s, i)) {
                 add_areas(sum, s, i);
             }
@@ -201,13 +217,14 @@ static void interface_energies(rg_solver *s, const rg_tile *t, const rg_workspac
     }
 }
 
-static void sum_up(rg_solver *s, rg_exact_sum *sum) {
+static void sum_up(rg_solver *s, rg_exact_sum *sum, rg_peak *unresolved) {
     const rg_domain *d = s->domain;
     size_t most =
         d->tile_iblocks * RG_E_INTERFACE > d->tile_blocks ? d->tile_iblocks * RG_E_INTERFACE : d->tile_blocks;
 #pragma omp parallel
     {
         rg_exact_sum *mine = RG_NEW(rg_exact_sum, sums(s));
+        rg_peak peak = {0};
         rg_workspace *w = &s->work[omp_get_thread_num()];
         double *energy = RG_NEW(double, most *RG_LANES);
         rg_real *change = RG_NEW(rg_real, d->tile_blocks * RG_NODE_BLOCK);
@@ -215,7 +232,7 @@ static void sum_up(rg_solver *s, rg_exact_sum *sum) {
         for (size_t t = 0; t < d->tiles; t++) {
             rg_tile_receive(s, &d->tile[t], w);
             element_energies(s, &d->tile[t], w, energy, change, mine);
-            interface_energies(s, &d->tile[t], w, energy, mine);
+            interface_energies(s, &d->tile[t], w, energy, mine, &peak);
             rg_bodies_energy(s->bodies, t, s->u, &mine[INTERFACE + RG_E_CONTACT]);
             if (s->contacts != NULL) {
                 rg_contacts_energy(s->contacts, t, &mine[INTERFACE + RG_E_CONTACT]);
@@ -224,18 +241,21 @@ static void sum_up(rg_solver *s, rg_exact_sum *sum) {
         rg_free(change);
         rg_free(energy);
 #pragma omp critical
-        for (size_t k = 0; k < sums(s); k++) {
-            rg_exact_merge(&sum[k], &mine[k]);
+        {
+            for (size_t k = 0; k < sums(s); k++) {
+                rg_exact_merge(&sum[k], &mine[k]);
+            }
+            *unresolved = rg_peak_of(unresolved, &peak);
         }
         rg_free(mine);
     }
 }
 
 /* All sums over the whole body: v[sums]. */
-static void values(rg_solver *s, double *v) {
+static void values(rg_solver *s, double *v, rg_peak *unresolved) {
     rg_exact_sum *sum = RG_NEW(rg_exact_sum, sums(s));
     rg_constraints_work(s->constraints, &sum[EXTERNAL]);
-    sum_up(s, sum);
+    sum_up(s, sum, unresolved);
     rg_exact_allreduce(sum, (int)sums(s), s->comm);
     for (size_t k = 0; k < sums(s); k++) {
         v[k] = rg_exact_value(&sum[k]);
@@ -291,7 +311,8 @@ static double over_spent(const rg_ledger *l, double change) {
 
 const rg_energy *rg_ledger_take(rg_ledger *l, rg_solver *s) {
     double *v = RG_NEW(double, sums(s));
-    values(s, v);
+    rg_peak unresolved = {0};
+    values(s, v, &unresolved);
     rg_energy *e = &l->last;
     *e = energy_of(s, v);
     double stored =
@@ -300,6 +321,7 @@ const rg_energy *rg_ledger_take(rg_ledger *l, rg_solver *s) {
     if (!l->begun) {
         *l = (rg_ledger){.begun = true, .start = e->total, .last = *e};
     }
+    l->unresolved = unresolved;
     for (int m = 0; m < told_materials(s); m++) {
         const double *part = v + PARTS + PART * m;
         l->material[m] = (rg_energy_part){part[PART_KINETIC], part[PART_BULK], part[PART_DISSIPATED]};

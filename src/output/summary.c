@@ -85,6 +85,10 @@ static void write_physics(FILE *f, const rg_summary *m, const rg_ledger *l) {
     rg_json_number(f, "viscous_J", l->last.viscous);
     rg_json_number(f, "friction_J", l->last.friction);
     rg_json_number(f, "unresolved_J", l->last.unresolved);
+    if (m->unresolved.value != 0) {
+        rg_json_number(f, "unresolved_most_J", m->unresolved.value);
+        rg_json_vector(f, "unresolved_most_at", m->unresolved.place);
+    }
     rg_json_number(f, "first_fracture_time_s", m->first_fracture);
     rg_json_number(f, "broken_area_m2", l->last.broken_area);
     rg_json_number(f, "failed_area_m2", l->last.failed_area);
@@ -111,6 +115,7 @@ void rg_summary_write(rg_summary *m, rg_solver *s, const rg_ledger *l, const rg_
     uint64_t hash = rg_state_hash(s);
     double impulse = s->contacts != NULL ? contact_impulse(s) : 0;
     m->first_fracture = rg_first_fracture(s);
+    m->unresolved = rg_peak_reduce(&l->unresolved, s->comm);
     rg_halo *halo[3];
     int halos = rg_solver_halos(s, halo);
     double work = (double)e->elements * (double)(s->step - m->first_step);
@@ -173,6 +178,11 @@ void rg_summary_print(const rg_summary *m, const rg_solver *s, const rg_ledger *
     } else if (unresolved < 0) {
         fprintf(out, "%.3g J were lent to contact and friction of faces that broke under pressure\n",
                 -unresolved);
+    }
+    if (m->unresolved.value != 0) {
+        const double *x = m->unresolved.place;
+        fprintf(out, "  most at one face: %.3g J, at (%.4g, %.4g, %.4g) m\n", fabs(m->unresolved.value), x[0],
+                x[1], x[2]);
     }
     if (isfinite(m->first_fracture)) {
         fprintf(out, "first fracture at %.5g s; failed %.4g m2, broken %.4g m2, dissipated %.4g J\n",

@@ -23,6 +23,7 @@ typedef struct {
     const char *failure;        /* "" where the run reached its end */
     double us_per_tet_step,
         first_fracture; /* filled by rg_summary_write; us of core time; s, infinite for none */
+    rg_peak unresolved; /* likewise: the face with most of it (J) */
 } rg_summary;
 
 /* Collective; rank 0 writes summary.json in the output directory. */

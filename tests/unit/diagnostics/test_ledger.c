@@ -302,17 +302,33 @@ static void check_unresolved(void) {
     random_state r = random_state_make(1, change, MPI_COMM_WORLD);
     random_state_draw(&r, SEED);
     rg_ledger ledger = {0};
-    double wanted = 0, strength = 400e6, opening = 2 * 34 / strength;
+    double wanted = 0, most = 0, strength = 400e6, opening = 2 * 34 / strength;
+    rg_gid where = -1;
     for (rg_gid face = 0; face < 4 * r.mesh->elements; face++) {
+        double here = 0;
         for (int q = 0; q < RG_POINTS && r.mesh->neighbour[face] > face / 4; q++) {
             double l[3], share = face_area(r.mesh, face) * rg_reference_face_point(q, l);
             double given = (rg_real)(drawn(SEED, DRAW_GIVEN, face, q) * opening);
             bool broken = drawn_broken(SEED, face) >> q & 1;
-            wanted += broken ? share * strength * fmax(0, given - opening / 2) : 0;
+            here += broken ? share * strength * fmax(0, given - opening / 2) : 0;
         }
+        wanted += here;
+        where = here > most ? face : where;
+        most = fmax(most, here);
     }
     const rg_energy *e = rg_ledger_take(&ledger, r.solver);
     report(near(e->unresolved, wanted, wanted) && wanted > 0, "ledger", "what no law can take");
+    rg_peak peak = rg_peak_reduce(&ledger.unresolved, MPI_COMM_WORLD);
+    double x[4][3];
+    mesh_corners(r.mesh, where / 4, x);
+    const rg_gid *beyond = r.mesh->neighbour; /* a face has a number on either side */
+    bool same = peak.face == where || (peak.face / 4 == beyond[where] && beyond[peak.face] == where / 4);
+    bool there = near(peak.value, most, most) && most > 0 && same;
+    for (int c = 0; c < 3; c++) {
+        const int *corner = rg_face_node[where % 4];
+        there = near(peak.place[c], (x[corner[0]][c] + x[corner[1]][c] + x[corner[2]][c]) / 3, 1e-3) && there;
+    }
+    report(there, "ledger", "the face with most of it");
     double parts = e->kinetic + e->bodies + e->bulk + e->penalty + e->cohesive + e->contact + e->spent;
     report(near(e->total, parts + e->unresolved - e->half_kick - e->external, parts) &&
                wanted > 1e3 * EXACT * parts,
