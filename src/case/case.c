@@ -23,6 +23,46 @@ bool rg_boundary_is_placed(const rg_boundary *b) {
            (b->prescribed == RG_PRESCRIBED_DISPLACEMENT || b->prescribed == RG_PRESCRIBED_ANGLE);
 }
 
+/* Of a sphere or a cylinder of a density. */
+static double volume_of(const rg_body_input *b) {
+    const double pi = acos(-1.0);
+    bool sphere = b->shape == RG_SHAPE_SPHERE;
+    return (sphere ? 4 * pi / 3 * b->radius : pi * b->length) * b->radius * b->radius;
+}
+
+double rg_body_mass(const rg_body_input *b) {
+    return b->density > 0 ? b->density * volume_of(b) : b->mass;
+}
+
+void rg_body_inertia(const rg_body_input *b, double inertia[6]) {
+    static const int first[6] = {0, 1, 2, 1, 0, 0}, second[6] = {0, 1, 2, 2, 2, 1};
+    double r2 = b->radius * b->radius, mass = rg_body_mass(b), length2 = 0;
+    bool sphere = b->shape == RG_SHAPE_SPHERE;
+    double across = mass * (sphere ? 0.4 * r2 : 0.25 * r2 + b->length * b->length / 12);
+    double along = mass * (sphere ? 0.4 : 0.5) * r2;
+    for (int c = 0; c < 3; c++) {
+        length2 += b->axis[c] * b->axis[c];
+    }
+    for (int k = 0; k < 6; k++) {
+        double axes = length2 > 0 ? b->axis[first[k]] * b->axis[second[k]] / length2 : 0;
+        double made = across * (first[k] == second[k]) + (along - across) * axes;
+        inertia[k] = b->density > 0 ? made : b->inertia[k];
+    }
+}
+
+bool rg_body_spins(const rg_body_input *b) {
+    return b->spin[0] != NULL || b->spin[1] != NULL || b->spin[2] != NULL;
+}
+
+bool rg_body_has_inertia(const rg_body_input *b) {
+    return b->density > 0 || b->inertia[0] > 0;
+}
+
+bool rg_body_turns(const rg_body_input *b) {
+    bool central = b->shape == RG_SHAPE_SPHERE && b->ties == 0;
+    return rg_body_spins(b) || (b->motion == RG_MOTION_FREE && rg_body_has_inertia(b) && !central);
+}
+
 static bool ends_before(const rg_boundary *a, const rg_boundary *b) {
     return a->until > 0 && a->until <= b->from;
 }

@@ -16,7 +16,7 @@ typedef enum { RG_OUTPUT_DOUBLE, RG_OUTPUT_SINGLE } rg_output_precision;
 typedef enum { RG_FRAGMENTS_EACH, RG_FRAGMENTS_LAST, RG_FRAGMENTS_NONE } rg_fragments_when;
 typedef enum { RG_KEEP_ENERGY, RG_KEEP_OPENING } rg_keep;
 typedef enum { RG_BREAKING_BY_LAW, RG_BREAKING_NEVER } rg_breaking;
-typedef enum { RG_SHAPE_SPHERE, RG_SHAPE_PLANE, RG_SHAPE_CYLINDER } rg_shape_kind;
+typedef enum { RG_SHAPE_SPHERE, RG_SHAPE_PLANE, RG_SHAPE_CYLINDER, RG_SHAPE_NONE } rg_shape_kind;
 typedef enum { RG_START_INITIAL, RG_START_STATIC } rg_start;
 typedef enum { RG_MOTION_FREE, RG_MOTION_PRESCRIBED } rg_motion;
 typedef enum { RG_CONTACT_OF_INTERFACES, RG_CONTACT_GENERAL } rg_contact_model;
@@ -227,20 +227,25 @@ typedef struct {
     unsigned values; /* bits */
 } rg_crack_front_input;
 
-/* A rigid body that the solid's surface touches; it moves without turning. Values that the shape or the
- * motion has no use for are 0. */
+/* A rigid body that the solid's surface touches, or that sets of its faces are tied to. Values that the shape
+ * or the motion has no use for are 0. */
 typedef struct {
     char *name; /* column prefix in history.csv */
     rg_shape_kind shape;
     rg_motion motion;
-    double at[3];         /* centre of the sphere, a point of the plane or of the axis, at the start (m) */
-    double normal[3];     /* of the plane, away from the body; of any length */
-    double axis[3];       /* of the cylinder, which has no ends; of any length */
-    double radius;        /* m */
+    double at[3];     /* centre of mass, on the plane or on the axis, at the start (m) */
+    double normal[3]; /* of the plane, away from the body; of any length */
+    double axis[3];   /* of the cylinder, which has no ends; of any length */
+    double radius;    /* m */
+    double length;    /* of the cylinder, of which density makes mass and inertia; contact sees no ends (m) */
     double density, mass; /* kg/m^3, kg: one of them, of a free body */
+    double inertia[6]; /* about the centre, xx yy zz yz xz xy, beside a mass (kg m^2); 0: it does not turn */
     rg_expr *velocity[3]; /* m/s: at the start, or prescribed in time; NULL: zero */
+    rg_expr *spin[3];     /* likewise, angular velocity (rad/s) */
     int sets;             /* of faces that may touch it; 0: all on the surface */
     char **set;
+    int ties; /* sets of faces that move with it */
+    char **tied;
     double penalty; /* contact stiffness times h/(lambda + 2 mu), h the height of an element over its face */
 } rg_body_input;
 
@@ -345,6 +350,17 @@ bool rg_boundary_damps(const rg_boundary *b);
 bool rg_boundary_is_along_line(const rg_boundary *b);
 bool rg_boundary_has_component(const rg_boundary *b);
 bool rg_boundary_is_placed(const rg_boundary *b);
+
+/* Mass of a free body (kg), and its inertia in the order above. */
+double rg_body_mass(const rg_body_input *b);
+void rg_body_inertia(const rg_body_input *b, double inertia[6]);
+
+/* Whether a body can turn: of what the solid presses only by lines through its centre it cannot. */
+bool rg_body_turns(const rg_body_input *b);
+
+/* Whether a free one has an inertia; whether it starts with an angular velocity, or one is prescribed. */
+bool rg_body_has_inertia(const rg_body_input *b);
+bool rg_body_spins(const rg_body_input *b);
 
 /* Whether two entries act at the same time. */
 bool rg_boundaries_meet(const rg_boundary *a, const rg_boundary *b);

@@ -118,16 +118,16 @@ static const char *const masses_meaning[] = {
     "exact for the shape functions; its inverse is one constant matrix",
     "HRZ, on the diagonal: the only one of form continuous and its default",
     "consistent on all that is linear in an element, its quadratic modes twice as heavy: a longer step, and fronts that come late by a fraction of an element"};
-static const char *const shapes[] = {"sphere", "plane", "cylinder", NULL};
+static const char *const shapes[] = {"sphere", "plane", "cylinder", "none", NULL};
 static const char *const shapes_meaning[] = {
-    "of a radius", "all behind it is rigid", "of a radius, without ends"};
+    "of a radius", "all behind it is rigid", "of a radius, without ends", "it touches nothing: for what is tied to it"};
 static const char *const starts[] = {"initial", "static", NULL};
 static const char *const starts_meaning[] = {
     "from the state of `initial`",
     "from the equilibrium under the loads of t = 0 and what `boundary` prescribes then (places; elsewhere along its lines it holds), with the velocities of `initial`; faces do not break on the way"};
 static const char *const motions[] = {"free", "prescribed", NULL};
 static const char *const motions_meaning[] = {
-    "by the forces on it: it has a mass", "by its velocity at all times"};
+    "by the forces on it: it has a mass; with an inertia or a density it turns", "by its velocity and angular velocity at all times"};
 static const char *const components[] = {"x", "y", "z", NULL};
 static const char *const box_sets[] = {"x-", "x+", "y-", "y+", "z-", "z+", NULL};
 static const char *const fields[] = {
@@ -280,7 +280,7 @@ static const rg_key case_keys[] = {
      .offset_count = offsetof(rg_case, loads), MEANS("forces from outside, each on a part of the surface or of the body; they add up")},
 
     {.name = "bodies", .type = RG_KEY_LIST, ELSE("none"), CASE(body), .entry = &rg_body_table,
-     .offset_count = offsetof(rg_case, bodies), MEANS("rigid bodies that the solid's surface touches; they move without turning")},
+     .offset_count = offsetof(rg_case, bodies), MEANS("rigid bodies that the solid's surface touches, or that sets of it are tied to")},
 
     {.name = "time.end", .unit = "s", REAL, ABOVE(0), REQUIRED, MAY_CHANGE, CASE(time.end), MEANS("end of the run")},
     {.name = "time.safety", REAL, FROM_TO(0, 1), .low_open = true, DEFAULT_OF(safety), MAY_CHANGE,
@@ -438,6 +438,8 @@ static const rg_key load_keys[] = {
 #define BODY(member) .offset = offsetof(rg_body_input, member)
 #define BODY_VELOCITY(name_, component, words)                                                               \
     { .name = (name_), .unit = "m/s", .type = RG_KEY_EXPR, ELSE("0"), .no_place = true, BODY(velocity[component]), MEANS(words) }
+#define BODY_SPIN(name_, component, words)                                                                   \
+    { .name = (name_), .unit = "rad/s", .type = RG_KEY_EXPR, ELSE("0"), .no_place = true, BODY(spin[component]), MEANS(words) }
 
 static const rg_key body_keys[] = {
     {.name = "name", .type = RG_KEY_TEXT, REQUIRED, BODY(name),
@@ -445,17 +447,25 @@ static const rg_key body_keys[] = {
     {.name = "shape", EXPLAINED(shapes), REQUIRED, BODY(shape), MEANS("of the body")},
     {.name = "motion", EXPLAINED(motions), REQUIRED, BODY(motion), MEANS("how it moves")},
     {.name = "at", .unit = "m", REAL3, ANY, REQUIRED, BODY(at),
-     MEANS("centre of the sphere, a point of the plane or of the axis, at the start")},
+     MEANS("its centre of mass at the start: centre of the sphere, a point of the plane or of the axis")},
     {.name = "radius", .unit = "m", REAL, ABOVE(0), ELSE("none"), BODY(radius), MEANS("of a sphere or cylinder, which must have it")},
     {.name = "normal", REAL3, ANY, ELSE("required of it"), BODY(normal), MEANS("of a plane, which must have it: away from the body, of any length")},
     {.name = "axis", REAL3, ANY, ELSE("required of it"), BODY(axis), MEANS("of a cylinder, which must have it: of any length")},
-    {.name = "density", .unit = "kg/m3", REAL, ABOVE(0), ELSE("none"), BODY(density), MEANS("of a free sphere, in place of its mass")},
-    {.name = "mass", .unit = "kg", REAL, ABOVE(0), ELSE("none"), BODY(mass), MEANS("of a free body, which must have it, but a sphere with a density")},
+    {.name = "density", .unit = "kg/m3", REAL, ABOVE(0), ELSE("none"), BODY(density), MEANS("of a free sphere, or a cylinder of a length, in place of mass and inertia")},
+    {.name = "length", .unit = "m", REAL, ABOVE(0), ELSE("none"), BODY(length), MEANS("of a cylinder with a density, half of it on either side of `at`; contact sees no ends")},
+    {.name = "mass", .unit = "kg", REAL, ABOVE(0), ELSE("none"), BODY(mass), MEANS("of a free body, which must have it or a density")},
+    {.name = "inertia", .unit = "kg m2", .type = RG_KEY_REAL, .count = 6, .entries = "xx, yy, zz, yz, xz, xy", ANY, ELSE("it does not turn"), BODY(inertia),
+     MEANS("of a free body with a mass, about `at`, along the axes of coordinates at the start; products of inertia with their minus, yz = -int y z dm")},
     BODY_VELOCITY("velocity.x", 0, "along x: of a free body at the start, of a prescribed one at all times"),
     BODY_VELOCITY("velocity.y", 1, "along y"),
     BODY_VELOCITY("velocity.z", 2, "along z"),
+    BODY_SPIN("spin.x", 0, "angular velocity about x: of a free body that turns at the start, of a prescribed one at all times"),
+    BODY_SPIN("spin.y", 1, "about y"),
+    BODY_SPIN("spin.z", 2, "about z"),
     {.name = "faces", .type = RG_KEY_TEXTS, .choice = box_sets, ELSE("all on the surface"), BODY(set),
      .offset_count = offsetof(rg_body_input, sets), MEANS("sets of faces that may touch it")},
+    {.name = "tied", .type = RG_KEY_TEXTS, .choice = box_sets, ELSE("none"), BODY(tied),
+     .offset_count = offsetof(rg_body_input, ties), MEANS("sets of faces that move and turn with it: their forces and moments are the body's")},
     {.name = "penalty", REAL, ABOVE(0), DEFAULT(4), BODY(penalty),
      MEANS("contact stiffness in (lambda + 2 mu)/h, h the height of an element over its face")},
 };

@@ -103,13 +103,17 @@ static void kinetic_energies(const rg_solver *s, const rg_tile *t, const rg_real
     }
 }
 
-/* The kinetic energy of what the velocity changes by in half a step, dt a/2. Of the steps behind and ahead it
- * is the longer one: one that is cut short to end at a certain time is no other measure of the same energy.
- */
+/* Of the steps behind and ahead the longer one, over that ahead: one that is cut short to end at a certain
+ * time is no other measure of the same energy. */
+static double longer_step(const rg_solver *s) {
+    return s->dt > s->dt_next && s->dt_next > 0 ? s->dt / s->dt_next : 1;
+}
+
+/* The kinetic energy of what the velocity changes by in half a step, dt a/2. */
 static void add_half_kick(rg_exact_sum *sum, const rg_solver *s, const rg_tile *t, rg_real *change,
                           double *energy) {
     size_t first = t->begin * RG_NODE_BLOCK, count = rg_tile_eblocks(t) * RG_NODE_BLOCK;
-    rg_real longer = (rg_real)(s->dt > s->dt_next && s->dt_next > 0 ? s->dt / s->dt_next : 1);
+    rg_real longer = (rg_real)longer_step(s);
     for (size_t i = 0; i < count; i++) {
         change[i] = longer * (s->velocity[first + i] - s->step_velocity[first + i]);
     }
@@ -265,12 +269,12 @@ static void values(rg_solver *s, double *v, rg_peak *unresolved) {
 
 static rg_energy energy_of(const rg_solver *s, const double *v) {
     const double *part = v + INTERFACE;
-    rg_bodies_account bodies = rg_bodies_take(s->bodies);
+    rg_bodies_account bodies = rg_bodies_take(s->bodies, longer_step(s));
     rg_energy e = {.step = s->step,
                    .time = s->time,
                    .kinetic = v[KINETIC],
                    .bodies = bodies.kinetic,
-                   .half_kick = v[HALF_KICK],
+                   .half_kick = v[HALF_KICK] + bodies.half_kick,
                    .bulk = v[BULK],
                    .penalty = part[RG_E_PENALTY],
                    .cohesive = part[RG_E_COHESIVE],

@@ -21,17 +21,20 @@ enum {
     VALUES = 12,
     STRAINS = 6,
     BODY = 9,
+    TURN = 10,
     OUTSIDE = 7,
     CAPACITY = 256,
     CAPACITY_OF_SUMS = 32
-}; /* per probe, body, item of the account and sample; samples between two flushes, with sensors, whose sums
-      are large */
+}; /* per probe, body and what more one that turns has, item of the account and sample; samples between two
+      flushes, with sensors, whose sums are large */
 
 static const char *const column[VALUES + STRAINS] = {"ux",  "uy",  "uz",  "vx",  "vy",  "vz",
                                                      "sxx", "syy", "szz", "syz", "sxz", "sxy",
                                                      "exx", "eyy", "ezz", "eyz", "exz", "exy"};
 
 static const char *const body_column[BODY] = {"x", "y", "z", "vx", "vy", "vz", "fx", "fy", "fz"};
+
+static const char *const turn_column[TURN] = {"qw", "qx", "qy", "qz", "wx", "wy", "wz", "mx", "my", "mz"};
 
 static const char *const outside_column[OUTSIDE] = {"force_x",  "force_y",  "force_z", "moment_x",
                                                     "moment_y", "moment_z", "work"};
@@ -91,6 +94,14 @@ static rg_lid locate(const rg_solver *s, int i, double at[4]) {
     return id == first ? found : -1;
 }
 
+static int body_columns(const rg_bodies *b) {
+    int count = 0;
+    for (int i = 0; i < b->count; i++) {
+        count += BODY + (b->body[i].turns ? TURN : 0);
+    }
+    return count;
+}
+
 static int named_items(const rg_account *a) {
     int count = 0;
     for (int i = 0; i < a->count; i++) {
@@ -107,8 +118,13 @@ static void write_header(rg_probes *p, const rg_case *c) {
             fprintf(p->file, ",%s_%s", p->probe[i].name, column[k]);
         }
     }
-    for (int i = 0; i < c->bodies * BODY; i++) {
-        fprintf(p->file, ",%s_%s", c->body[i / BODY].name, body_column[i % BODY]);
+    for (int i = 0; i < c->bodies; i++) {
+        for (int k = 0; k < BODY; k++) {
+            fprintf(p->file, ",%s_%s", c->body[i].name, body_column[k]);
+        }
+        for (int k = 0; p->bodies->body[i].turns && k < TURN; k++) {
+            fprintf(p->file, ",%s_%s", c->body[i].name, turn_column[k]);
+        }
     }
     for (int i = 0; i < p->account->count * OUTSIDE; i++) {
         const char *name = p->account->item[i / OUTSIDE].name;
@@ -197,7 +213,7 @@ rg_probes *rg_probes_find(const rg_solver *s) {
                      .rank = s->rank,
                      .probes = probes,
                      .probe = s->input->output.probe,
-                     .row = s->bodies->count * BODY + named_items(s->account) * OUTSIDE,
+                     .row = body_columns(s->bodies) + named_items(s->account) * OUTSIDE,
                      .bodies = s->bodies,
                      .account = s->account};
     p->sensors = rg_sensors_make(s);
@@ -256,9 +272,17 @@ void rg_probes_reopen(rg_probes *p, rg_solver *s, int64_t length) {
 static void sample_bodies(const rg_probes *p, double *out) {
     for (int i = 0; p->rank == 0 && i < p->bodies->count; i++) {
         const rg_body_seen *seen = &p->bodies->body[i].seen;
-        memcpy(out + i * BODY, seen->x, sizeof seen->x);
-        memcpy(out + i * BODY + 3, seen->v, sizeof seen->v);
-        memcpy(out + i * BODY + 6, seen->force, sizeof seen->force);
+        const rg_body_turn *turn = &p->bodies->body[i].turn;
+        memcpy(out, seen->x, sizeof seen->x);
+        memcpy(out + 3, seen->v, sizeof seen->v);
+        memcpy(out + 6, seen->force, sizeof seen->force);
+        out += BODY;
+        if (p->bodies->body[i].turns) {
+            memcpy(out, turn->seen_rotation, sizeof turn->seen_rotation);
+            memcpy(out + 4, turn->seen_spin, sizeof turn->seen_spin);
+            memcpy(out + 7, turn->moment, sizeof turn->moment);
+            out += TURN;
+        }
     }
 }
 
@@ -284,7 +308,7 @@ void rg_probes_next(rg_probes *p, double time) {
     rg_crack_fronts_next(p->fronts, p->tips);
     double *values = p->value + p->samples * p->row + p->first[p->probes];
     sample_bodies(p, values);
-    sample_account(p, values + p->bodies->count * BODY);
+    sample_account(p, values + body_columns(p->bodies));
     p->time[p->samples] = time;
     if (++p->samples == capacity(p)) {
         rg_probes_flush(p);

@@ -37,6 +37,12 @@ static uint64_t body_hash(const rg_body *b, int number) {
     for (int c = 0; c < 3; c++) {
         h = rg_hash_double(rg_hash_double(h, b->seen.x[c]), b->seen.v[c]);
     }
+    for (int k = 0; b->turns && k < 4; k++) {
+        h = rg_hash_double(h, b->turn.seen_rotation[k]);
+    }
+    for (int c = 0; b->turns && c < 3; c++) {
+        h = rg_hash_double(h, b->turn.seen_spin[c]);
+    }
     return h;
 }
 

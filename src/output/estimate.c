@@ -229,6 +229,25 @@ static void print_others(const rg_solver *s, FILE *out) {
                                                       : "");
 }
 
+/* What the case does not say: mass and inertia made of a density, and the area of what is tied. */
+static void print_body(const rg_solver *s, int i, FILE *out) {
+    const rg_body *b = &s->bodies->body[i];
+    const double *moment = b->inertia.moment;
+    char tied[40];
+    rg_ties_describe(s->ties, i, tied, sizeof tied);
+    if (!b->turns && tied[0] == '\0') {
+        return;
+    }
+    fprintf(out, "body           %s:", b->input->name);
+    if (b->input->motion == RG_MOTION_FREE) {
+        fprintf(out, " %.4g kg, principal moments %.4g, %.4g, %.4g kg m2", b->mass, moment[0], moment[1],
+                moment[2]);
+    } else {
+        fputs(" prescribed", out);
+    }
+    fprintf(out, "%s%s\n", tied[0] != '\0' ? ", tied to " : "", tied);
+}
+
 void rg_estimate_print(const rg_solver *s, const rg_estimate *e, FILE *out) {
     const rg_case *c = s->input;
     fprintf(out, "elements       %" PRId64 " (%" PRId64 " degrees of freedom), %" PRId64 " interfaces\n",
@@ -257,6 +276,9 @@ void rg_estimate_print(const rg_solver *s, const rg_estimate *e, FILE *out) {
         rg_loads_describe(s->loads, i, words, sizeof words);
         fprintf(out, "load           %s%s%s\n", c->load[i].name != NULL ? c->load[i].name : "",
                 c->load[i].name != NULL ? ": " : "", words);
+    }
+    for (int i = 0; i < c->bodies; i++) {
+        print_body(s, i, out);
     }
     for (int i = 0; i < c->interface.sets; i++) {
         if (c->interface.set[i].opens_at > 0) {

@@ -23,6 +23,10 @@ static void write_bodies(FILE *f, const rg_bodies *b) {
         rg_json_vector(f, "position", seen->x);
         rg_json_vector(f, "velocity", seen->v);
         rg_json_vector(f, "force", seen->force);
+        if (b->body[i].turns) {
+            rg_json_vector(f, "angular_velocity", b->body[i].turn.seen_spin);
+            rg_json_vector(f, "moment", b->body[i].turn.moment);
+        }
         fprintf(f, "  \"name\": \"%s\"}%s\n", b->body[i].input->name, i + 1 < b->count ? "," : "],");
     }
 }

@@ -28,40 +28,29 @@ static void unit(const double v[3], double out[3]) {
     }
 }
 
-/* The velocity that the case gives body i; notes where that is not finite for the first time. */
-static double velocity_at(rg_bodies *b, int i, int c, double time) {
-    static const double nowhere[3] = {0, 0, 0};
-    const rg_expr *e = b->body[i].input->velocity[c];
-    double v = e == NULL ? 0 : rg_expr_value(e, nowhere, time);
-    if (!isfinite(v) && b->lapse.input == NULL) {
-        b->lapse = (rg_body_lapse){b->body[i].input, c, time};
-    }
-    return v;
-}
-
 bool rg_bodies_told(const rg_bodies *b, char *words, size_t size) {
     const rg_body_lapse *l = &b->lapse;
     if (l->input != NULL) {
-        snprintf(words, size, "bodies: velocity.%c of %s: %s is not finite at t = %g s", "xyz"[l->component],
-                 l -> input -> name, rg_expr_text(l->input->velocity[l->component]), l -> time);
+        snprintf(words, size, "bodies: %s.%c of %s: %s is not finite at t = %g s", l->what,
+                 "xyz"[l->component], l -> input -> name, rg_expr_text(l->value), l -> time);
     }
     return l->input != NULL;
-}
-
-static double mass_of(const rg_body_input *in) {
-    double volume = 4 * acos(-1.0) / 3 * in->radius * in->radius * in->radius;
-    return in->motion == RG_MOTION_PRESCRIBED ? INFINITY : in->density > 0 ? in->density * volume : in->mass;
 }
 
 static void make_body(rg_bodies *all, int i, const rg_body_input *in) {
     rg_body *b = &all->body[i];
     b->input = in;
-    b->mass = mass_of(in);
-    unit(in->shape == RG_SHAPE_PLANE ? in->normal : in->axis, b->direction);
-    memcpy(b->x, in->at, sizeof b->x);
-    for (int c = 0; c < 3; c++) {
-        b->v[c] = velocity_at(all, i, c, 0);
+    b->mass = in->motion == RG_MOTION_PRESCRIBED ? INFINITY : rg_body_mass(in);
+    b->turns = rg_body_turns(in);
+    unit(in->shape == RG_SHAPE_PLANE ? in->normal : in->axis, b->turn.direction);
+    b->turn.rotation[0] = b->turn.step[0] = b->turn.seen_rotation[0] = 1;
+    if (b->turns && in->motion == RG_MOTION_FREE) {
+        double tensor[6];
+        rg_body_inertia(in, tensor);
+        b->inertia = rg_inertia_make(tensor);
     }
+    memcpy(b->x, in->at, sizeof b->x);
+    rg_bodies_begin(all, i);
 }
 
 static void refuse_lapse(const rg_bodies *b, const rg_case *c) {
@@ -100,7 +89,8 @@ static size_t list_faces(rg_bodies *b, bool *const touching[], size_t tile, rg_c
     for (size_t slot = d->tile[tile].begin * RG_LANES; slot < d->tile[tile].end * RG_LANES; slot++) {
         for (int k = 0; k < RG_FACES * b->count; k++) {
             int face = k / b->count, body = k % b->count, group = d->set[4 * slot + (size_t)face];
-            bool may = touching[body] == NULL || (group >= 0 && touching[body][group]);
+            bool may = b->body[body].input->shape != RG_SHAPE_NONE &&
+                       (touching[body] == NULL || (group >= 0 && touching[body][group]));
             if (!may || !rg_surface_has(d, slot, face)) {
                 continue;
             }
@@ -188,27 +178,47 @@ static double element_omega2(const rg_bodies *b) {
     return largest;
 }
 
+/* Square of the largest lever of forces that press a face, about a body's centre, at the start. */
+static double lever2(const rg_bodies *b, const rg_contact_face *f) {
+    const rg_body *body = &b->body[f->body];
+    double x[RG_FNODES][3], arm[3], most = 0;
+    rg_surface_place(&b->surface, (size_t)f->slot, f->face, NULL, x);
+    for (int a = 0; body->turns && a < RG_FNODES; a++) {
+        rg_vector_subtract(x[a], body->x, arm);
+        double along = rg_vector_dot(arm, body->turn.direction),
+               across2 = rg_vector_dot(arm, arm) - along * along;
+        double square = body->input->shape == RG_SHAPE_PLANE      ? across2
+                        : body->input->shape == RG_SHAPE_CYLINDER ? along * along
+                                                                  : 0;
+        most = fmax(most, square);
+    }
+    return most;
+}
+
 /* Squared frequency of a body on all the faces that may press it at once: those named and, on a sphere, no
- * more than half of its surface. */
+ * more than half of its surface. What turns has the inverse mass 1/m + lever^2/I besides, at most. */
 static double body_omega2(const rg_bodies *b, int body) {
-    rg_exact_sum sum = {0};
+    rg_exact_sum sum[2] = {0};
     double kappa = 0, radius = b->body[body].input->radius;
+    bool turns = b->body[body].turns && isfinite(b->body[body].mass);
     for (size_t i = 0; i < b->tile_begin[b->surface.domain->tiles]; i++) {
         const rg_contact_face *f = &b->face[i];
         if (f->body == body) {
-            rg_exact_add(&sum, f->stiffness);
+            rg_exact_add(&sum[0], f->stiffness);
+            rg_exact_add(&sum[1], turns ? f->stiffness * lever2(b, f) : 0);
             double normal[3],
                 area = rg_surface_area(b->surface.domain->corner + 12 * (size_t)f->slot, f->face, normal);
             kappa = fmax(kappa, f->stiffness / area);
         }
     }
-    rg_exact_allreduce(&sum, 1, b->comm);
+    rg_exact_allreduce(sum, 2, b->comm);
     MPI_Allreduce(MPI_IN_PLACE, &kappa, 1, MPI_DOUBLE, MPI_MAX, b->comm);
-    double stiffness = rg_exact_value(&sum);
+    double stiffness = rg_exact_value(&sum[0]);
     if (b->body[body].input->shape == RG_SHAPE_SPHERE) {
         stiffness = fmin(stiffness, 2 * acos(-1.0) * radius * radius * kappa);
     }
-    return stiffness / b->body[body].mass;
+    double turn = turns ? rg_exact_value(&sum[1]) / b->body[body].inertia.moment[0] : 0;
+    return stiffness / b->body[body].mass + turn;
 }
 
 /* The largest eigenvalue of a sum is at most the sum of the largest ones: the solid's (solver/spectrum.h),
@@ -290,85 +300,12 @@ rg_bodies *rg_bodies_make(const rg_case *c, const rg_domain *d, const rg_part *p
         make_body(b, i, &c->body[i]);
     }
     refuse_lapse(b, c);
-    b->sum = RG_NEW(rg_exact_sum, (size_t)(3 * b->count * threads));
-    b->total = RG_NEW(rg_exact_sum, (size_t)(3 * b->count));
+    b->sum = RG_NEW(rg_exact_sum, (size_t)(RG_BODY_SUMS * b->count * threads));
+    b->total = RG_NEW(rg_exact_sum, (size_t)(RG_BODY_SUMS * b->count));
     find_faces(b, c, part);
     refuse_overlap(b, c, &part->volume);
     b->omega2 = contact_omega2(b);
     return b;
-}
-
-/* ---- Motion ---- */
-
-void rg_bodies_sum(rg_bodies *b) {
-    int sums = 3 * b->count;
-    if (sums == 0) {
-        return;
-    }
-    memset(b->total, 0, (size_t)sums * sizeof *b->total);
-    for (int i = 0; i < sums * b->threads; i++) {
-        rg_exact_merge(&b->total[i % sums], &b->sum[i]);
-    }
-    memset(b->sum, 0, (size_t)(sums * b->threads) * sizeof *b->sum);
-    rg_exact_start_allreduce(b->total, sums, b->comm, &b->request);
-}
-
-static void kick(rg_bodies *all, int i, double time, double dt_last, double dt_next) {
-    rg_body *b = &all->body[i];
-    bool prescribed = b->input->motion == RG_MOTION_PRESCRIBED;
-    b->seen.work = b->work;
-    for (int c = 0; c < 3; c++) {
-        double force = b->seen.force[c], before = b->v[c];
-        b->seen.v[c] = prescribed ? velocity_at(all, i, c, time) : before + 0.5 * dt_last * force / b->mass;
-        b->v[c] = prescribed ? velocity_at(all, i, c, time + 0.5 * dt_next)
-                             : before + 0.5 * (dt_last + dt_next) * force / b->mass;
-        if (prescribed) {
-            b->seen.work -= 0.5 * dt_last * before * force;
-            b->work -= 0.5 * (dt_last * before + dt_next * b->v[c]) * force;
-        }
-    }
-    memcpy(b->seen.x, b->x, sizeof b->x);
-}
-
-void rg_bodies_kick(rg_bodies *b, double time, double dt_last, double dt_next) {
-    MPI_Wait(&b->request, MPI_STATUS_IGNORE);
-    for (int i = 0; i < b->count; i++) {
-        for (int c = 0; c < 3; c++) {
-            b->body[i].seen.force[c] = rg_exact_value(&b->total[3 * i + c]);
-        }
-        kick(b, i, time, dt_last, dt_next);
-    }
-}
-
-void rg_bodies_drift(rg_bodies *b, double dt) {
-    for (int i = 0; i < b->count; i++) {
-        for (int c = 0; c < 3; c++) {
-            b->body[i].x[c] += dt * b->body[i].v[c];
-        }
-    }
-}
-
-rg_bodies_account rg_bodies_take(const rg_bodies *b) {
-    rg_bodies_account a = {0};
-    for (int i = 0; i < b->count; i++) {
-        const rg_body_seen *s = &b->body[i].seen;
-        a.work += s->work;
-        for (int c = 0; c < 3 && b->body[i].input->motion == RG_MOTION_FREE; c++) {
-            int p = (c + 1) % 3, q = (c + 2) % 3;
-            a.kinetic += 0.5 * b->body[i].mass * s->v[c] * s->v[c];
-            a.momentum[c] += b->body[i].mass * s->v[c];
-            a.angular_momentum[c] += b->body[i].mass * (s->x[p] * s->v[q] - s->x[q] * s->v[p]);
-        }
-    }
-    return a;
-}
-
-void rg_bodies_register(rg_bodies *b, rg_state *st) {
-    enum { VALUES = (sizeof(rg_body) - offsetof(rg_body, x)) / sizeof(double) };
-    if (b->count > 0) {
-        rg_state_add_rows(st, "bodies", RG_STATE_DOUBLE, VALUES, b->body[0].x, sizeof *b->body,
-                          (size_t)b->count);
-    }
 }
 
 void rg_bodies_free(rg_bodies *b) {

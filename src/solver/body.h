@@ -1,5 +1,6 @@
-/* Rigid bodies that touch the solid's surface: spheres, planes (half-spaces) and cylinders without ends. They
- * move without turning, freely or as prescribed.
+/* Rigid bodies that touch the solid's surface: spheres, planes (half-spaces) and cylinders without ends; and
+ * those that only hold what is tied to them (solver/tie.h). They move freely or as prescribed, and turn where
+ * they have an inertia or an angular velocity is prescribed.
  *
  * Contact is a penalty on penetration, with one potential: the integral over the outer faces of
  *     (kappa/2) <g>^2,    kappa = penalty (lambda + 2 mu)/h,
@@ -8,7 +9,10 @@
  *
  * Every rank knows all bodies and moves them alike: the force on a body is an exact sum over faces
  * (base/exact_sum.h), sent for under the tile-boundary faces and needed when the step ends. Bodies kick and
- * drift like the solid: what they gain in momentum, it loses. */
+ * drift like the solid: what they gain in momentum, it loses. So with angular momentum: a kick adds the
+ * moment of the forces about the centre of mass, at the places of that step, to the angular momentum about it
+ * in space, and a drift turns the body without touching that (solver/attitude.h). Both momenta of body and
+ * solid together stay to rounding. */
 #ifndef RG_BODY_H
 #define RG_BODY_H
 
@@ -20,8 +24,11 @@
 #include "case/case.h"
 #include "domain/domain.h"
 #include "kernels.h"
+#include "solver/attitude.h"
 #include "solver/state.h"
 #include "solver/surface.h"
+
+enum { RG_BODY_SUMS = 6 };
 
 /* A body as it was seen at a present time, between kick and drift. */
 typedef struct {
@@ -29,10 +36,34 @@ typedef struct {
     double work;                 /* done on a prescribed body by what moves it, since the start (J) */
 } rg_body_seen;
 
+/* The turn of a body, likewise: at the state that the forces belong to, in the middle of the step, and as it
+ * was seen. About the centre of mass. Doubles only: a checkpoint takes them as a row. */
+typedef struct {
+    double direction[3];     /* unit normal of a plane, unit axis of a cylinder, at present */
+    double rotation[4];      /* since the start (solver/attitude.h) */
+    double step[4];          /* on top of it, of the step to come */
+    double momentum[3];      /* of a free body (kg m^2/s) */
+    double spin[3];          /* of a prescribed one (rad/s) */
+    double seen_rotation[4]; /* at the last kick */
+    double seen_momentum[3], seen_spin[3];
+    double moment[3]; /* of the solid's forces on it, then (N m) */
+} rg_body_turn;
+
+/* What the nodes that are tied to a body add to its mass, along its own axes at the start, and the momentum
+ * and angular momentum about its centre that they would have without the body after a kick. */
+typedef struct {
+    bool any;
+    double mass, first[3], second[3][3]; /* kg, kg m, kg m^2 */
+    double momentum[3], angular[3];
+} rg_body_tied;
+
 typedef struct {
     const rg_body_input *input;
-    double direction[3]; /* unit normal of a plane, unit axis of a cylinder */
-    double mass;         /* kg; infinite where the motion is prescribed */
+    double mass; /* kg; infinite where the motion is prescribed */
+    bool turns;
+    rg_inertia inertia;
+    rg_body_tied tied;
+    rg_body_turn turn;
     /* From here to the end doubles only: a checkpoint takes them as a row. */
     double x[3];       /* position of input->at, in the state that the forces belong to (m) */
     double v[3];       /* in the middle of the last step, after a kick of the next one (m/s) */
@@ -43,6 +74,8 @@ typedef struct {
 /* A prescribed velocity that is not finite, and when (s); `input` NULL: none was. */
 typedef struct {
     const rg_body_input *input;
+    const rg_expr *value;
+    const char *what; /* "velocity", "spin" */
     int component;
     double time;
 } rg_body_lapse;
@@ -63,8 +96,8 @@ typedef struct {
     size_t *tile_begin; /* faces of tile t: from tile_begin[t] on */
     rg_contact_face *face;
     double omega2;       /* what contact adds to the largest squared frequency, at most (1/s^2) */
-    rg_exact_sum *sum;   /* [threads][count][3] force on each body (N) */
-    rg_exact_sum *total; /* [count][3] */
+    rg_exact_sum *sum;   /* [threads][count][6] force and moment on each body (N, N m) */
+    rg_exact_sum *total; /* [count][6] */
     MPI_Request request;
     rg_body_lapse lapse; /* the first; on all ranks the same */
 } rg_bodies;
@@ -74,6 +107,9 @@ typedef struct {
  * `d` and `m`, the materials. Collective. Free with rg_bodies_free. */
 rg_bodies *rg_bodies_make(const rg_case *c, const rg_domain *d, const rg_part *part, const rg_material *m,
                           int threads, MPI_Comm comm);
+
+/* The velocities that the case gives body i at the start. */
+void rg_bodies_begin(rg_bodies *b, int i);
 
 /* Depth of point x below the surface of a body (m), negative outside; `normal` points out of the body. */
 double rg_body_depth(const rg_body *b, const double x[3], double normal[3]);
@@ -100,13 +136,19 @@ bool rg_bodies_told(const rg_bodies *b, char *words, size_t size);
 /* Moves the bodies on by a step. */
 void rg_bodies_drift(rg_bodies *b, double dt);
 
-/* Work done on prescribed bodies and kinetic energy of the free ones (J), and their momentum and angular
- * momentum about the origin, as last seen. */
+/* Work done on prescribed bodies and kinetic energy of the free ones (J), also that of `longer` times the
+ * change of their velocities in the last half kick, and their momentum and angular momentum about the origin,
+ * as last seen. */
 typedef struct {
-    double work, kinetic, momentum[3], angular_momentum[3];
+    double work, kinetic, half_kick, momentum[3], angular_momentum[3];
 } rg_bodies_account;
 
-rg_bodies_account rg_bodies_take(const rg_bodies *b);
+rg_bodies_account rg_bodies_take(const rg_bodies *b, double longer);
+
+/* A place in the body, from its centre at the start, as seen from there at present (m); and what it moves by
+ * in the step to come. */
+void rg_body_arm(const rg_body *b, const double at_start[3], double arm[3]);
+void rg_body_sweep(const rg_body *b, const double arm[3], double moved[3]);
 
 /* Registers what moves (solver/state.h). */
 void rg_bodies_register(rg_bodies *b, rg_state *st);

@@ -8,15 +8,15 @@
 
 double rg_body_depth(const rg_body *b, const double x[3], double normal[3]) {
     double r[3] = {x[0] - b->x[0], x[1] - b->x[1], x[2] - b->x[2]};
-    double along = b->input->shape == RG_SHAPE_SPHERE ? 0 : rg_vector_dot(r, b->direction);
+    double along = b->input->shape == RG_SHAPE_SPHERE ? 0 : rg_vector_dot(r, b->turn.direction);
     if (b->input->shape == RG_SHAPE_PLANE) {
         for (int c = 0; c < 3; c++) {
-            normal[c] = b->direction[c];
+            normal[c] = b->turn.direction[c];
         }
         return -along;
     }
     for (int c = 0; c < 3; c++) {
-        r[c] -= along * b->direction[c];
+        r[c] -= along * b->turn.direction[c];
     }
     double distance = sqrt(rg_vector_dot(r, r));
     for (int c = 0; c < 3; c++) {
@@ -27,44 +27,49 @@ double rg_body_depth(const rg_body *b, const double x[3], double normal[3]) {
 
 /* The force of contact at point q over the depth: returns the depth (0 outside). */
 static double touch_point(const rg_bodies *b, const rg_contact_face *f, double x[RG_FNODES][3], int q,
-                          double normal[3]) {
-    double at[3];
+                          double at[3], double normal[3]) {
     rg_surface_at(&b->surface, q, x, at);
     return fmax(0, rg_body_depth(&b->body[f->body], at, normal));
 }
 
-/* Nodal forces on a face and their sum (N); false where it does not touch. */
+/* Nodal forces on a face, their sum and its moment about the body's centre (N, N m); false where it does not
+ * touch. */
 static bool face_forces(const rg_bodies *b, const rg_contact_face *f, const rg_real *u,
-                        double force[RG_FNODES][3], double sum[3]) {
-    double x[RG_FNODES][3], normal[3];
+                        double force[RG_FNODES][3], double sum[RG_BODY_SUMS]) {
+    double x[RG_FNODES][3], normal[3], at[3], arm[3], moment[3], point[3];
     bool touches = false;
     rg_surface_place(&b->surface, (size_t)f->slot, f->face, u, x);
     for (int q = 0; q < RG_POINTS; q++) {
-        double depth = touch_point(b, f, x, q, normal);
+        double depth = touch_point(b, f, x, q, at, normal);
         if (depth == 0) {
             continue;
         }
         touches = true;
         for (int c = 0; c < 3; c++) {
             double pressed = f->stiffness * b->surface.weight[q] * depth * normal[c];
-            sum[c] += pressed;
+            sum[c] += point[c] = pressed;
             for (int a = 0; a < RG_FNODES; a++) {
                 force[a][c] += b->surface.shape[q][a] * pressed;
             }
+        }
+        rg_vector_subtract(at, b->body[f->body].x, arm);
+        rg_vector_cross(arm, point, moment);
+        for (int c = 0; c < 3; c++) {
+            sum[3 + c] += moment[c];
         }
     }
     return touches;
 }
 
 void rg_bodies_touch(rg_bodies *b, size_t tile, const rg_real *u, const rg_push *push) {
-    rg_exact_sum *sum = b->sum + 3 * b->count * omp_get_thread_num();
+    rg_exact_sum *sum = b->sum + RG_BODY_SUMS * b->count * omp_get_thread_num();
     for (size_t i = b->tile_begin[tile]; i < b->tile_begin[tile + 1]; i++) {
         const rg_contact_face *f = &b->face[i];
-        double force[RG_FNODES][3] = {{0}}, all[3] = {0, 0, 0};
+        double force[RG_FNODES][3] = {{0}}, all[RG_BODY_SUMS] = {0};
         if (face_forces(b, f, u, force, all)) {
             rg_surface_push(&b->surface, (size_t)f->slot, f->face, force, push);
-            for (int c = 0; c < 3; c++) {
-                rg_exact_add(&sum[3 * f->body + c], -all[c]);
+            for (int c = 0; c < RG_BODY_SUMS; c++) {
+                rg_exact_add(&sum[RG_BODY_SUMS * f->body + c], -all[c]);
             }
         }
     }
@@ -72,10 +77,10 @@ void rg_bodies_touch(rg_bodies *b, size_t tile, const rg_real *u, const rg_push 
 
 void rg_bodies_energy(const rg_bodies *b, size_t tile, const rg_real *u, rg_exact_sum *energy) {
     for (size_t i = b->tile_begin[tile]; i < b->tile_begin[tile + 1]; i++) {
-        double x[RG_FNODES][3], normal[3];
+        double x[RG_FNODES][3], at[3], normal[3];
         rg_surface_place(&b->surface, (size_t)b->face[i].slot, b->face[i].face, u, x);
         for (int q = 0; q < RG_POINTS; q++) {
-            double depth = touch_point(b, &b->face[i], x, q, normal);
+            double depth = touch_point(b, &b->face[i], x, q, at, normal);
             rg_exact_add(energy, 0.5 * b->face[i].stiffness * b->surface.weight[q] * depth * depth);
         }
     }

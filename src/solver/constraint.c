@@ -12,15 +12,8 @@
 #include "domain/element.h"
 #include "layout.h"
 #include "solver/oblique.h"
+#include "solver/pattern.h"
 #include "solver/supports.h"
-
-/* What depends only on which nodes are constrained: c of them, then the free ones. For the mass M / (rho V):
- * impulse[c][c] = (Minv_cc)^-1, follow[f][c] = Minv_fc (Minv_cc)^-1. */
-typedef struct {
-    int constrained;
-    int8_t node[RG_NODES];
-    double impulse[RG_NODES][RG_NODES], follow[RG_NODES][RG_NODES];
-} pattern;
 
 /* What a component of an element must remember. Arrays run over the constrained nodes of the pattern. Doubles
  * only: a checkpoint takes it as a row of them. */
@@ -38,7 +31,7 @@ typedef struct {
     int8_t component;
     bool varies;
     int16_t boundary[RG_NODES];
-    const pattern *pattern;
+    const rg_pattern *pattern;
     double mass;
     memory is;
 } entry;
@@ -54,67 +47,9 @@ struct rg_constraints {
     int64_t *key;                /* [entries], by which a checkpoint knows them */
     size_t entries, *tile_begin; /* entries of tile t: tile_begin[t] .. tile_begin[t + 1] - 1 */
     entry *entry;
-    pattern *patterns[1 << RG_NODES];
+    rg_patterns patterns;
     bool varies; /* some value depends on time or is a displacement */
 };
-
-/* ---- Patterns ---- */
-
-/* Inverts the leading n x n part of a symmetric positive definite matrix (Gauss-Jordan, no pivoting needed).
- */
-static void invert(int n, double a[RG_NODES][RG_NODES], double inverse[RG_NODES][RG_NODES]) {
-    for (int i = 0; i < n; i++) {
-        for (int j = 0; j < n; j++) {
-            inverse[i][j] = i == j;
-        }
-    }
-    for (int k = 0; k < n; k++) {
-        double pivot = a[k][k];
-        for (int j = 0; j < n; j++) {
-            a[k][j] /= pivot;
-            inverse[k][j] /= pivot;
-        }
-        for (int i = 0; i < n; i++) {
-            double factor = a[i][k];
-            for (int j = 0; i != k && j < n; j++) {
-                a[i][j] -= factor * a[k][j];
-                inverse[i][j] -= factor * inverse[k][j];
-            }
-        }
-    }
-}
-
-static const pattern *pattern_of(rg_constraints *k, unsigned mask) {
-    if (k->patterns[mask] != NULL) {
-        return k->patterns[mask];
-    }
-    pattern *p = RG_NEW(pattern, 1);
-    int n = 0;
-    for (int pass = 1; pass >= 0; pass--) {
-        for (int8_t a = 0; a < RG_NODES; a++) {
-            if ((int)(mask >> a & 1) == pass) {
-                p->node[n++] = a;
-            }
-        }
-        p->constrained = pass == 1 ? n : p->constrained;
-    }
-    double block[RG_NODES][RG_NODES];
-    for (int i = 0; i < p->constrained; i++) {
-        for (int j = 0; j < p->constrained; j++) {
-            block[i][j] = rg_inverse_mass_entry(k->input->mass, p->node[i], p->node[j]);
-        }
-    }
-    invert(p->constrained, block, p->impulse);
-    for (int f = p->constrained; f < RG_NODES; f++) {
-        for (int i = 0; i < p->constrained; i++) {
-            for (int j = 0; j < p->constrained; j++) {
-                p->follow[f][i] +=
-                    rg_inverse_mass_entry(k->input->mass, p->node[f], p->node[j]) * p->impulse[j][i];
-            }
-        }
-    }
-    return k->patterns[mask] = p;
-}
 
 /* ---- Set-up ---- */
 
@@ -140,7 +75,10 @@ static void add_entry(rg_constraints *k, double mass, size_t slot, int c, unsign
         k->entry = rg_realloc(k->entry, k->entries == 0 ? 1 : 2 * k->entries, sizeof *k->entry);
     }
     entry *e = &k->entry[k->entries++];
-    *e = (entry){.slot = (rg_lid)slot, .component = (int8_t)c, .pattern = pattern_of(k, mask), .mass = mass};
+    *e = (entry){.slot = (rg_lid)slot,
+                 .component = (int8_t)c,
+                 .pattern = rg_patterns_get(&k->patterns, mask),
+                 .mass = mass};
     for (int i = 0; i < e->pattern->constrained; i++) {
         e->boundary[i] = which[e->pattern->node[i]];
         e->varies = e->varies || rg_support_varies(&k->input->boundary[e->boundary[i]]);
@@ -167,7 +105,7 @@ static void make_parts(rg_constraints *k, const entry *e) {
         for (unsigned p = 0; p < parts; p++) {
             mask |= (acting >> p & 1) != 0 ? of[p] : 0;
         }
-        pattern_of(k, mask);
+        rg_patterns_get(&k->patterns, mask);
     }
 }
 
@@ -175,8 +113,10 @@ rg_constraints *rg_constraints_make(const rg_case *c, const rg_domain *d, const 
                                     const rg_material *m, rg_assembly *nodes, rg_account *account,
                                     MPI_Comm comm) {
     rg_constraints *k = RG_NEW(rg_constraints, 1);
-    *k = (rg_constraints){
-        .input = c, .domain = d, .supports = rg_supports_make(c, d, part, nodes, account, comm)};
+    *k = (rg_constraints){.input = c,
+                          .domain = d,
+                          .patterns.mass = c->mass,
+                          .supports = rg_supports_make(c, d, part, nodes, account, comm)};
     k->oblique = rg_oblique_make(k->supports, m, nodes, comm);
     for (int b = 0; b < c->boundaries; b++) {
         k->varies = k->varies || rg_support_varies(&c->boundary[b]);
@@ -297,7 +237,7 @@ void rg_constraints_set(rg_constraints *k, double time, double dt_last, double d
 
 /* ---- Correction ---- */
 
-static int position(const pattern *p, int node) {
+static int position(const rg_pattern *p, int node) {
     int i = 0;
     while (p->node[i] != node) {
         i++;
@@ -306,17 +246,17 @@ static int position(const pattern *p, int node) {
 }
 
 /* That of the nodes of an entry whose boundaries act at present. */
-static const pattern *pattern_now(const rg_constraints *k, const entry *e) {
+static const rg_pattern *pattern_now(const rg_constraints *k, const entry *e) {
     unsigned mask = 0;
     for (int i = 0; k->supports->timed && i < e->pattern->constrained; i++) {
         mask |= (k->supports->acts[e->boundary[i]] ? 1u : 0u) << e->pattern->node[i];
     }
-    return k->supports->timed ? k->patterns[mask] : e->pattern;
+    return k->supports->timed ? k->patterns.of[mask] : e->pattern;
 }
 
 /* Adds to the velocities of an entry's nodes what brings those that are constrained now, by pattern p, to
  * `target`, by `impulse` on these; returns the work of that. */
-static double correct(const entry *e, const pattern *p, const double *target, rg_real *velocity,
+static double correct(const entry *e, const rg_pattern *p, const double *target, rg_real *velocity,
                       double impulse[RG_NODES]) {
     int of[RG_NODES]; /* positions in the entry's own pattern */
     double work = 0, change[RG_NODES];
@@ -378,7 +318,7 @@ void rg_constraints_kick(rg_constraints *k, size_t tile, const rg_real *u, rg_re
     rg_oblique_kick(k->oblique, tile, u, velocity, now);
     for (size_t n = k->tile_begin[tile]; n < k->tile_begin[tile + 1]; n++) {
         entry *e = &k->entry[n];
-        const pattern *p = pattern_now(k, e);
+        const rg_pattern *p = pattern_now(k, e);
         double impulse[RG_NODES];
         if (now != NULL) {
             e->is.work_now = e->is.work + correct(e, p, e->is.present, now, impulse);
@@ -438,6 +378,13 @@ void rg_constraints_show(const rg_constraints *k, rg_held_line *show, void *to) 
     rg_oblique_show(k->oblique, show, to);
 }
 
+void rg_constraints_mark(const rg_constraints *k, uint8_t *slots) {
+    for (size_t n = 0; n < k->entries; n++) {
+        slots[k->entry[n].slot] = 1;
+    }
+    rg_oblique_mark(k->oblique, slots);
+}
+
 void rg_constraints_hold(const rg_constraints *k, size_t tile, rg_real *field) {
     static const double rest[RG_NODES] = {0};
     double impulse[RG_NODES];
@@ -475,9 +422,7 @@ void rg_constraints_free(rg_constraints *k) {
     if (k == NULL) {
         return;
     }
-    for (size_t i = 0; i < sizeof k->patterns / sizeof *k->patterns; i++) {
-        rg_free(k->patterns[i]);
-    }
+    rg_patterns_clear(&k->patterns);
     rg_free(k->entry);
     rg_oblique_free(k->oblique);
     rg_supports_free(k->supports);

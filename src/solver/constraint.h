@@ -60,6 +60,9 @@ void rg_constraints_place(rg_constraints *k, rg_real *u);
 void rg_constraints_show(const rg_constraints *k, rg_held_line *show, void *to);
 void rg_constraints_hold(const rg_constraints *k, size_t tile, rg_real *field);
 
+/* Sets slots[slot] to 1 of all elements with a node that is prescribed at any time. */
+void rg_constraints_mark(const rg_constraints *k, uint8_t *slots);
+
 /* Registers what the constraints must remember: all that varies of their entries, keyed by 4 * global number
  * of the element + component. */
 void rg_constraints_register(rg_constraints *k, rg_state *st);

@@ -472,6 +472,12 @@ void rg_oblique_show(const rg_oblique *o, rg_held_line *show, void *to) {
     }
 }
 
+void rg_oblique_mark(const rg_oblique *o, uint8_t *slots) {
+    for (size_t n = 0; n < o->entries; n++) {
+        slots[o->entry[n].slot] = 1;
+    }
+}
+
 void rg_oblique_hold(const rg_oblique *o, size_t tile, rg_real *field) {
     static const double rest[MOST_ROWS] = {0};
     double impulse[MOST_ROWS];

@@ -31,6 +31,7 @@ void rg_oblique_drift(rg_oblique *o, size_t tile, rg_real *u);
 void rg_oblique_work(const rg_oblique *o, rg_exact_sum *work);
 void rg_oblique_place(rg_oblique *o, rg_real *u);
 void rg_oblique_show(const rg_oblique *o, rg_held_line *show, void *to);
+void rg_oblique_mark(const rg_oblique *o, uint8_t *slots);
 void rg_oblique_hold(const rg_oblique *o, size_t tile, rg_real *field);
 void rg_oblique_register(rg_oblique *o, rg_state *st);
 

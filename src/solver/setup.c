@@ -113,6 +113,8 @@ static rg_solver *make(const rg_case *input, rg_part *part, MPI_Comm comm) {
     s->constraints =
         rg_constraints_make(input, s->domain, s->part, model->material, s->assembly, s->account, comm);
     s->bodies = rg_bodies_make(input, s->domain, s->part, model->material, s->threads, comm);
+    s->ties = rg_ties_make(input, s->domain, s->part, model->material, s->assembly, s->bodies, s->constraints,
+                           s->threads, comm);
     s->loads = rg_loads_make(input, s->domain, s->part, model->material, s->account, s->threads, comm);
     s->absorbing =
         rg_absorbing_make(input, s->domain, s->part, model->material, s->assembly, s->account, comm);
@@ -188,6 +190,7 @@ void rg_solver_free(rg_solver *s) {
     rg_free(s->tile_seconds);
     if (!s->beside) {
         rg_constraints_free(s->constraints);
+        rg_ties_free(s->ties);
         rg_bodies_free(s->bodies);
         rg_loads_free(s->loads);
         rg_absorbing_free(s->absorbing);

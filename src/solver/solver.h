@@ -29,6 +29,7 @@
 #include "solver/load.h"
 #include "solver/model.h"
 #include "solver/phases.h"
+#include "solver/tie.h"
 
 /* What one thread needs to work on a tile. */
 typedef struct {
@@ -77,6 +78,7 @@ struct rg_solver {
 #undef MEMBER
     rg_constraints *constraints;
     rg_bodies *bodies;
+    rg_ties *ties;       /* of the surface to bodies */
     rg_account *account; /* of what acts from outside */
     rg_loads *loads;
     rg_absorbing *absorbing;

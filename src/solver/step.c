@@ -158,6 +158,7 @@ static void tile_drift(rg_solver *s, size_t tile, const rg_workspace *w) {
     rg_drift_args args = {s->dt_next, s->velocity + at, s->u + at};
     s->kernels->drift(&args, 0, rg_tile_eblocks(t));
     rg_constraints_drift(s->constraints, tile, s->u);
+    rg_ties_drift(s->ties, tile, s->dt_next, s->u);
     if (s->contacts != NULL) {
         rg_contacts_place(s->contacts, tile, s->u, s->contact_sunk);
     }
@@ -166,11 +167,9 @@ static void tile_drift(rg_solver *s, size_t tile, const rg_workspace *w) {
 }
 
 /* The velocities of a tile are complete. */
-static void tile_complete(rg_solver *s, size_t tile, const rg_workspace *w, const impulse *p) {
+static void tile_finish(rg_solver *s, size_t tile, const rg_workspace *w, const impulse *p) {
     if (p->constrain) {
-        rg_push damp = {p->dt, 0.5 * s->dt, p->velocity, step_velocity_of(s, tile, p)};
-        rg_absorbing_damp(s->absorbing, tile, &damp);
-        rg_constraints_kick(s->constraints, tile, s->u, p->velocity, step_velocity_of(s, tile, p));
+        rg_ties_kick(s->ties, tile, s->dt, s->dt_next, p->velocity, step_velocity_of(s, tile, p));
         rg_loads_book(s->loads, tile, s->u, p->velocity);
         rg_absorbing_book(s->absorbing, tile, p->velocity);
     }
@@ -179,6 +178,19 @@ static void tile_complete(rg_solver *s, size_t tile, const rg_workspace *w, cons
     }
     if (p->move) {
         tile_drift(s, tile, w);
+    }
+}
+
+/* So they are but for what bodies do to nodes tied to them, which takes all tiles (finish_tied). */
+static void tile_complete(rg_solver *s, size_t tile, const rg_workspace *w, const impulse *p) {
+    if (p->constrain) {
+        rg_push damp = {p->dt, 0.5 * s->dt, p->velocity, step_velocity_of(s, tile, p)};
+        rg_absorbing_damp(s->absorbing, tile, &damp);
+        rg_constraints_kick(s->constraints, tile, s->u, p->velocity, step_velocity_of(s, tile, p));
+        rg_ties_gather(s->ties, tile, p->velocity);
+    }
+    if (!(p->constrain && rg_ties_any(s->ties))) {
+        tile_finish(s, tile, w, p);
     }
 }
 
@@ -347,6 +359,29 @@ static void assemble_all(rg_solver *s, const impulse *p) {
     mark(s, RG_PHASE_JUMP);
 }
 
+static void tile_finish_tied(rg_solver *s, size_t tile, const rg_workspace *w, const impulse *p) {
+    if (s->watched[tile]) {
+        rg_tile_receive(s, &s->domain->tile[tile], w);
+    }
+    tile_finish(s, tile, w, p);
+}
+
+/* The bodies with what is tied to them, and that with them. */
+static void finish_tied(rg_solver *s, const impulse *p) {
+    if (!p->constrain || !rg_ties_any(s->ties)) {
+        return;
+    }
+#pragma omp master
+    {
+        rg_ties_close(s->ties);
+        rg_bodies_kick(s->bodies, s->time, s->dt, s->dt_next);
+    }
+#pragma omp barrier
+    mark(s, RG_PHASE_REDUCE);
+    sweep(s, tile_finish_tied, p, 0, s->domain->tiles, NULL);
+    mark(s, RG_PHASE_JUMP);
+}
+
 /* All forces. The traces of the displacement, sent at the end of the last drift, arrive under the first sweep
  * of the tiles that touch no other rank; the tractions under the second. */
 static void evaluate(rg_solver *s, const impulse *whole) {
@@ -381,6 +416,7 @@ static void evaluate(rg_solver *s, const impulse *whole) {
         if (s->assembly != NULL) {
             assemble_all(s, whole);
         }
+        finish_tied(s, whole);
         if (p->move) {
             start_traces(s, next);
         }
@@ -393,7 +429,9 @@ static void evaluate(rg_solver *s, const impulse *whole) {
         rg_step_limiter_agree(s);
     }
     if (p->constrain) {
-        rg_bodies_kick(s->bodies, s->time, s->dt, s->dt_next);
+        if (!rg_ties_any(s->ties)) {
+            rg_bodies_kick(s->bodies, s->time, s->dt, s->dt_next);
+        }
         rg_account_close(s->account);
     }
     rg_phases_mark(&s->phases, RG_PHASE_REDUCE);
@@ -474,6 +512,7 @@ void rg_solver_settle(rg_solver *s) {
 
 void rg_solver_start(rg_solver *s) {
     rg_initial_fill(s);
+    rg_ties_start(s->ties, s->u, s->velocity);
     rg_solver_settle(s);
 }
 

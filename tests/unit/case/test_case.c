@@ -226,8 +226,8 @@ static void same_bodies(const rg_case *a, const rg_case *b) {
     assert_int_equal(a->bodies, b->bodies);
     for (int i = 0; i < a->bodies; i++) {
         const rg_body_input *p = &a->body[i], *q = &b->body[i];
-        const double of_p[] = {p->radius, p->density, p->mass, p->penalty};
-        const double of_q[] = {q->radius, q->density, q->mass, q->penalty};
+        const double of_p[] = {p->radius, p->density, p->mass, p->penalty, p->length};
+        const double of_q[] = {q->radius, q->density, q->mass, q->penalty, q->length};
         assert_string_equal(p->name, q->name);
         assert_true(p->shape == q->shape && p->motion == q->motion);
         assert_memory_equal(of_p, of_q, sizeof of_p);
@@ -238,7 +238,13 @@ static void same_bodies(const rg_case *a, const rg_case *b) {
         for (int k = 0; k < p->sets; k++) {
             assert_string_equal(p->set[k], q->set[k]);
         }
+        assert_memory_equal(p->inertia, q->inertia, sizeof p->inertia);
+        assert_int_equal(p->ties, q->ties);
+        for (int k = 0; k < p->ties; k++) {
+            assert_string_equal(p->tied[k], q->tied[k]);
+        }
         for (int k = 0; k < 3; k++) {
+            same_expr(p->spin[k], q->spin[k]);
             same_expr(p->velocity[k], q->velocity[k]);
         }
     }

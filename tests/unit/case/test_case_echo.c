@@ -103,7 +103,8 @@ static const char *const all[] = {
     "x-],"
     "velocity: {y: 1/3}}, {name: wall, shape: plane, motion: prescribed, at: [0, 0, -1], normal: [0, 3, 4],"
     "penalty: 2, velocity: {x: t, y: 0, z: t*t}}, {name: rod, shape: cylinder, motion: free, mass: 0.75,"
-    "at: [0, 0, -1], axis: [1, 1, 0], radius: 2}]",
+    "at: [0, 0, -1], axis: [1, 1, 0], radius: 2, inertia: [1, 1.25, 1.5, 0, 0.125, 0], spin: {z: 4}, tied: "
+    "[y-]}]",
     "time={end: 0.25, safety: 0.875, steps: 30, collapse: 0}",
     "output.dir=\"a \\\"b\\\" \\\\ \\t\\x7f: # \\u00e9\"",
     "output.interval=3",
@@ -304,6 +305,10 @@ static void test_everything(void **state) {
                 "    radius: 2 # m\n"
                 "    axis: [1, 1, 0]\n"
                 "    mass: 0.75 # kg\n"
+                "    inertia: [1, 1.25, 1.5, 0, 0.125, 0] # kg m2\n"
+                "    spin:\n"
+                "      z: 4 # rad/s\n"
+                "    tied: [\"y-\"]\n"
                 "    penalty: 4\n"
                 "time:\n"
                 "  end: 0.25 # s\n"

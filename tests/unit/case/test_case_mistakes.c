@@ -253,11 +253,11 @@ static const mistake mistakes[] = {
      "  - 3\n"
      "time:\n",
      ":16:5: bodies[0].radius: missing: spheres and cylinders have one\n"
-     ":16:5: bodies[0].mass: missing: a free body has a mass, or a sphere a density\n"
+     ":16:5: bodies[0].mass: missing: a free body has a mass, or a sphere or cylinder a density\n"
      ":16:12: bodies[0].name: a b: not a name; allowed: letters, digits, _ and -; unique in history.csv\n"
      ":17:61: bodies[1].radius: not used: a plane has none\n"
      ":17:80: bodies[1].normal: [0, 0, 0]: has no direction\n"
-     ":17:91: bodies[1].density: not used: only a sphere has a volume; give its mass\n"
+     ":17:91: bodies[1].density: not used: only a sphere or a cylinder has a volume; give its mass\n"
      ":17:113: bodies[1].velocity.z: t: depends on t, but a free body has it at the start alone\n"
      ":18:12: bodies[2].name: w: the name of an earlier one in history.csv; allowed: letters, digits, _ and "
      "-; "
@@ -273,12 +273,12 @@ static const mistake mistakes[] = {
      ":22:104: bodies[6].faces: z+: not a list; allowed: list from x-, x+, y-, y+, z-, z+\n"
      ":23:104: bodies[7].faces: []: an empty list; allowed: list from x-, x+, y-, y+, z-, z+\n"
      ":24:5: bodies[8].at: missing; allowed: [x, y, z], each number (m)\n"
-     ":24:22: bodies[8].shape: ball: not one of the allowed words; allowed: sphere, plane, cylinder\n"
+     ":24:22: bodies[8].shape: ball: not one of the allowed words; allowed: sphere, plane, cylinder, none\n"
      ":24:36: bodies[8].motion: loose: not one of the allowed words; allowed: free, prescribed\n"
      ":24:43: bodies[8].colour: unknown key; allowed: name, shape, motion, at, radius, normal, axis, "
-     "density, mass, velocity, faces, penalty\n"
+     "density, length, mass, inertia, velocity, spin, faces, tied, penalty\n"
      ":25:5: bodies[9]: 3: not a mapping of keys; allowed: list of {name, shape, motion, at, radius, normal, "
-     "axis, density, mass, velocity, faces, penalty}\n"},
+     "axis, density, length, mass, inertia, velocity, spin, faces, tied, penalty}\n"},
     {"output:\n", "output:\n  times: [1e-7, 1e-7]\n",
      ":18:10: output.times: [1e-7, 1e-7]: not ascending; allowed: ascending list, each number >= 0 (s)\n"},
     {"output:\n", "output:\n  times: [1e-7, 2e-6]\n",

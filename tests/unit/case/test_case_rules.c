@@ -28,13 +28,13 @@ static const mistake bodies[] = {
      ":18:76: bodies[2].mass: not used: the motion is prescribed\n"
      ":18:85: bodies[2].density: not used: the motion is prescribed\n"
      ":19:78: bodies[3].axis: [0, 0, 0]: has no direction\n"
-     ":19:98: bodies[3].density: not used: only a sphere has a volume; give its mass\n"
+     ":19:98: bodies[3].density: not used: only a cylinder of a length has a volume; give that, or its mass\n"
      ":20:70: bodies[4].mass: given together with density\n"
      ":20:91: bodies[4].normal: not used: it belongs to a plane\n"
      ":21:5: bodies[5].mass: missing: a free body has a mass\n"
      ":21:66: bodies[5].normal: [0, 0, 0.0]: has no direction\n"
      ":22:5: bodies[6].radius: missing: spheres and cylinders have one\n"
-     ":22:5: bodies[6].mass: missing: a free body has a mass\n"
+     ":22:5: bodies[6].mass: missing: a free body has a mass, or a sphere or cylinder a density\n"
      ":22:88: bodies[6].velocity.x: t: depends on t, but a free body has it at the start alone\n"
      ":22:88: bodies[6].velocity.z: 1 + t: depends on t, but a free body has it at the start alone\n"
      ":23:5: bodies[7].name: missing; allowed: text\n"
@@ -51,13 +51,47 @@ static const mistake bodies[] = {
      ":25:104: bodies[9].faces[1]: 7: not one of the allowed words; allowed: x-, x+, y-, y+, z-, z+\n"
      ":25:107: bodies[9].faces[2]: z: not one of the allowed words; allowed: x-, x+, y-, y+, z-, z+; did you "
      "mean 'z-'?\n"
-     ":26:22: bodies[10].shape: [sphere]: not one of the allowed words; allowed: sphere, plane, cylinder\n"
+     ":26:22: bodies[10].shape: [sphere]: not one of the allowed words; allowed: sphere, plane, cylinder, "
+     "none\n"
      ":26:40: bodies[10].motion: {a: 1}: not one of the allowed words; allowed: free, prescribed\n"
      ":26:52: bodies[10].at: 3: not a list; allowed: [x, y, z], each number (m)\n"
      ":26:63: bodies[10].faces[0]: [1]: not one of the allowed words; allowed: x-, x+, y-, y+, z-, z+\n"
      ":31:14: output.probes[0].name: p: the name of an earlier one in history.csv; allowed: letters, digits, "
      "_ "
      "and -; unique in history.csv\n"},
+    /* that turn, and what is tied to them */
+    {"time:\n",
+     "bodies:\n"
+     "  - {name: a, shape: none, motion: free, at: [0, 0, 9], mass: 1, radius: 1, faces: [z+]}\n"
+     "  - {name: b, shape: none, motion: free, at: [0, 0, 9], mass: 1, tied: [z+, top]}\n"
+     "  - {name: c, shape: none, motion: free, at: [0, 0, 9], mass: 1, tied: [z+], spin: {x: 1}}\n"
+     "  - {name: d, shape: sphere, motion: free, at: [0, 0, 9], radius: 1, density: 2, inertia: [1, 1, 1, 0, "
+     "0, 0]}\n"
+     "  - {name: e, shape: plane, motion: prescribed, at: [0, 0, 9], normal: [0, 0, 1], inertia: [1, 1, 1, "
+     "0, 0, 0]}\n"
+     "  - {name: f, shape: plane, motion: free, at: [0, 0, 9], normal: [0, 0, 1], mass: 1, inertia: [1, 1, "
+     "2.1, 0, 0, 0]}\n"
+     "  - {name: g, shape: plane, motion: free, at: [0, 0, 9], normal: [0, 0, 1], mass: 1, inertia: [1, 1, "
+     "1, 1, 0, 0], spin: {y: 'sin(t)'}}\n"
+     "  - {name: h, shape: cylinder, motion: free, at: [0, 0, 9], axis: [0, 0, 1], radius: 1, mass: 2, "
+     "length: 1}\n"
+     "time:\n",
+     ":16:5: bodies[0].tied: missing: a body that touches nothing has no other use\n"
+     ":16:66: bodies[0].radius: not used: it belongs to spheres and cylinders\n"
+     ":16:77: bodies[0].faces: not used: it touches nothing\n"
+     ":17:77: bodies[1].tied[1]: top: not one of the allowed words; allowed: x-, x+, y-, y+, z-, z+\n"
+     ":18:66: bodies[2].tied: makes a free body turn, which needs its inertia, or a density\n"
+     ":18:78: bodies[2].spin: makes a free body turn, which needs its inertia, or a density\n"
+     ":19:82: bodies[3].inertia: given together with density\n"
+     ":20:83: bodies[4].inertia: not used: the motion is prescribed\n"
+     ":21:95: bodies[5].inertia: [1, 1, 2.1, 0, 0, 0]: no body has such an inertia; allowed: principal "
+     "moments > 0, none "
+     "larger than the sum of the others\n"
+     ":22:95: bodies[6].inertia: [1, 1, 1, 1, 0, 0]: no body has such an inertia; allowed: principal moments "
+     "> 0, none "
+     "larger than the sum of the others\n"
+     ":22:121: bodies[6].spin.y: sin(t): depends on t, but a free body has it at the start alone\n"
+     ":23:98: bodies[7].length: not used: it belongs to a cylinder with a density\n"},
 };
 
 #define LOAD "allowed: exactly one of traction, pressure, force, acceleration, foundation\n"
@@ -559,19 +593,25 @@ static void expect_good(const char *from, const char *to) {
 
 static void test_good(void **state) {
     (void)state;
-    expect_good("time:\n",
-                "bodies:\n"
-                "  - {name: a, shape: plane, motion: free, at: [0, 0, 9], normal: [2, 0, 0], mass: 1}\n"
-                "  - {name: b, shape: plane, motion: free, at: [0, 0, 9], normal: [0, -1, 0], mass: 1}\n"
-                "  - {name: c, shape: plane, motion: prescribed, at: [0, 0, 9], normal: [0, 0, 1e-9]}\n"
-                "  - {name: d, shape: cylinder, motion: prescribed, at: [0, 0, 9], axis: [1, 0, 0], "
-                "radius: 1, velocity: {y: t}}\n"
-                "  - {name: e, shape: cylinder, motion: free, at: [0, 0, 9], axis: [0, 1, 0], radius: 1, "
-                "mass: 1, velocity: {x: 1, z: 1/3}}\n"
-                "  - {name: f, shape: cylinder, motion: free, at: [0, 0, 9], axis: [0, 0, -1], radius: 1, "
-                "mass: 1}\n"
-                "  - {name: g, shape: sphere, motion: free, at: [0, 0, 9], radius: 1, mass: 1}\n"
-                "time:\n");
+    expect_good(
+        "time:\n",
+        "bodies:\n"
+        "  - {name: a, shape: plane, motion: free, at: [0, 0, 9], normal: [2, 0, 0], mass: 1}\n"
+        "  - {name: b, shape: plane, motion: free, at: [0, 0, 9], normal: [0, -1, 0], mass: 1}\n"
+        "  - {name: c, shape: plane, motion: prescribed, at: [0, 0, 9], normal: [0, 0, 1e-9]}\n"
+        "  - {name: d, shape: cylinder, motion: prescribed, at: [0, 0, 9], axis: [1, 0, 0], "
+        "radius: 1, velocity: {y: t}}\n"
+        "  - {name: e, shape: cylinder, motion: free, at: [0, 0, 9], axis: [0, 1, 0], radius: 1, "
+        "mass: 1, velocity: {x: 1, z: 1/3}}\n"
+        "  - {name: f, shape: cylinder, motion: free, at: [0, 0, 9], axis: [0, 0, -1], radius: 1, "
+        "mass: 1}\n"
+        "  - {name: g, shape: sphere, motion: free, at: [0, 0, 9], radius: 1, mass: 1}\n"
+        "  - {name: h, shape: cylinder, motion: free, at: [0, 0, 9], axis: [0, 3, 4], radius: 1, length: 2, "
+        "density: 3, spin: {x: 1}, tied: [z+]}\n"
+        "  - {name: i, shape: none, motion: free, at: [0, 0, 9], mass: 1, inertia: [1, 1, 2, 0, 0, 0], tied: "
+        "[x-]}\n"
+        "  - {name: j, shape: none, motion: prescribed, at: [0, 0, 9], spin: {z: t}, tied: [x+]}\n"
+        "time:\n");
     expect_good("  law: linear\n", "  law: linear\n  contact: flux\n  friction: 0\n");
     expect_good("  law: linear\n",
                 "  law: linear\n  activation: conserving\n  contact: potential\n  friction: 0.5\n");

@@ -424,6 +424,7 @@ rg_energy twin_energy(const twin *w) {
     add_momentum(w, &sum);
     add_cracks(w, &sum);
     sum.contact += touch_all(w, NULL);
+    double longer = w->dt > w->dt_next && w->dt_next > 0 ? w->dt / w->dt_next : 1;
     for (size_t k = 0; k < 3 * w->elements; k++)
         sum.external += w->hold[k].work_now;
     for (int i = 0; i < w->input->bodies; i++) {
@@ -434,6 +435,7 @@ rg_energy twin_energy(const twin *w) {
         rg_reference_cross(b->x, b->v_now, turn);
         for (int c = 0; c < 3 && !moved; c++) {
             sum.bodies += b->mass * b->v_now[c] * b->v_now[c] / 2;
+            sum.half_kick += b->mass * pow(longer * (b->v[c] - b->v_now[c]), 2) / 2;
             sum.momentum[c] += b->mass * b->v_now[c];
             sum.angular_momentum[c] += b->mass * turn[c];
         }

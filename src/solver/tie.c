@@ -1,0 +1,358 @@
+#include "solver/tie.h"
+
+#include <inttypes.h>
+#include <omp.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/error.h"
+#include "base/exact_sum.h"
+#include "base/mem.h"
+#include "base/vector.h"
+#include "domain/element.h"
+#include "solver/pattern.h"
+#include "solver/selection.h"
+
+/* The nodes of an element that are tied. */
+typedef struct {
+    rg_lid slot;
+    int body;
+    const rg_pattern *pattern;
+    double mass;
+} entry;
+
+enum { SUMS = 6, CARRIED = 13 };
+
+struct rg_ties {
+    const rg_domain *domain;
+    rg_bodies *bodies;
+    MPI_Comm comm;
+    bool any;
+    int threads;
+    rg_patterns patterns;
+    size_t entries, *tile_begin;
+    entry *entry;
+    double *area;      /* [bodies]: of the faces tied to each (m^2) */
+    rg_exact_sum *sum; /* [threads][bodies][SUMS] */
+};
+
+/* ---- In time ---- */
+
+/* From the body's centre, at the start. */
+static void arm_at_start(const rg_ties *t, const entry *e, int i, double arm[3]) {
+    double x[3];
+    rg_node_position(t->domain->corner + 12 * (size_t)e->slot, e->pattern->node[i], x);
+    rg_vector_subtract(x, t->bodies->body[e->body].input->at, arm);
+}
+
+/* Momenta that impulses would have to give the nodes at rest to have the velocities of a field. */
+static void momenta(const entry *e, const rg_real *velocity, double out[RG_NODES][3]) {
+    const rg_pattern *p = e->pattern;
+    for (int i = 0; i < p->constrained; i++) {
+        for (int c = 0; c < 3; c++) {
+            double sum = 0;
+            for (int j = 0; j < p->constrained; j++) {
+                sum += p->impulse[i][j] * velocity[rg_node_index((size_t)e->slot, p->node[j], c)];
+            }
+            out[i][c] = e->mass * sum;
+        }
+    }
+}
+
+void rg_ties_gather(rg_ties *t, size_t tile, const rg_real *velocity) {
+    for (size_t n = t->tile_begin[tile]; n < t->tile_begin[tile + 1]; n++) {
+        const entry *e = &t->entry[n];
+        const rg_body *b = &t->bodies->body[e->body];
+        rg_exact_sum *sum = t->sum + SUMS * (omp_get_thread_num() * t->bodies->count + e->body);
+        double momentum[RG_NODES][3], all[SUMS] = {0};
+        momenta(e, velocity, momentum);
+        for (int i = 0; i < e->pattern->constrained; i++) {
+            double start[3], arm[3], angular[3];
+            arm_at_start(t, e, i, start);
+            rg_body_arm(b, start, arm);
+            rg_vector_cross(arm, momentum[i], angular);
+            for (int c = 0; c < 3; c++) {
+                all[c] += momentum[i][c];
+                all[3 + c] += angular[c];
+            }
+        }
+        for (int c = 0; c < SUMS; c++) {
+            rg_exact_add(&sum[c], all[c]);
+        }
+    }
+}
+
+void rg_ties_close(rg_ties *t) {
+    int sums = SUMS * t->bodies->count;
+    for (int i = sums; i < sums * t->threads; i++) {
+        rg_exact_merge(&t->sum[i % sums], &t->sum[i]);
+    }
+    rg_exact_allreduce(t->sum, sums, t->comm);
+    for (int i = 0; i < t->bodies->count; i++) {
+        rg_body_tied *tied = &t->bodies->body[i].tied;
+        for (int c = 0; c < 3; c++) {
+            tied->momentum[c] = rg_exact_value(&t->sum[SUMS * i + c]);
+            tied->angular[c] = rg_exact_value(&t->sum[SUMS * i + 3 + c]);
+        }
+    }
+    memset(t->sum, 0, (size_t)(sums * t->threads) * sizeof *t->sum);
+}
+
+/* Brings the tied nodes of an element to `target`; the others follow. Velocities at the time of the step go
+ * the share of it that the kick has behind it by then: so momentum at that time stays as well. */
+static void bring(const entry *e, double target[RG_NODES][3], double share, rg_real *velocity, rg_real *now) {
+    const rg_pattern *p = e->pattern;
+    double change[RG_NODES][3];
+    for (int n = 0; n < RG_NODES; n++) {
+        for (int c = 0; c < 3; c++) {
+            size_t at = rg_node_index((size_t)e->slot, p->node[n], c);
+            if (n < p->constrained) {
+                change[n][c] = target[n][c] - velocity[at];
+                velocity[at] = (rg_real)target[n][c];
+            } else {
+                change[n][c] = 0;
+                for (int i = 0; i < p->constrained; i++) {
+                    change[n][c] += p->follow[n][i] * change[i][c];
+                }
+                velocity[at] = (rg_real)(velocity[at] + change[n][c]);
+            }
+            if (now != NULL) {
+                now[at] = (rg_real)(now[at] + share * change[n][c]);
+            }
+        }
+    }
+}
+
+void rg_ties_kick(const rg_ties *t, size_t tile, double dt_last, double dt_next, rg_real *velocity,
+                  rg_real *now) {
+    for (size_t n = t->tile_begin[tile]; n < t->tile_begin[tile + 1]; n++) {
+        const entry *e = &t->entry[n];
+        const rg_body *b = &t->bodies->body[e->body];
+        double chord[RG_NODES][3];
+        for (int i = 0; i < e->pattern->constrained; i++) {
+            double start[3], arm[3];
+            arm_at_start(t, e, i, start);
+            rg_body_arm(b, start, arm);
+            rg_body_sweep(b, arm, chord[i]);
+            for (int c = 0; c < 3; c++) {
+                chord[i][c] = b->v[c] + chord[i][c] / dt_next;
+            }
+        }
+        bring(e, chord, dt_last / (dt_last + dt_next), velocity, now);
+    }
+}
+
+/* What a node has moved since the start when its body is at x, turned by `rotation`. */
+static void moved(const rg_body *b, const double x[3], const double rotation[4], const double start[3],
+                  double u[3]) {
+    rg_rotation_move(rotation, start, u);
+    for (int c = 0; c < 3; c++) {
+        u[c] += x[c] - b->input->at[c];
+    }
+}
+
+void rg_ties_drift(const rg_ties *t, size_t tile, double dt, rg_real *u) {
+    for (size_t n = t->tile_begin[tile]; n < t->tile_begin[tile + 1]; n++) {
+        const entry *e = &t->entry[n];
+        const rg_body *b = &t->bodies->body[e->body];
+        double x[3], rotation[4], start[3], to[3];
+        rg_rotation_join(b->turn.step, b->turn.rotation, rotation);
+        for (int c = 0; c < 3; c++) {
+            x[c] = b->x[c] + dt * b->v[c];
+        }
+        for (int i = 0; i < e->pattern->constrained; i++) {
+            arm_at_start(t, e, i, start);
+            moved(b, x, rotation, start, to);
+            for (int c = 0; c < 3; c++) {
+                u[rg_node_index((size_t)e->slot, e->pattern->node[i], c)] = (rg_real)to[c];
+            }
+        }
+    }
+}
+
+void rg_ties_start(const rg_ties *t, rg_real *u, rg_real *velocity) {
+    for (size_t n = 0; n < t->entries; n++) {
+        const entry *e = &t->entry[n];
+        const rg_body *b = &t->bodies->body[e->body];
+        for (int i = 0; i < e->pattern->constrained; i++) {
+            double start[3], to[3], turn[3];
+            arm_at_start(t, e, i, start);
+            moved(b, b->x, b->turn.rotation, start, to);
+            rg_vector_cross(b->turn.spin, start, turn);
+            for (int c = 0; c < 3; c++) {
+                size_t at = rg_node_index((size_t)e->slot, e->pattern->node[i], c);
+                u[at] = (rg_real)to[c];
+                velocity[at] = (rg_real)(b->v[c] + turn[c]);
+            }
+        }
+    }
+}
+
+/* ---- Set-up ---- */
+
+bool rg_ties_any(const rg_ties *t) {
+    return t->any;
+}
+
+void rg_ties_describe(const rg_ties *t, int i, char *words, size_t size) {
+    words[0] = '\0';
+    if (t->bodies->body[i].tied.any) {
+        snprintf(words, size, "%.4g m2", t->area[i]);
+    }
+}
+
+/* Bits of the nodes of each element that are tied to body i; adds the area of the faces. */
+static uint16_t *nodes_of(rg_ties *t, int i, const rg_case *c, const rg_part *part, rg_assembly *shared) {
+    const rg_domain *d = t->domain;
+    uint16_t *nodes = RG_NEW(uint16_t, d->blocks * RG_LANES + 1);
+    rg_exact_sum area = {0};
+    for (int k = 0; k < c->body[i].ties; k++) {
+        char list[64];
+        snprintf(list, sizeof list, "bodies[%d].tied", i);
+        rg_selection selection = {list, k, c->body[i].tied[k], NULL, false};
+        uint8_t *faces = rg_selection_faces(&selection, c, d, part, t->comm);
+        for (size_t n = 0; n < RG_FACES * d->blocks * RG_LANES; n++) {
+            size_t slot = n / RG_FACES;
+            int face = (int)(n % RG_FACES);
+            double normal[3];
+            if ((faces[slot] >> face & 1) == 0) {
+                continue;
+            }
+            rg_exact_add(&area, rg_surface_area(d->corner + 12 * slot, face, normal));
+            for (int a = 0; a < RG_FNODES; a++) {
+                nodes[slot] |= (uint16_t)(1u << rg_face_node[face][a]);
+            }
+        }
+        rg_free(faces);
+    }
+    rg_exact_allreduce(&area, 1, t->comm);
+    t->area[i] = rg_exact_value(&area);
+    if (shared != NULL) {
+        rg_assembly_spread(shared, nodes);
+    }
+    return nodes;
+}
+
+static void refuse_elements(const rg_ties *t, const rg_case *c, int64_t count, const char *why) {
+    MPI_Allreduce(MPI_IN_PLACE, &count, 1, MPI_INT64_T, MPI_SUM, t->comm);
+    if (count > 0) {
+        rg_speak(t->comm);
+        rg_fatal(RG_USAGE, "%s: bodies: %" PRId64 " elements with nodes that are tied %s", c->path, count,
+                 why);
+    }
+}
+
+static void refuse_conflicts(const rg_ties *t, const rg_case *c, uint16_t *const nodes[],
+                             const rg_constraints *constraints) {
+    const rg_domain *d = t->domain;
+    uint8_t *held = RG_NEW(uint8_t, d->blocks * RG_LANES + 1);
+    int64_t prescribed = 0, twice = 0;
+    rg_constraints_mark(constraints, held);
+    for (size_t slot = 0; slot < d->blocks * RG_LANES; slot++) {
+        int bodies = 0;
+        for (int i = 0; i < c->bodies; i++) {
+            bodies += nodes[i] != NULL && nodes[i][slot] != 0;
+        }
+        prescribed += bodies > 0 && held[slot] != 0;
+        twice += bodies > 1;
+    }
+    rg_free(held);
+    refuse_elements(t, c, twice, "to two bodies");
+    refuse_elements(t, c, prescribed,
+                    "to a body have others whose motion `boundary` prescribes: tie or prescribe only one");
+}
+
+/* Adds what an element's tied nodes are to their body: its mass and the moments of that. */
+static void carry(const rg_ties *t, const entry *e, rg_exact_sum *sum) {
+    const rg_pattern *p = e->pattern;
+    double arm[RG_NODES][3], all[CARRIED] = {0};
+    for (int i = 0; i < p->constrained; i++) {
+        arm_at_start(t, e, i, arm[i]);
+    }
+    for (int n = 0; n < p->constrained * p->constrained; n++) {
+        int i = n / p->constrained, j = n % p->constrained;
+        double mass = e->mass * p->impulse[i][j];
+        all[0] += mass;
+        for (int k = 0; k < 9; k++) {
+            all[1 + k % 3] += k < 3 ? mass * arm[j][k] : 0;
+            all[4 + k] += mass * arm[i][k / 3] * arm[j][k % 3];
+        }
+    }
+    for (int k = 0; k < CARRIED; k++) {
+        rg_exact_add(&sum[CARRIED * e->body + k], all[k]);
+    }
+}
+
+static void tell_bodies(const rg_ties *t) {
+    rg_exact_sum *sum = RG_NEW(rg_exact_sum, (size_t)(CARRIED * t->bodies->count));
+    for (size_t n = 0; n < t->entries; n++) {
+        carry(t, &t->entry[n], sum);
+    }
+    rg_exact_allreduce(sum, CARRIED * t->bodies->count, t->comm);
+    for (int i = 0; i < t->bodies->count; i++) {
+        rg_body *b = &t->bodies->body[i];
+        double value[CARRIED];
+        for (int k = 0; k < CARRIED; k++) {
+            value[k] = rg_exact_value(&sum[CARRIED * i + k]);
+        }
+        b->tied.any = b->input->ties > 0;
+        b->tied.mass = value[0];
+        memcpy(b->tied.first, value + 1, sizeof b->tied.first);
+        for (int k = 0; k < 9; k++) { /* symmetric to the last bit */
+            b->tied.second[k / 3][k % 3] = 0.5 * (value[4 + k] + value[4 + 3 * (k % 3) + k / 3]);
+        }
+    }
+    rg_free(sum);
+}
+
+rg_ties *rg_ties_make(const rg_case *c, const rg_domain *d, const rg_part *part, const rg_material *m,
+                      rg_assembly *shared, rg_bodies *bodies, const rg_constraints *constraints, int threads,
+                      MPI_Comm comm) {
+    rg_ties *t = RG_NEW(rg_ties, 1);
+    *t = (rg_ties){.domain = d, .bodies = bodies, .comm = comm, .threads = threads, .patterns.mass = c->mass};
+    t->tile_begin = RG_NEW(size_t, d->tiles + 1);
+    for (int i = 0; i < c->bodies; i++) {
+        t->any = t->any || c->body[i].ties > 0;
+    }
+    if (!t->any) {
+        return t;
+    }
+    t->area = RG_NEW(double, (size_t)c->bodies);
+    t->sum = RG_NEW(rg_exact_sum, (size_t)(SUMS * c->bodies * threads));
+    uint16_t **nodes = RG_NEW(uint16_t *, (size_t)c->bodies);
+    for (int i = 0; i < c->bodies; i++) {
+        nodes[i] = c->body[i].ties > 0 ? nodes_of(t, i, c, part, shared) : NULL;
+    }
+    refuse_conflicts(t, c, nodes, constraints);
+    size_t room = 0;
+    for (size_t tile = 0; tile < d->tiles; tile++) {
+        for (size_t slot = d->tile[tile].begin * RG_LANES; slot < d->tile[tile].end * RG_LANES; slot++) {
+            for (int i = 0; i < c->bodies; i++) {
+                if (nodes[i] != NULL && nodes[i][slot] != 0) {
+                    t->entry = rg_grow(t->entry, &room, t->entries + 1, sizeof *t->entry);
+                    t->entry[t->entries++] = (entry){.slot = (rg_lid)slot,
+                                                     .body = i,
+                                                     .pattern = rg_patterns_get(&t->patterns, nodes[i][slot]),
+                                                     .mass = rg_element_mass(d, m, slot)};
+                }
+            }
+        }
+        t->tile_begin[tile + 1] = t->entries;
+    }
+    for (int i = 0; i < c->bodies; i++) {
+        rg_free(nodes[i]);
+    }
+    rg_free(nodes);
+    tell_bodies(t);
+    return t;
+}
+
+void rg_ties_free(rg_ties *t) {
+    if (t != NULL) {
+        rg_patterns_clear(&t->patterns);
+        void *blocks[] = {t->tile_begin, t->entry, t->area, t->sum, t};
+        for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) {
+            rg_free(blocks[i]);
+        }
+    }
+}

@@ -1,0 +1,52 @@
+/* Sets of faces that are tied to rigid bodies: their nodes move and turn with them.
+ *
+ * Where a body is after a step, R' its attitude and x' its centre, there the nodes are, x' + R' a; so their
+ * velocity in the middle of the step is the chord v + (R' - R) a/dt. An element's nodes c that are tied take
+ * the impulses (Minv_cc)^-1 (chord - v*) from the body, v* what the other forces alone make of them, at the
+ * places x + R a. What all of them take is linear in v and R', with coefficients that the body knows from the
+ * start, but for sums over v*: six numbers a body and step, exact, so that all ranks move it alike. Both
+ * momenta of body and solid together stay to rounding, and the critical step is what it was: what is held
+ * vibrates no faster. */
+#ifndef RG_TIE_H
+#define RG_TIE_H
+
+#include <mpi.h>
+
+#include "domain/assembly.h"
+#include "solver/body.h"
+#include "solver/constraint.h"
+
+typedef struct rg_ties rg_ties;
+
+/* Those of the bodies of a case. `nodes` as in rg_constraints_make. Tells the bodies what they carry. Ends
+ * the run with a message where an element has nodes that are tied to two bodies, or prescribed too. Keeps
+ * references to `c`, `d` and `bodies`. Collective; free with rg_ties_free. */
+rg_ties *rg_ties_make(const rg_case *c, const rg_domain *d, const rg_part *part, const rg_material *m,
+                      rg_assembly *nodes, rg_bodies *bodies, const rg_constraints *constraints, int threads,
+                      MPI_Comm comm);
+
+/* Whether any is. On all ranks the same. */
+bool rg_ties_any(const rg_ties *t);
+
+/* Puts the nodes where the bodies are at the start, with their velocities. */
+void rg_ties_start(const rg_ties *t, rg_real *u, rg_real *velocity);
+
+/* What the nodes of a tile would have after a kick without the bodies; then, once all tiles have: their sums,
+ * for rg_bodies_kick. The latter collective. */
+void rg_ties_gather(rg_ties *t, size_t tile, const rg_real *velocity);
+void rg_ties_close(rg_ties *t);
+
+/* Once the bodies are kicked, between a step of dt_last and one of dt_next: velocities of a tile, and those
+ * at the time of the step unless `now` is NULL. */
+void rg_ties_kick(const rg_ties *t, size_t tile, double dt_last, double dt_next, rg_real *velocity,
+                  rg_real *now);
+
+/* Before the bodies drift: puts the nodes of a tile where that takes them. */
+void rg_ties_drift(const rg_ties *t, size_t tile, double dt, rg_real *u);
+
+/* What is tied to body i in words: "2.5e-09 m2"; nothing if there is none. */
+void rg_ties_describe(const rg_ties *t, int i, char *words, size_t size);
+
+void rg_ties_free(rg_ties *t);
+
+#endif
