@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from conftest import SINGLE, launch, rounding
+from conftest import SINGLE, example, launch, rounding
 from figures import ROUNDING
 
 E, NU, DENSITY = 200e9, 0.3, 8000
@@ -51,6 +51,41 @@ def test_a_known_field_around_a_crack(run, scratch, figure, form, bound):
     figure(f"{what}: K from the opening, 2 to 5 edges behind", history["mid_KI"][0], theory=K, bound=bound, unit="Pa sqrt(m)", relative=True)
     assert history["mid_K"][0] == pytest.approx(math.sqrt(found["mid"] * E / (1 - NU**2)), rel=1e-12)
     assert np.ptp(history["mid_J"]) < 1e-9 * J  # at rest
+
+
+@pytest.mark.skipif(SINGLE, reason="strains of 1e-5")
+def test_a_crack_in_a_plate_under_tension(run, scratch, figure):
+    """A quarter of a plate with a crack of half its width in the middle; then it stays at rest. K = s sqrt(pi a sec(pi a/2W)) (Feddersen 1966), 0.3 % of it."""
+    a, half, tall, pull = 4e-3, 8e-3, 16e-3, 1e6
+    case = {
+        "mesh": {"cells": [10, 20, 1], "size": [half, tall, half / 10]}, "material": SOLID, "interface": {"law": "none"}, "start": "static",
+        "boundary": [{"set": "x-", "normal": 0}, {"where": f"ny < -0.5 && x > {a}", "normal": 0}, {"set": "z-", "normal": 0}, {"set": "z+", "normal": 0}],
+        "loads": [{"set": "y+", "traction": {"y": pull}}], "time": {"end": 1, "steps": 100},
+        "output": {"fields": [], "crack_fronts": [{"name": "tip", **FRONT, "at": [a, 0, 0], "symmetric": True, "radius": {"inner": 1e-3, "outer": 3e-3}, "values": ["K", "KI"]}]},
+    }
+    history = run(written(scratch / "plate.yaml", case)).history
+    theory = pull * math.sqrt(math.pi * a / math.cos(math.pi * a / 2 / half))
+    figure("crack in a plate under tension: K from the domain integral", history["tip_K"][0], theory=theory, bound=0.012, unit="Pa sqrt(m)", relative=True)
+    figure("crack in a plate under tension: K from the opening, 1 to 4 edges behind", history["tip_KI"][0], theory=theory, bound=0.05, unit="Pa sqrt(m)", relative=True)
+    assert np.ptp(history["tip_K"]) < 1e-6 * theory
+
+
+@pytest.mark.parametrize("poisson, bound", [(0.2, 0.02), (0.35, 0.009)])
+def test_a_crack_that_is_suddenly_there(run, figure, poisson, bound):
+    """In a body at rest under tension, on a coarse mesh of the example: K_I(t) of Freund 1990, section 2.5."""
+    done = run(example("opened.yaml"), sets={"material.poisson": poisson, "mesh.cells": [30, 30, 1], "output.fields": [], "output.interval": 1})
+    history, opened = done.history, 0.5e-6
+    modulus = 32e9 * (1 - poisson) / (1 + poisson) / (1 - 2 * poisson)
+    apart = {"K": [], "KI": []}
+    for time in (3e-6, 4e-6, 5e-6, 6e-6):
+        at = np.argmin(np.abs(history["time"] - opened - time))
+        since = history["time"][at] - opened
+        theory = 2 * 1.0775e-4 * modulus * math.sqrt(math.sqrt(modulus / 2450) * since * (1 - 2 * poisson) / math.pi) / (1 - poisson)
+        for name, found in apart.items():
+            found.append(abs(history[f"tip_{name}"][at] / theory - 1))
+    figure(f"crack that is suddenly there, Poisson's ratio {poisson}: K of the domain integral, 3 to 6 us", max(apart["K"]), bound=bound)
+    figure(f"crack that is suddenly there, Poisson's ratio {poisson}: K_I of the opening", max(apart["KI"]), bound=0.04)
+    assert np.abs(history["tip_K"][history["time"] < opened]).max() < 0.02 * theory
 
 
 @pytest.mark.skipif(SINGLE, reason="strains of 1e-5")
