@@ -126,7 +126,7 @@ static void *take(const rg_mesh_file *f, const rg_rows *r, const stretch *s, cha
     hid_t type = rg_rows_type(r);
     void *data = rg_alloc((size_t)(end - begin) + 1, rg_rows_bytes(r));
     bool good = read_dataset(f->file, r->name, type, r->columns, s->rows, begin, end, data);
-    if (r->type == RG_ROWS_NAME) {
+    if (rg_rows_are_names(r)) {
         H5Tclose(type);
     }
     if (!good) {
@@ -199,15 +199,31 @@ static int64_t read_count(const rg_mesh_file *f, const char *name, int64_t low, 
     return value;
 }
 
+/* Whether the names are stored as long ones. */
+static bool has_long_names(const rg_mesh_file *f, const rg_rows *r) {
+    hid_t dataset = H5Dopen2(f->file, r->name, H5P_DEFAULT);
+    hid_t type = dataset < 0 ? -1 : H5Dget_type(dataset);
+    bool are_long = type >= 0 && H5Tget_class(type) == H5T_STRING && H5Tget_size(type) == RG_SET_NAME;
+    if (type >= 0) {
+        H5Tclose(type);
+    }
+    if (dataset >= 0) {
+        H5Dclose(dataset);
+    }
+    return are_long;
+}
+
 static void read_names(rg_mesh_file *f, const rg_rows *r, rg_sets *sets) {
     int64_t count = read_count(f, r->name, 0, MOST_SETS);
     if (count > 0) {
         expect_rows(f, r, count); /* before anybody makes room for so many */
     }
-    char *rows = take_whole(f, r, count);
+    rg_rows as_stored = rg_rows_of_names(r, count > 0 && has_long_names(f, r));
+    size_t width = rg_rows_bytes(&as_stored);
+    char *rows = take_whole(f, &as_stored, count);
     for (int64_t i = 0; i < count; i++) {
-        const char *from = rows + (size_t)i * RG_SET_NAME;
-        if (memchr(from, '\0', RG_SET_NAME) == NULL) {
+        const char *from = rows + (size_t)i * width;
+        if (memchr(from, '\0', width) == NULL) {
             refuse(f, r->name, "name %" PRId64 " has no end", i);
         }
         rg_sets_add(sets, from);

@@ -7,8 +7,8 @@
  *   attributes      format = "rhegma mesh", version = 1, 2 or 3, program
  *                   vertices, elements, interfaces (interior faces), tile_elements, tiles, surface_sets,
  *                   volume_sets (how many there are); box [2][3]: lower and upper corner
- *   surface_sets    [surface_sets] names, at most 63 bytes each; not there if there are none
- *   volume_sets     [volume_sets] likewise
+ *   surface_sets    [surface_sets] names, at most 255 bytes each, in 64 bytes where those are enough; not
+ * there if there are none volume_sets     [volume_sets] likewise
  *
  * and only from version 2 on, which is for sets that overlap (3: and that have faces between elements),
  *

@@ -80,7 +80,7 @@ static void put(const target *w, const rg_rows *r, const void *data, int64_t blo
     int64_t rows = start[blocks];
     hid_t stored = stored_type(r, type, data, rows);
     require(w, write_dataset(w->file, r->name, stored, type, r->columns, rows, data), r->name);
-    if (r->type == RG_ROWS_NAME) {
+    if (rg_rows_are_names(r)) {
         H5Tclose(type);
     }
     uint64_t *sum = RG_NEW(uint64_t, (size_t)blocks);
@@ -118,16 +118,22 @@ static void put_text(const target *w, const char *name, const char *text) {
 }
 
 static void put_names(const target *w, const rg_rows *r, const rg_sets *sets) {
-    char *rows = RG_NEW(char, (size_t)sets->count *RG_SET_NAME);
+    bool are_long = false;
+    for (int32_t i = 0; i < sets->count; i++) {
+        are_long = are_long || strlen(sets->name[i]) >= RG_SHORT_NAME;
+    }
+    rg_rows as_stored = rg_rows_of_names(r, are_long);
+    size_t width = rg_rows_bytes(&as_stored);
+    char *rows = RG_NEW(char, (size_t)sets->count *width);
     for (int32_t i = 0; i < sets->count; i++) {
         if (strlen(sets->name[i]) >= RG_SET_NAME) {
             unlink(w->temporary);
             rg_fatal(RG_USAGE, "%s: the name of set '%s' is longer than %d bytes", w->path, sets->name[i],
                      RG_SET_NAME - 1);
         }
-        strcpy(rows + (size_t)i * RG_SET_NAME, sets->name[i]);
+        strcpy(rows + (size_t)i * width, sets->name[i]);
     }
-    put_whole(w, r, rows, sets->count);
+    put_whole(w, &as_stored, rows, sets->count);
     rg_free(rows);
 }
 

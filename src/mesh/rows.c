@@ -21,9 +21,17 @@ const rg_rows rg_rows_tile_start = {"tile_start", RG_ROWS_INT64, 1};
 const rg_rows rg_rows_tile_neighbour = {"tile_neighbour", RG_ROWS_INT64, 1};
 const rg_rows rg_rows_tile_faces = {"tile_faces", RG_ROWS_INT32, 1};
 
+rg_rows rg_rows_of_names(const rg_rows *r, bool are_long) {
+    return (rg_rows){r->name, are_long ? RG_ROWS_LONG_NAME : RG_ROWS_NAME, r->columns};
+}
+
+bool rg_rows_are_names(const rg_rows *r) {
+    return r->type == RG_ROWS_NAME || r->type == RG_ROWS_LONG_NAME;
+}
+
 static size_t value_bytes(rg_row_type type) {
-    static const size_t bytes[] = {sizeof(int8_t), sizeof(int32_t), sizeof(int64_t), sizeof(double),
-                                   RG_SET_NAME};
+    static const size_t bytes[] = {sizeof(int8_t), sizeof(int32_t), sizeof(int64_t),
+                                   sizeof(double), RG_SHORT_NAME,   RG_SET_NAME};
     return bytes[type];
 }
 
@@ -43,10 +51,11 @@ hid_t rg_rows_type(const rg_rows *r) {
     case RG_ROWS_DOUBLE:
         return H5T_NATIVE_DOUBLE;
     case RG_ROWS_NAME:
+    case RG_ROWS_LONG_NAME:
         break;
     }
     name = H5Tcopy(H5T_C_S1);
-    H5Tset_size(name, RG_SET_NAME);
+    H5Tset_size(name, value_bytes(r->type));
     return name;
 }
 
@@ -61,13 +70,14 @@ static uint64_t word(rg_row_type type, const void *data, size_t i) {
         return bits;
     case RG_ROWS_INT8:
     case RG_ROWS_NAME:
+    case RG_ROWS_LONG_NAME:
         break;
     }
     return (uint64_t)(int64_t)((const int8_t *)data)[i];
 }
 
 uint64_t rg_rows_checksum(const rg_rows *r, const void *data, int64_t count) {
-    size_t values = (size_t)count * (size_t)r->columns * (r->type == RG_ROWS_NAME ? RG_SET_NAME : 1);
+    size_t values = (size_t)count * (size_t)r->columns * (rg_rows_are_names(r) ? value_bytes(r->type) : 1);
     uint64_t sum = 0;
     for (size_t i = 0; i < values; i++) {
         sum = rg_hash(sum, word(r->type, data, i));

@@ -4,11 +4,20 @@
 #define RG_MESH_ROWS_H
 
 #include <hdf5.h>
+#include <stdbool.h>
 #include <stdint.h>
 
-enum { RG_SET_NAME = 64 }; /* bytes for the name of a set, the zero at its end included */
+/* Bytes for the name of a set, the zero at its end included: the most, and those of a file of short names. */
+enum { RG_SET_NAME = 256, RG_SHORT_NAME = 64 };
 
-typedef enum { RG_ROWS_INT8, RG_ROWS_INT32, RG_ROWS_INT64, RG_ROWS_DOUBLE, RG_ROWS_NAME } rg_row_type;
+typedef enum {
+    RG_ROWS_INT8,
+    RG_ROWS_INT32,
+    RG_ROWS_INT64,
+    RG_ROWS_DOUBLE,
+    RG_ROWS_NAME,
+    RG_ROWS_LONG_NAME
+} rg_row_type;
 
 /* A dataset of a mesh file. */
 typedef struct {
@@ -16,6 +25,12 @@ typedef struct {
     rg_row_type type;
     int columns;
 } rg_rows;
+
+/* The same rows, of short names or of those of RG_SET_NAME bytes. */
+rg_rows rg_rows_of_names(const rg_rows *r, bool are_long);
+
+/* Whether the rows are names. */
+bool rg_rows_are_names(const rg_rows *r);
 
 /* Bytes of a row in memory. */
 size_t rg_rows_bytes(const rg_rows *r);

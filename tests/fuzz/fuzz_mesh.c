@@ -143,7 +143,7 @@ static void find_fields(base *b, const char *path) {
 static void set_value(uint8_t *image, const field *p, int64_t i, uint8_t code) {
     uint8_t *to = image + p->at + (size_t)i * p->width;
     if (p->rows->type == RG_ROWS_NAME) {
-        memset(to, code, code % 2 == 0 ? RG_SET_NAME : 1);
+        memset(to, code, code % 2 == 0 ? RG_SHORT_NAME : 1);
     } else if (p->rows->type == RG_ROWS_DOUBLE) {
         double value = rg_fuzz_real(code);
         memcpy(to, &value, sizeof value);

@@ -227,10 +227,10 @@ def test_other_elements(tmp_path):
 
 def test_names_that_are_too_long(tmp_path):
     face = (1, TRI, 3, 31, (1, 2, 3))
-    names, _, marked, _ = convert(tmp_path, [face, *SOLIDS], [(2, 3, 63 * "n")])
-    assert names["surface_sets"] == [63 * "n"]
-    said = refused(tmp_path, [face, *SOLIDS], [(2, 3, 64 * "n")])
-    assert said == f"physical group '{64 * 'n'}': its name is longer than 63 bytes\n"
+    names, _, marked, _ = convert(tmp_path, [face, *SOLIDS], [(2, 3, 255 * "n")])
+    assert names["surface_sets"] == [255 * "n"]
+    said = refused(tmp_path, [face, *SOLIDS], [(2, 3, 256 * "n")])
+    assert said == f"physical group '{256 * 'n'}': its name is longer than 255 bytes\n"
 
 
 @pytest.mark.parametrize("name", ["broken.geo", "broken.diff"])

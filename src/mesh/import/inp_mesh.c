@@ -65,17 +65,50 @@ static void take_elements(building *b) {
 
 /* ---- sets ---- */
 
+static bool is_utf8(const char *text) {
+    const unsigned char *p = (const unsigned char *)text;
+    while (*p != '\0') {
+        size_t more = *p < 0x80 ? 0 : *p < 0xc2 ? 4 : *p < 0xe0 ? 1 : *p < 0xf0 ? 2 : *p < 0xf5 ? 3 : 4;
+        for (p++; more > 0 && more < 4 && (*p & 0xc0) == 0x80; p++) {
+            more--;
+        }
+        if (more > 0) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* Names as a case file can say them: what is no UTF-8 was written in Latin-1. False: it is too long. */
+static bool put_as_utf8(const char *name, char out[RG_SET_NAME]) {
+    bool as_it_is = is_utf8(name);
+    size_t used = 0;
+    for (; *name != '\0'; name++) {
+        unsigned char c = (unsigned char)*name;
+        bool two = !as_it_is && c >= 0x80;
+        if (used + 1 + two >= RG_SET_NAME) {
+            return false;
+        }
+        if (two) {
+            out[used++] = (char)(0xc0 | c >> 6);
+            c = 0x80 | (c & 0x3f);
+        }
+        out[used++] = (char)c;
+    }
+    out[used] = '\0';
+    return true;
+}
+
 /* The name by which the mesh calls a set. Those of the only instance, and of no instance, have their own; of
  * several, "instance.set", as Abaqus calls them. */
 static void name_of(const building *b, rg_inp_of of, const char *name, int scope, char out[RG_SET_NAME]) {
     const rg_inp_model *m = b->model;
     bool alone = scope == 0 || (m->scopes == 2 && rg_inp_find_set(m, of, name, 0) == NULL);
-    size_t length = alone ? strlen(name) : strlen(m->scope[scope].name) + 1 + strlen(name);
-    if (length >= RG_SET_NAME) {
-        rg_fatal(RG_USAGE, "%s: set '%s.%s' is longer than %d bytes", b->import.path, m->scope[scope].name,
-                 name, RG_SET_NAME - 1);
+    char whole[2 * RG_SET_NAME];
+    snprintf(whole, sizeof whole, "%s%s%s", alone ? "" : m->scope[scope].name, alone ? "" : ".", name);
+    if (!put_as_utf8(whole, out)) {
+        rg_fatal(RG_USAGE, "%s: set '%s' is longer than %d bytes", b->import.path, whole, RG_SET_NAME - 1);
     }
-    snprintf(out, RG_SET_NAME, "%s%s%s", alone ? "" : m->scope[scope].name, alone ? "" : ".", name);
 }
 
 static int32_t need_set(rg_sets *sets, const char *name) {

@@ -319,22 +319,22 @@ static void test_report(void **state) {
         "other solids: 1 C3D6, 2 C3D20; --split cuts hexahedra, wedges and pyramids");
 }
 
-/* A name of 63 bytes is a name, one of 64 is too long; of sets there may be any number. */
+/* A name of 255 bytes is a name, one of 256 is too long; of sets there may be any number. */
 static void test_limits(void **state) {
     (void)state;
-    char name[66], words[500], said[400];
-    memset(name, 'n', 65);
-    for (int length = 63; length <= 64; length++) {
+    char name[258], words[1000], said[400];
+    memset(name, 'n', 257);
+    for (int length = 255; length <= 256; length++) {
         name[length] = '\0';
         snprintf(words, sizeof words,
                  NODES "*ELEMENT, TYPE=C3D4, ELSET=%s\n" ONE TWO "*SURFACE, NAME=a\n%s, S1\n", name, name);
-        if (length == 63) {
+        if (length == 255) {
             write_input(words);
             static char found[4000];
             assert_int_equal(run_child(read_and_print, found, sizeof found), RG_OK);
             assert_non_null(strstr(found, "a at 3"));
         } else {
-            snprintf(said, sizeof said, ":7: '%s' is longer than 63 bytes", name);
+            snprintf(said, sizeof said, ":7: '%s' is longer than 255 bytes", name);
             expect_refused(words, said);
         }
         name[length] = 'n';

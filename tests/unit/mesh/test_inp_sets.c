@@ -177,6 +177,54 @@ static void test_parts(void **state) {
 }
 
 /* Several instances have numbers and names of their own. */
+/* Blanks, commas and letters of all languages; Latin-1 becomes UTF-8, for a case file must be able to say it.
+ */
+static void test_names(void **state) {
+    (void)state;
+    static const struct {
+        const char *in, *out;
+    } names[] = {{"linke Fl\xc3\xa4"
+                  "che, \xe2\x84\x96 2",
+                  NULL},
+                 {"linke Fl\xe4"
+                  "che",
+                  "linke Fl\xc3\xa4"
+                  "che"},
+                 {"\xc3\xa4 und \xe4", "\xc3\x83\xc2\xa4 und \xc3\xa4"}, /* not all of it is UTF-8 */
+                 {"\xf0\x9f\x94\xa8 \xdf", "\xc3\xb0\xc2\x9f\xc2\x94\xc2\xa8 \xc3\x9f"},
+                 {"\xf0\x9f\x94\xa8", NULL},
+                 {"\xe2\x84", "\xc3\xa2\xc2\x84"},
+                 {"\xff", "\xc3\xbf"}};
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        const char *out = names[i].out != NULL ? names[i].out : names[i].in;
+        char words[600], found[2000], line[300];
+        snprintf(words, sizeof words,
+                 NODES SOLIDS ONE TWO "*ELSET, ELSET=\"%s\"\n1\n*SURFACE, NAME=\"%s\"\n2, S2\n", names[i].in,
+                 names[i].in);
+        write_input(words);
+        assert_int_equal(run_child(read_and_print, found, sizeof found), RG_OK);
+        snprintf(line, sizeof line, " in %s", out);
+        assert_non_null(strstr(found, line));
+        snprintf(line, sizeof line, "%s at", out);
+        assert_non_null(strstr(found, line));
+    }
+    /* 128 letters of two bytes each are one too many */
+    char name[130], words[600];
+    memset(name, 0xe4, 129);
+    for (int length = 127; length <= 128; length++) {
+        name[length] = '\0';
+        snprintf(words, sizeof words, NODES SOLIDS ONE TWO "*ELSET, ELSET=%s\n1\n", name);
+        write_input(words);
+        char found[2000];
+        assert_int_equal(run_child(read_and_print, found, sizeof found), length == 127 ? RG_OK : RG_USAGE);
+        name[length] = (char)0xe4;
+    }
+}
+
+/* 249 bytes: with a name of 6 and a point one too many. */
+#define N83  "nnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnn"
+#define LONG N83 N83 N83
+
 static void test_instances(void **state) {
     (void)state;
 #define BOTH X5 "x 5: 1 2 53\nx 6: 5 2 53.5\nx 7: 1.5 7 53\nx 8: 1 2.5 59\nx 9: 6 8 60\n"
@@ -226,10 +274,9 @@ static void test_instances(void **state) {
          "PART=Q\n"
          "*NODE\n4000000000, 1\n",
          ":8: the number gets beyond 4000000000 in instance 'b'"},
-        {"*PART, NAME=P\n" NODES
-         "*ELEMENT, TYPE=C3D4, ELSET=nnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnn\n" ONE
+        {"*PART, NAME=P\n" NODES "*ELEMENT, TYPE=C3D4, ELSET=" LONG "\n" ONE
          "*INSTANCE, NAME=a, PART=P\n*INSTANCE, NAME=aaaaaa, PART=P\n",
-         ": set 'aaaaaa.nnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnn' is longer than 63 bytes"},
+         ": set 'aaaaaa." LONG "' is longer than 255 bytes"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         expect_refused(cases[i].words, cases[i].said);
@@ -249,7 +296,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_volume_sets),  cmocka_unit_test(test_node_sets),
         cmocka_unit_test(test_surface_sets), cmocka_unit_test(test_parts),
-        cmocka_unit_test(test_instances),
+        cmocka_unit_test(test_instances),    cmocka_unit_test(test_names),
     };
     return cmocka_run_group_tests_name("inp_sets", tests, set_up, tear_down);
 }

@@ -38,8 +38,8 @@ static rg_mesh *make(void) {
         m->original[e] = 1000 + 7 * e % ELEMENTS;
     }
     for (int r = 0; r < 2; r++) {
-        char name[RG_SET_NAME] = "";
-        memset(name, 'a' + r, r == 0 ? 1 : RG_SET_NAME - 1);
+        char name[RG_SHORT_NAME] = "";
+        memset(name, 'a' + r, r == 0 ? 1 : RG_SHORT_NAME - 1);
         rg_sets_add(&m->volume, name);
     }
     return m;
@@ -519,7 +519,7 @@ static void test_combinations(void **state) {
 
 static void test_names(void **state) {
     (void)state;
-    char name[RG_SET_NAME];
+    char name[RG_SHORT_NAME];
     memset(name, 'n', sizeof name);
     for (int volumes = 0; volumes < 2; volumes++) {
         hid_t file = open_copy();
@@ -539,12 +539,30 @@ static void write_long_name(void) {
 
 static void test_long_name(void **state) {
     (void)state;
-    char said[200], words[200];
+    char said[400], words[300];
     memset(words, 'n', sizeof words);
-    snprintf(said, sizeof said, "rhegma: long.h5: the name of set '%.64s' is longer than 63 bytes\n", words);
+    snprintf(said, sizeof said, "rhegma: long.h5: the name of set '%.256s' is longer than 255 bytes\n",
+             words);
     expect_said(write_long_name, RG_USAGE, said);
     assert_int_not_equal(access("long.h5", F_OK), 0);
     assert_int_not_equal(access("long.h5.part", F_OK), 0);
+    /* longest and shortest of long ones, longest of short ones: all come back, and short ones in 64 bytes */
+    static const struct { size_t length, stored; } cases[] = {{255, 256}, {64, 256}, {63, 64}};
+    for (int k = 0; k < 3; k++) {
+        mesh->volume.name[0][cases[k].length] = '\0';
+        write_long_name();
+        rg_mesh *again = rg_mesh_file_read("long.h5");
+        assert_string_equal(again->volume.name[0], mesh->volume.name[0]);
+        assert_string_equal(again->volume.name[1], mesh->volume.name[1]);
+        rg_mesh_free(again);
+        hid_t file = H5Fopen("long.h5", H5F_ACC_RDONLY, H5P_DEFAULT);
+        hid_t names = H5Dopen2(file, "volume_sets", H5P_DEFAULT), type = H5Dget_type(names);
+        assert_int_equal(H5Tget_size(type), cases[k].stored);
+        H5Tclose(type);
+        H5Dclose(names);
+        H5Fclose(file);
+        unlink("long.h5");
+    }
 }
 
 /* ---- checksums ---- */
@@ -599,7 +617,7 @@ static void test_rows_checksum(void **state) {
     const int32_t narrow[2] = {-3, 70000};
     const int64_t wide[4] = {-5, INT64_MAX, INT64_MIN, 9};
     const double real[6] = {-0.0, 1.5, -2, 0, 3e300, 7};
-    const char name[2 * RG_SET_NAME] = "ab\xe4";
+    const char name[2 * RG_SHORT_NAME] = "ab\xe4";
     uint64_t sum[5] = {0}, bits;
     for (int i = 0; i < 8; i++) {
         sum[0] = rg_hash(sum[0], (uint64_t)(int64_t)bytes[i]);
@@ -614,7 +632,7 @@ static void test_rows_checksum(void **state) {
         memcpy(&bits, real + i, 8);
         sum[3] = rg_hash(sum[3], bits);
     }
-    for (int i = 0; i < 2 * RG_SET_NAME; i++) {
+    for (int i = 0; i < 2 * RG_SHORT_NAME; i++) {
         sum[4] = rg_hash(sum[4], (uint64_t)(int64_t)(signed char)name[i]);
     }
     assert_true(rg_rows_checksum(&rg_rows_face, bytes, 2) == sum[0]);

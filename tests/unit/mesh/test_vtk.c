@@ -227,6 +227,8 @@ static void test_split(void **state) {
     how.split = false;
 }
 
+#define N61 "nnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnn"
+
 static void test_legacy_mistakes(void **state) {
     (void)state;
     static const struct {
@@ -270,8 +272,8 @@ static void test_legacy_mistakes(void **state) {
         {HEAD("4.2") POINTS "CELLS 1 4\n3 0 1 2\nCELL_TYPES 1\n10\n",
          ": cell 0 of type 10 has not the 4 points that it should have"},
         {GRID "CELL_DATA 3\nSCALARS r nix\n", ":17: values of type 'nix' cannot be read"},
-        {GRID "CELL_DATA 3\nSCALARS nnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnn int\n1 2 3\n",
-         ": the name of cell data 'nnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnnn' is longer than 51 "
+        {GRID "CELL_DATA 3\nSCALARS " N61 N61 N61 N61 " int\n1 2 3\n",
+         ": the name of cell data '" N61 N61 N61 N61 "' is longer than 243 "
          "bytes"},
         {GRID "NIX 3\n", ":16: 'NIX' is not known here"},
     };

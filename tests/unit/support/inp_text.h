@@ -38,7 +38,7 @@ static inline void expect(const char *words, const char *said) {
 
 /* Refused with "rhegma: a.inp" and the rest. */
 static inline void expect_refused(const char *words, const char *rest) {
-    char line[600];
+    char line[1200];
     write_input(words);
     snprintf(line, sizeof line, "rhegma: a.inp%s\n", rest);
     expect_said(read_and_print, RG_USAGE, line);
