@@ -11,15 +11,18 @@
 
 /* ---- groups ---- */
 
+/* Gmsh cuts names of files behind 253 bytes, so that such a name may have been longer. */
+enum { LONGEST_NAME = 252 };
+
 /* The group's name, or its number if it has none. */
 static char *group_name(const char *path, int dimension, int group) {
     char *given = NULL, *name = RG_NEW(char, RG_SET_NAME);
     int error;
     gmshModelGetPhysicalName(dimension, group, &given, &error);
     rg_gmsh_require(path, error);
-    if (strlen(given) >= RG_SET_NAME) {
-        rg_fatal(RG_USAGE, "%s: physical group '%s': its name is longer than %d bytes", path, given,
-                 RG_SET_NAME - 1);
+    if (strlen(given) > LONGEST_NAME) {
+        rg_fatal(RG_USAGE, "%s: physical group '%s...': its name is longer than %d bytes, and Gmsh cut it",
+                 path, given, LONGEST_NAME);
     }
     if (given[0] != '\0') {
         strcpy(name, given);
