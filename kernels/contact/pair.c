@@ -1,13 +1,54 @@
-/* Contact of faces, a pair at a time. */
+/* Contact of faces, a vector of pairs at a time. */
 #include "contact/pair.h"
 #include "isa.h"
 
+/* Writes out what the first `count` lanes come to. */
+static void store_pairs(const rg_contact_args *args, size_t first, int count, wide energy,
+                        wide force[2][3][3]) {
+    for (int l = 0; l < count; l++) {
+        double *f = args->force + 18 * (first + (size_t)l);
+        args->energy[first + (size_t)l] = energy[l];
+        for (int k = 0; energy[l] > 0 && k < 2; k++) {
+            for (int i = 0; i < 9; i++) {
+                f[9 * k + 3 * corner_of[k][i / 3] + i % 3] = force[k][i / 3][i % 3][l];
+            }
+        }
+    }
+}
+
+static void meet(const rg_contact_args *args, size_t first, int count) {
+    meeting m;
+    for (int l = 0; l < WIDE; l++) { /* behind the last one, that again */
+        load_pair(&m, args, first + (size_t)(l < count ? l : count - 1), l);
+    }
+    set_normal(&m, 0);
+    set_normal(&m, 1);
+    m.facing = wide_dot(m.normal[0], m.normal[1]);
+    set_frame(&m);
+    set_face(&m, 0);
+    set_face(&m, 1);
+    set_depth(&m);
+    find_overlap(&m.over);
+    handover h = hand_over(&m);
+    wide_mask met = m.over.is & (wide_mask)(m.facing > 0) & (wide_mask)(h.share > 0);
+    wide most = m.over.most + m.skin;
+    wide depth = wide_where(met & (wide_mask)(m.over.least < m.reach) & (wide_mask)(most > 0), most);
+    wide_mask presses =
+        met & (wide_mask)(m.reach > 0) & (wide_mask)(m.over.least < m.reach) & (wide_mask)(m.over.most > 0);
+    wide energy = wide_splat(0), force[2][3][3];
+    if (wide_any(presses)) {
+        integral sum = integrate(&m.over);
+        energy = pair_forces(&m, &sum, &h, force);
+        energy = wide_where(presses & (wide_mask)(energy > 0), energy);
+    }
+    for (int l = 0; l < count; l++) {
+        args->depth[first + (size_t)l] = depth[l];
+    }
+    store_pairs(args, first, count, energy, force);
+}
+
 void RG_ISA_NAME(rg_contact)(const rg_contact_args *args, size_t begin, size_t end) {
-    for (size_t i = begin; i < end; i++) {
-        const rg_contact_pair *pair = &args->pair[i];
-        size_t a = (size_t)pair->face[0], b = (size_t)pair->face[1];
-        double sunk = args->sunk[a] > args->sunk[b] ? args->sunk[a] : args->sunk[b];
-        args->energy[i] = pair_forces(pair, sunk, args->corner + 9 * a, args->corner + 9 * b,
-                                      args->force + 18 * i, args->depth + i);
+    for (size_t i = begin; i < end; i += WIDE) {
+        meet(args, i, end - i < WIDE ? (int)(end - i) : WIDE);
     }
 }
