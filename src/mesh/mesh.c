@@ -124,6 +124,7 @@ void rg_mesh_free(rg_mesh *mesh) {
     rg_free(mesh->original);
     rg_free(mesh->region);
     rg_free(mesh->inner);
+    rg_free(mesh->line);
     rg_free(mesh->x);
     rg_free(mesh->corner);
     rg_free(mesh->neighbour);

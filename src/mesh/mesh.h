@@ -28,6 +28,8 @@ typedef struct {
     rg_sets volume;   /* named sets of elements */
     rg_gid *inner; /* [inners][3]: vertices, ascending, of faces inside that the input has: an import only */
     size_t inners;
+    rg_gid *line; /* [lines][2]: vertices, ascending, of edges that the input names: an import only */
+    size_t lines;
 } rg_mesh;
 
 /* Box of nx ny nz cubes of 6 tetrahedra (Kuhn: all around one main diagonal, so that neighbours match), from

@@ -503,6 +503,37 @@ def test_improvement_keeps_surfaces_between_volumes(tmp_path):
         assert volumes(c)[file["region"][:] == i].sum() == pytest.approx(1, rel=1e-12)
 
 
+LINE = """
+SetFactory("OpenCASCADE");
+Mesh.MeshSizeMax = 0.3;
+Box(1) = {0, 0, 0, 2, 1, 1};
+Point(20) = {0.3, 0.37, 1};
+Point(21) = {1.7, 0.61, 1};
+Line(20) = {20, 21};
+BooleanFragments{ Volume{1}; Delete; }{ Curve{20}; Delete; }
+Physical Volume("body") = {1};
+"""
+
+
+@needs_gmsh
+@pytest.mark.parametrize("named", [True, False])
+def test_improvement_keeps_named_edges(tmp_path, named):
+    """A line inside a surface of one set keeps its place, all along, if it is a physical curve; else vertices leave it."""
+    geo = tmp_path / "line.geo"
+    geo.write_text(LINE + ("""Physical Curve("front") = {20};\n""" if named else ""))
+    file, said = convert(geo, tmp_path / "line.h5", "--improve")
+    assert ("sets of edges name no faces: 1 are left out, but --improve keeps their places" in said) == named
+    x = positions(file)
+    a, b = np.array([0.3, 0.37, 1]), np.array([1.7, 0.61, 1])
+    along = (x - a) @ (b - a) / ((b - a) @ (b - a))
+    on = np.linalg.norm(x - a - np.outer(along, b - a), axis=1) < 1e-9
+    on &= (along > -1e-9) & (along < 1 + 1e-9)
+    chain = np.flatnonzero(on)[np.argsort(along[on])]
+    edges = {tuple(sorted((e[i], e[j]))) for e in file["corner"][:].tolist() for i in range(4) for j in range(i)}
+    whole = all(tuple(sorted(pair)) in edges for pair in zip(chain.tolist(), chain[1:].tolist()))
+    assert (len(chain) > 5 and whole and along[on].max() > 1 - 1e-9) == named
+
+
 @needs_gmsh
 def test_meshing_twice_gives_the_same_file(thesis, tmp_path):
     thesis("spall-uniform")

@@ -251,8 +251,13 @@ static void take_edges(void *context, const rg_gmsh_block *b) {
     gmshFree(x);
 }
 
-static void read_edges(rg_import *m) {
+/* Of a solid those in groups, which name no faces. */
+static void read_edges(rg_import *m, bool flat) {
     rg_gmsh_sets edges = rg_gmsh_sets_read(m->path, 1);
+    if (!flat && !edges.named) {
+        rg_gmsh_sets_free(&edges);
+        return;
+    }
     for (int32_t s = 0; s < edges.sets.count; s++) {
         rg_sets_add(&m->edge_set, edges.sets.name[s]);
     }
@@ -281,7 +286,7 @@ rg_mesh *rg_gmsh_read(const char *path, const rg_import_how *how, const rg_gmsh_
     take_names(&m.surface, &surfaces.sets);
     rg_gmsh_each(path, &volumes, take_elements, &t);
     rg_gmsh_each(path, &surfaces, take_faces, &f);
-    flat ? read_edges(&m) : (void)0;
+    read_edges(&m, flat);
     if (t.left_out > 0) {
         rg_warn("%s: %" PRId64 " elements are in no physical volume and left out", path, t.left_out);
     }

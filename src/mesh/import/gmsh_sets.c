@@ -119,7 +119,8 @@ rg_gmsh_sets rg_gmsh_sets_read(const char *path, int dimension) {
         gmshFree(tag);
     }
     gmshFree(pair);
-    if (numbers == 0) {
+    s.named = numbers > 0;
+    if (!s.named) {
         name_entities(&s);
     }
     assign(&s, member, members);

@@ -2,6 +2,7 @@
 #ifndef RG_GMSH_SETS_H
 #define RG_GMSH_SETS_H
 
+#include <stdbool.h>
 #include <stddef.h>
 
 #include "mesh/mesh.h"
@@ -9,6 +10,7 @@
 /* Groups of one dimension and the geometric entities of that dimension. */
 typedef struct {
     int dimension;
+    bool named; /* by physical groups */
     rg_sets sets;
     size_t entities;
     struct rg_gmsh_entity {

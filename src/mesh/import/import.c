@@ -589,6 +589,25 @@ static void mark_faces(rg_import *m, const rg_gid *vertex, rg_mesh *mesh) {
     rg_free(list);
 }
 
+/* Named edges of a solid, which --improve keeps. */
+static void keep_lines(rg_import *m, const rg_gid *vertex, rg_mesh *mesh) {
+    size_t edges = m->how.thickness > 0 ? 0 : m->edges; /* those of a plate are faces by now */
+    mesh->line = edges > 0 ? RG_NEW(rg_gid, 2 * edges) : NULL;
+    for (size_t i = 0; i < edges; i++) {
+        size_t from = row_of(m, m->edge[i].node[0]), to = row_of(m, m->edge[i].node[1]);
+        rg_gid a = from < SIZE_MAX ? vertex[from] : -1, b = to < SIZE_MAX ? vertex[to] : -1;
+        if (a >= 0 && b >= 0 && a != b) {
+            mesh->line[2 * mesh->lines] = a < b ? a : b;
+            mesh->line[2 * mesh->lines++ + 1] = a < b ? b : a;
+        }
+    }
+    if (m->edge_set.count > 0) {
+        rg_warn("%s: sets of edges name no faces: %d are left out, but --improve keeps their places", m->path,
+                m->edge_set.count);
+    }
+    rg_sets_free(&m->edge_set);
+}
+
 rg_mesh *rg_import_finish(rg_import *m) {
     m->how.thickness > 0 ? rg_extrude(m) : (void)0;
     if (m->elements == 0) {
@@ -601,6 +620,7 @@ rg_mesh *rg_import_finish(rg_import *m) {
     tell_orientation(m);
     tell_nodes(m, order, vertex);
     mark_faces(m, vertex, mesh);
+    keep_lines(m, vertex, mesh);
     mesh->surface = m->surface;
     mesh->volume = m->volume;
     rg_sets_joined(&m->volumes);

@@ -16,7 +16,7 @@ typedef struct {
     int32_t set; /* or RG_IMPORT_UNNAMED */
 } rg_import_face;
 
-/* An edge that the input names, of a mesh that is to become a plate. */
+/* An edge that the input names: a face of the plate that the mesh is to become, else a place that stays. */
 typedef struct {
     size_t node[2];
     rg_gid name;

@@ -93,9 +93,12 @@ static bool in_one_plane(const rg_tets *t, const ring *r) {
     return fabs(rg_tet_volume(x[0], x[1], x[2], x[3])) <= flat * size * size * size;
 }
 
-/* Whether the faces that meet in the edge may go: none has a label, but for the ends of a fan, which must be
- * in one set and plane. */
+/* Whether the edge and the faces that meet in it may go: it has no name, and none has a label, but for the
+ * ends of a fan, which must be in one set and plane. */
 static bool may_go(const rg_tets *t, const ring *r) {
+    if (rg_tets_is_line(t, r->a, r->b)) {
+        return false;
+    }
     bool fan = r->vertices > r->tets;
     for (int i = fan ? 1 : 0; i < r->tets; i++) {
         if (spoke_label(t, r, i) != 0) {

@@ -107,6 +107,27 @@ static void face_normal(const rg_tets *t, const rg_gid v[3], double n[3]) {
     normalise(n);
 }
 
+/* Named edges hold the vertex on their line, and at its end. */
+static void confine_to_lines(const rg_tets *t, rg_gid vertex, freedom *f) {
+    const rg_star *star = t->star + vertex;
+    rg_gid first = -1;
+    bool goes_on = false;
+    for (int i = 0; i < (t->on_line != NULL && t->on_line[vertex] ? 4 * star->count : 0); i++) {
+        rg_gid end = t->tet[star->tet[i / 4]].corner[i % 4];
+        if (end != vertex && rg_tets_is_line(t, vertex, end)) {
+            double e[3];
+            rg_vector_subtract(rg_tets_at(t, end), rg_tets_at(t, vertex), e);
+            normalise(e);
+            confine(f, e);
+            goes_on = goes_on || (first >= 0 && end != first);
+            first = end;
+        }
+    }
+    if (first >= 0 && !goes_on) {
+        memset(f, 0, sizeof *f);
+    }
+}
+
 /* Faces with labels hold the vertex in their planes; edges where labels change, or where not two such faces
  * meet, hold it on their line. */
 static freedom freedom_of(const rg_tets *t, rg_gid vertex) {
@@ -131,6 +152,7 @@ static freedom freedom_of(const rg_tets *t, rg_gid vertex) {
             }
         }
     }
+    confine_to_lines(t, vertex, &f);
     for (int i = 0; i < list.count; i++) {
         if (list.edge[i].differ || list.edge[i].faces != 4) {
             double e[3];

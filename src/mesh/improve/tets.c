@@ -198,11 +198,37 @@ static void turn(rg_tet *tet) {
     tet->label[1] = label;
 }
 
+static int by_ends(const void *a, const void *b) {
+    const rg_gid *p = a, *q = b;
+    return p[0] != q[0] ? (p[0] > q[0]) - (p[0] < q[0]) : (p[1] > q[1]) - (p[1] < q[1]);
+}
+
+bool rg_tets_is_line(const rg_tets *t, rg_gid a, rg_gid b) {
+    if (t->on_line == NULL || !t->on_line[a] || !t->on_line[b]) {
+        return false;
+    }
+    rg_gid ends[2] = {a < b ? a : b, a < b ? b : a};
+    return bsearch(ends, t->mesh->line, t->mesh->lines, sizeof ends, by_ends) != NULL;
+}
+
+static void find_lines(rg_tets *t) {
+    rg_mesh *mesh = t->mesh;
+    if (mesh->lines == 0) {
+        return;
+    }
+    qsort(mesh->line, mesh->lines, 2 * sizeof *mesh->line, by_ends);
+    t->on_line = RG_NEW(bool, (size_t)mesh->vertices);
+    for (size_t i = 0; i < 2 * mesh->lines; i++) {
+        t->on_line[mesh->line[i]] = true;
+    }
+}
+
 rg_tets rg_tets_make(rg_mesh *mesh) {
     rg_tets t = {.mesh = mesh, .star = RG_NEW(rg_star, (size_t)mesh->vertices)};
     if (mesh->inner != NULL) {
         qsort(mesh->inner, (size_t)mesh->inners, 3 * sizeof *mesh->inner, by_vertices);
     }
+    find_lines(&t);
     for (rg_gid e = 0; e < mesh->elements; e++) {
         rg_tet tet = {.original = rg_mesh_original(mesh, e),
                       .region = mesh->region != NULL ? mesh->region[e] : -1};
@@ -249,6 +275,9 @@ static void resize(rg_mesh *mesh, size_t count) {
     rg_free(mesh->inner); /* by old numbers */
     mesh->inner = NULL;
     mesh->inners = 0;
+    rg_free(mesh->line);
+    mesh->line = NULL;
+    mesh->lines = 0;
     mesh->elements = (rg_gid)count;
     mesh->corner = RG_NEW(rg_gid, 4 * count);
     mesh->neighbour = RG_NEW(rg_gid, 4 * count);
@@ -277,5 +306,6 @@ void rg_tets_finish(rg_tets *t) {
         rg_free(t->star[v].tet);
     }
     rg_free(t->star);
+    rg_free(t->on_line);
     rg_free(t->tet);
 }

@@ -33,6 +33,7 @@ typedef struct {
     size_t room;
     rg_tet *tet;   /* [count], gone ones among them */
     rg_star *star; /* [vertices] */
+    bool *on_line; /* [vertices]: whether a named edge ends there; NULL: there are none */
 } rg_tets;
 
 /* A face by its vertices, ascending. */
@@ -50,6 +51,9 @@ void rg_tets_finish(rg_tets *t);
 static inline const double *rg_tets_at(const rg_tets *t, rg_gid vertex) {
     return t->mesh->x + 3 * vertex;
 }
+
+/* Whether the edge is a named one. */
+bool rg_tets_is_line(const rg_tets *t, rg_gid a, rg_gid b);
 
 /* Smallest height (m) of the tetrahedron with these corners; negative if it is left-handed. */
 double rg_tets_height(const rg_tets *t, const rg_gid corner[4]);
