@@ -1,6 +1,8 @@
 """A run that was stopped and goes on ends with the bits of one that never stopped; and what happens to checkpoints
 that are damaged, or of another case."""
 
+import itertools
+import json
 import os
 import pathlib
 import re
@@ -169,6 +171,51 @@ def test_restart_of_bodies_and_materials(run, tmp_path, case):
     again = go_on(directory, "--set", "time.steps=100000", ranks=2)
     assert 0 < again.summary["restarted_from_step"] <= steps // 2
     assert_same_results(again, one, frames=1 if STATEFUL[case].get("output.fields") else -1)
+
+
+@pytest.fixture(scope="module")
+def grains(scratch):
+    """1,296 tetrahedra, eight grains, a surface inside and one of nodes: sets overlap, tiles have two blocks."""
+    n, step = 6, (1, 7, 49)
+    corner = [i + 7 * j + 49 * k for k, j, i in itertools.product(range(n), repeat=3)]
+    paths = [(0, step[a], step[a] + step[b], 57) for a, b in itertools.permutations(range(3), 2)]
+    text = "*NODE\n" + "".join(f"{1 + i + 7 * j + 49 * k}, {i / n}, {j / n}, {k / n}\n" for k, j, i in itertools.product(range(n + 1), repeat=3))
+    for g, (z, y, x) in enumerate(itertools.product((0, 1), repeat=3)):
+        text += f'*ELEMENT, TYPE=C3D4, ELSET="Korn {g}"\n'
+        for c, (k, j, i) in enumerate(itertools.product(range(n), repeat=3)):
+            if (k // 3, j // 3, i // 3) == (z, y, x):
+                text += "".join(f"{1 + 6 * c + t}, " + ", ".join(str(1 + corner[c] + p) for p in path) + "\n" for t, path in enumerate(paths))
+    # of the cubes below the plane z = 1/3 the faces that lie in it: S3 of the two paths that begin along z
+    text += "*SURFACE, NAME=weak\n" + "".join(f"{1 + 6 * c + t}, S3\n" for c in range(n * n, 2 * n * n) for t in (4, 5))
+    text += "*NSET, NSET=top, GENERATE\n295, 343\n*NSET, NSET=bottom, GENERATE\n1, 49\n"
+    (scratch / "grains.inp").write_text(text)
+    process = launch("mesh", scratch / "grains.inp", "-o", scratch / "grains.h5", "--unit", "mm")
+    assert process.returncode == 0, process.stderr
+    assert "weak: 0 faces, and 72 between elements\n" in launch("mesh", "--info", scratch / "grains.h5").stdout
+    return scratch / "grains.h5"
+
+
+def test_sets_inside_on_any_layout_and_restart(run, grains, tmp_path):
+    """A weak surface inside and boundaries of all grains, pulled by sets of nodes."""
+    law = {"law": "linear", "strength": 400e6, "energy": 34, "sets": [
+        {"set": "weak", "strength": 100e6}, {"between": "any", "strength": 200e6, "energy": 10}]}
+    case = tmp_path / "grains.yaml"
+    case.write_text(json.dumps({
+        "mesh": {"file": str(grains)}, "material": {"model": "neo-hookean", "young": 260e9, "poisson": 0.21, "density": 3690},
+        "interface": law, "initial": {"velocity": {"z": "4e4*(z - 5e-4)"}},
+        "boundary": [{"set": "top", "component": "z", "velocity": 20}, {"set": "bottom", "component": "z", "velocity": "-20"}],
+        "time": {"end": 6e-8}, "output": {"interval": 1.2e-8, "fields": ["crack"]}, "checkpoint": {"steps": 20}}))
+    one = run(case)
+    steps = one.summary["steps"]
+    assert one.summary["broken_area_m2"] > 1e-6 and steps > 25, (one.summary["broken_area_m2"], steps)
+    for ranks, threads in LAYOUTS:
+        other = run(case, ranks=ranks, threads=threads)
+        assert other.summary["state_hash"] == one.summary["state_hash"] and tables(other) == tables(one)
+    stopped = copy(run(case, ranks=2, sets={"time.steps": steps - 8}), tmp_path / "out")
+    checkpoints(stopped)[-1].unlink()
+    again = go_on(stopped, "--set", "time.steps=100000", ranks=3)
+    assert 0 < again.summary["restarted_from_step"] < steps - 8
+    assert_same_results(again, one, frames=4)
 
 
 def test_a_finished_run_can_be_made_longer(run, whole, tmp_path):
