@@ -389,6 +389,32 @@ static void check_held(const held_case *c, const char *mass) {
     random_state_free(&r);
 }
 
+static void check_words(void) {
+    static const char entries[] =
+        "boundary=[{set: z+, component: z, velocity: 6}, {set: y-, normal: 3}, {where: nx < -0.5, direction: "
+        "[0, -3, 4], displacement: 1e-6*t}, {set: x+, angle: 2e3*t, axis: [0, 3, 4]}, {set: y+, absorbing: "
+        "true}, {set: z-, dashpot: 3e6}]";
+    static const char *const words[] = {"velocity along z on 1.87e-06 m2",
+                                        "normal on 3.19e-06 m2",
+                                        "displacement along (0, -3, 4) on 4.93e-06 m2",
+                                        "angle on 4.93e-06 m2",
+                                        "absorbing on 3.19e-06 m2",
+                                        "dashpot on 1.87e-06 m2"};
+    const char *change[] = {entries, "bodies=[]"};
+    random_state r = random_state_make(2, change, MPI_COMM_WORLD);
+    bool good = true;
+    for (int b = 0; b < 6; b++) {
+        char found[200];
+        rg_constraints_describe(r.solver->constraints, b, found, sizeof found);
+        if (strcmp(found, words[b]) != 0) {
+            printf("# %s\n", found);
+            good = false;
+        }
+    }
+    report(good, "sides", "are told in words");
+    random_state_free(&r);
+}
+
 /* ---- Absorbing sides and dashpots ---- */
 
 static const char damps[] = "boundary=[{set: z-, absorbing: true}, {where: nx > 0.5, absorbing: true}, "
@@ -503,5 +529,6 @@ int main(int argc, char **argv) {
         }
         check_damped(mass[m]);
     }
+    check_words();
     return finish_with_nothing_left();
 }
