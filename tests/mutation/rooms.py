@@ -37,7 +37,7 @@ ROOMS = {
                test_supports.py test_static.py test_crystals.py test_fragment_contact.py test_parallel.py
                test_restart.py"""),
     "diagnostics": (["src/diagnostics/*"],
-                    """step exact_sum fragment fragment_table fragment_twin ledger probe sensor verify test_output.py
+                    """step exact_sum fragment fragment_table fragment_twin ledger probe sensor crack_tip verify test_output.py
                     test_invariance.py test_friction.py test_viscosity.py test_bodies.py test_ceramic.py
                     test_fragments.py test_sensors.py test_moments.py test_sides.py test_ledger.py test_spall.py
                     test_faults.py test_bimaterials.py test_cli.py test_impact.py test_parallel.py test_restart.py"""),
