@@ -5,8 +5,8 @@ import json
 import h5py
 import numpy as np
 
-ENERGIES = ("kinetic", "bodies", "bulk", "penalty", "cohesive", "contact", "dissipated", "plastic", "damage", "viscous",
-            "friction", "unresolved", "radiated")
+ENERGIES = ("kinetic", "bodies", "bulk", "penalty", "cohesive", "contact", "foundation", "dissipated", "plastic", "damage",
+            "viscous", "friction", "unresolved", "radiated")
 SPALL = """
 mesh: {cells: [1, 1, 10], size: [2, 3, 8], origin: [-1, -1, -4]}
 material: {model: neo-hookean, young: 4e9, poisson: 0.25, density: 3000}

@@ -63,6 +63,10 @@ bool rg_body_turns(const rg_body_input *b) {
     return rg_body_spins(b) || (b->motion == RG_MOTION_FREE && rg_body_has_inertia(b) && !central);
 }
 
+bool rg_load_is_inside(const rg_load_input *load) {
+    return load->kind == RG_LOAD_ACCELERATION || load->kind == RG_LOAD_CENTRIFUGAL;
+}
+
 static bool ends_before(const rg_boundary *a, const rg_boundary *b) {
     return a->until > 0 && a->until <= b->from;
 }

@@ -73,7 +73,8 @@ typedef struct {
     X(TRACTION, "traction", "Pa")                                                                            \
     join X(PRESSURE, "pressure", "Pa") join X(FORCE, "force", "N") join X(ACCELERATION, "acceleration",      \
                                                                           "m/s2") join                       \
-    X(FOUNDATION, "foundation", "N/m3")
+    X(FOUNDATION, "foundation", "N/m3") join                                                                 \
+    X(CENTRIFUGAL, "centrifugal", "rad/s")
 
 #define RG_LOAD_ENUM(NAME, key, unit) RG_LOAD_##NAME,
 #define RG_LOAD_KEY(NAME, key, unit)  key
@@ -86,6 +87,7 @@ typedef struct {
     bool cracks;    /* of a pressure: on faces between elements, as they open; all, or where those two say */
     rg_load_kind kind;
     rg_expr *value[RG_LOAD_KINDS][3]; /* of its kind, x, y, z (of some the first alone); NULL: 0 */
+    double axis[3], at[3];            /* of centrifugal forces: of any length; a point of it (m) */
     double from, until;               /* it acts in between (s); until 0: without end */
 } rg_load_input;
 
@@ -361,6 +363,9 @@ bool rg_body_turns(const rg_body_input *b);
 /* Whether a free one has an inertia; whether it starts with an angular velocity, or one is prescribed. */
 bool rg_body_has_inertia(const rg_body_input *b);
 bool rg_body_spins(const rg_body_input *b);
+
+/* Whether a load acts on elements, not on faces. */
+bool rg_load_is_inside(const rg_load_input *load);
 
 /* Whether two entries act at the same time. */
 bool rg_boundaries_meet(const rg_boundary *a, const rg_boundary *b);

@@ -414,14 +414,14 @@ static const rg_key boundary_keys[] = {
     {.name = key ".y", .unit = (unit_), .type = RG_KEY_EXPR, ELSE("0"), .no_place = (evenly), LOAD(value[RG_LOAD_##NAME][1]), MEANS("along y")}, \
     {.name = key ".z", .unit = (unit_), .type = RG_KEY_EXPR, ELSE("0"), .no_place = (evenly), LOAD(value[RG_LOAD_##NAME][2]), MEANS("along z")},
 
-/* Of traction, pressure, force and acceleration it has one. */
+/* Of what comes first in RG_LOADS it has one. */
 static const rg_key load_keys[] = {
     {.name = "name", .type = RG_KEY_TEXT, ELSE("no columns"), LOAD(name),
      MEANS("column prefix of its force, moment about the origin and work in history.csv: letters, digits, _ and -")},
     {.name = "set", .type = RG_KEY_TEXT, .choice = box_sets, ELSE("where"), LOAD(set),
-     MEANS("a side of the box, or a surface set of the mesh file; not of an acceleration")},
-    {.name = "where", .type = RG_KEY_EXPR, ELSE("set; of an acceleration the whole body"), .no_time = true, .normal = true, LOAD(where),
-     MEANS("faces of the surface where it is not 0, by their middle and outward normal; of an acceleration elements, by their centroid")},
+     MEANS("a side of the box, or a surface set of the mesh file; not of what acts on elements")},
+    {.name = "where", .type = RG_KEY_EXPR, ELSE("set; of accelerations and centrifugal forces the whole body"), .no_time = true, .normal = true, LOAD(where),
+     MEANS("faces of the surface where it is not 0, by their middle and outward normal; of an acceleration and of centrifugal forces elements, by their centroid")},
     {.name = "cracks", .type = RG_KEY_BOOL, ELSE("false"), LOAD(cracks),
      MEANS("true: the pressure acts inside cracks, on both faces, by the share of a face's points that have separated; with set or where only in those")},
     LOAD_VECTOR("traction", "Pa", TRACTION, false, "traction along x, per area of reference: it keeps its direction")
@@ -430,7 +430,11 @@ static const rg_key load_keys[] = {
     LOAD_VECTOR("force", "N", FORCE, true, "total force along x, spread evenly over the area of reference")
     LOAD_VECTOR("acceleration", "m/s2", ACCELERATION, false, "force per mass along x, as gravity")
     {.name = "foundation", .unit = "N/m3", .type = RG_KEY_EXPR, ELSE("another load"), ONE_OF, .no_time = true, LOAD(value[RG_LOAD_FOUNDATION][0]),
-     MEANS("springs between the surface and the ground, alike in all directions, per area of reference: traction over displacement, not negative; what they store is minus their work")},
+     MEANS("springs between the surface and the ground, alike in all directions, per area of reference: traction over displacement, not negative; what they store is `foundation` in energy.csv")},
+    {.name = "centrifugal.speed", .unit = "rad/s", .type = RG_KEY_EXPR, ELSE("another load"), ONE_OF, .no_place = true, LOAD(value[RG_LOAD_CENTRIFUGAL][0]),
+     MEANS("force per mass of a frame that turns so fast, speed^2 times the distance from its axis, at present places: the solid as it is seen from there, but for Coriolis forces")},
+    {.name = "centrifugal.axis", REAL3, ANY, ELSE("required of it"), LOAD(axis), MEANS("about which the frame turns: of any length")},
+    {.name = "centrifugal.at", .unit = "m", REAL3, ANY, ELSE("0, 0, 0"), LOAD(at), MEANS("a point of the axis")},
     {.name = "from", .unit = "s", REAL, FROM(0), DEFAULT(0), LOAD(from), MEANS("the load acts from this time on")},
     {.name = "until", .unit = "s", REAL, ABOVE(0), ELSE("the end of the run"), LOAD(until), MEANS("and no more from this one on")},
 };

@@ -18,6 +18,8 @@ enum {
     INTERFACE,
     DISSIPATED = INTERFACE + RG_E_DISSIPATED,
     UNRESOLVED = INTERFACE + RG_E_UNRESOLVED,
+    FOUNDATION,
+    BRIEF, /* of those foundations that begin or end */
     EXTERNAL,
     RELEASED,
     VISCOUS = RELEASED + RG_RELEASED,
@@ -30,7 +32,7 @@ enum {
     PARTS = ANGULAR + 3 /* those of material m: from PARTS + PART * m on */
 };
 
-enum { ROW = 27 }; /* values of a row, but for the parts of the materials */
+enum { ROW = 28 }; /* values of a row, but for the parts of the materials */
 
 enum { PART_KINETIC, PART_BULK, PART_DISSIPATED, PART };
 
@@ -238,6 +240,7 @@ static void sum_up(rg_solver *s, rg_exact_sum *sum, rg_peak *unresolved) {
             element_energies(s, &d->tile[t], w, energy, change, mine);
             interface_energies(s, &d->tile[t], w, energy, mine, &peak);
             rg_bodies_energy(s->bodies, t, s->u, &mine[INTERFACE + RG_E_CONTACT]);
+            rg_loads_energy(s->loads, t, s->u, &mine[FOUNDATION], &mine[BRIEF]);
             if (s->contacts != NULL) {
                 rg_contacts_energy(s->contacts, t, &mine[INTERFACE + RG_E_CONTACT]);
             }
@@ -279,6 +282,7 @@ static rg_energy energy_of(const rg_solver *s, const double *v) {
                    .penalty = part[RG_E_PENALTY],
                    .cohesive = part[RG_E_COHESIVE],
                    .contact = part[RG_E_CONTACT],
+                   .foundation = v[FOUNDATION],
                    .dissipated = part[RG_E_DISSIPATED],
                    .unresolved = part[RG_E_UNRESOLVED] + s->openings.released,
                    .plastic = v[RELEASED + RG_RELEASED_PLASTIC],
@@ -286,7 +290,7 @@ static rg_energy energy_of(const rg_solver *s, const double *v) {
                    .viscous = v[VISCOUS],
                    .friction = v[FRICTION],
                    .radiated = rg_absorbing_radiated(s->absorbing),
-                   .external = v[EXTERNAL] + bodies.work + rg_loads_work(s->loads),
+                   .external = v[EXTERNAL] + bodies.work + rg_loads_work(s->loads) + v[BRIEF],
                    .broken_area = v[BROKEN],
                    .failed_area = v[FAILED],
                    .momentum = {v[MOMENTUM], v[MOMENTUM + 1], v[MOMENTUM + 2]},
@@ -319,8 +323,8 @@ const rg_energy *rg_ledger_take(rg_ledger *l, rg_solver *s) {
     values(s, v, &unresolved);
     rg_energy *e = &l->last;
     *e = energy_of(s, v);
-    double stored =
-        e->kinetic + e->bodies + e->bulk + e->penalty + e->cohesive + e->contact + e->unresolved + e->spent;
+    double stored = e->kinetic + e->bodies + e->bulk + e->penalty + e->cohesive + e->contact + e->foundation +
+                    e->unresolved + e->spent;
     e->total = stored + e->radiated - e->half_kick - e->external;
     if (!l->begun) {
         *l = (rg_ledger){.begun = true, .start = e->total, .last = *e};
@@ -383,7 +387,8 @@ void rg_energy_header(rg_csv *t, const rg_solver *s) {
     size_t length = 0;
     char *columns = NULL;
     FILE *f = open_memstream(&columns, &length);
-    fputs("step,time,kinetic,bodies,bulk,penalty,cohesive,contact,dissipated,plastic,damage,viscous,friction,"
+    fputs("step,time,kinetic,bodies,bulk,penalty,cohesive,contact,foundation,dissipated,plastic,damage,"
+          "viscous,friction,"
           "unresolved,radiated,half_kick,"
           "external_work,total,error_rel,error_dissipated,broken_area,failed_area,momentum_x,momentum_y,"
           "momentum_z,angular_x,angular_y,angular_z",
@@ -407,6 +412,7 @@ void rg_energy_row(rg_csv *t, const rg_ledger *l, const rg_solver *s) {
                                                     e->penalty,
                                                     e->cohesive,
                                                     e->contact,
+                                                    e->foundation,
                                                     e->dissipated,
                                                     e->plastic,
                                                     e->damage,

@@ -1,5 +1,5 @@
-/* The energy ledger: kinetic + bulk + penalty + cohesive + contact + dissipated + plastic + damage + viscous
- * + friction + radiated - external work = constant. */
+/* The energy ledger: kinetic + bulk + penalty + cohesive + contact + foundation + dissipated + plastic +
+ * damage + viscous + friction + radiated - external work = constant. */
 #ifndef RG_LEDGER_H
 #define RG_LEDGER_H
 
@@ -12,6 +12,7 @@ typedef struct {
     double time;
     double kinetic, bodies, bulk, penalty, cohesive, contact; /* J; kinetic: of the solid, bodies: of free
  rigid ones; contact: of cracks and of bodies */
+    double foundation;                                        /* stored in elastic foundations (J) */
     double dissipated;                                        /* by cracks between elements (J) */
     double plastic,
         damage;         /* set free in the bulk by plastic flow and by growing microcracks (J); the latter

@@ -49,13 +49,26 @@ struct rg_loads {
     rg_first_bad bad; /* where a value was not finite first, and when */
 };
 
-/* Of a value: of a pressure and of a foundation there is one. */
+static bool is_centrifugal(const load *l) {
+    return l->input->kind == RG_LOAD_CENTRIFUGAL;
+}
+
+static bool is_foundation(const load *l) {
+    return l->input->kind == RG_LOAD_FOUNDATION;
+}
+
+/* Of a value: of a pressure, a foundation and a speed there is one. */
 static int components(const load *l) {
-    return l->input->kind == RG_LOAD_PRESSURE || l->input->kind == RG_LOAD_FOUNDATION ? 1 : 3;
+    return l->input->kind == RG_LOAD_PRESSURE || is_foundation(l) || is_centrifugal(l) ? 1 : 3;
 }
 
 static bool is_body_force(const load *l) {
-    return l->input->kind == RG_LOAD_ACCELERATION;
+    return rg_load_is_inside(l->input);
+}
+
+/* Whether the case gives it place by place: a speed it does not, though its forces differ. */
+static bool is_given_by_place(const load *l) {
+    return l->by_place && !is_centrifugal(l);
 }
 
 /* Nodes on which an entry's forces are. */
@@ -146,7 +159,7 @@ void rg_loads_set(rg_loads *all, double time, double dt_last, double dt_next) {
     for (int i = 0; i < all->count; i++) {
         load *l = &all->load[i];
         l->acts = time >= l->input->from && !(l->input->until > 0 && time >= l->input->until);
-        if (l->acts && l->by_time && !l->by_place) {
+        if (l->acts && l->by_time && !is_given_by_place(l)) {
             set_even_value(all, i, time);
         }
     }
@@ -155,11 +168,30 @@ void rg_loads_set(rg_loads *all, double time, double dt_last, double dt_next) {
 void rg_loads_set_springs(rg_loads *all) {
     rg_loads_set(all, 0, 0, 0);
     for (int i = 0; i < all->count; i++) {
-        all->load[i].acts = all->load[i].acts && all->load[i].input->kind == RG_LOAD_FOUNDATION;
+        all->load[i].acts = all->load[i].acts && is_foundation(&all->load[i]);
     }
 }
 
 /* ---- Forces ---- */
+
+/* Accelerations of an element's nodes away from the axis, where they are by now. */
+static void spin_out(const rg_loads *all, entry *e, const rg_real *u) {
+    const load *l = &all->load[e->load];
+    double length = sqrt(rg_vector_dot(l->input->axis, l->input->axis)), axis[3], x[3];
+    double square = l->value[0] * l->value[0];
+    for (int a = 0; a < RG_NODES; a++) {
+        rg_node_position(all->surface.domain->corner + 12 * (size_t)e->slot, a, x);
+        for (int c = 0; c < 3; c++) {
+            axis[c] = l->input->axis[c] / length;
+            x[c] += u[index_of(e, a, c)] - l->input->at[c];
+        }
+        double along = rg_vector_dot(axis, x);
+        for (int c = 0; c < 3; c++) {
+            e->value[a][c] = square * (x[c] - along * axis[c]);
+        }
+    }
+    body_forces(all, e);
+}
 
 /* Displacements of an entry's nodes. */
 static void displacements(const entry *e, const rg_real *u, double out[RG_FNODES][3]) {
@@ -184,7 +216,7 @@ static void face_forces(const rg_loads *all, entry *e, const rg_real *u) {
         out = rg_vector_dot(product, normal) > 0 ? 1 : -1;
         rg_surface_place(s, (size_t)e->slot, e->face, u, x);
     }
-    bool springs = l->input->kind == RG_LOAD_FOUNDATION;
+    bool springs = is_foundation(l);
     if (springs) {
         displacements(e, u, x);
     }
@@ -263,7 +295,9 @@ void rg_loads_find(rg_loads *all, size_t tile, const rg_solver *s) {
         if (!l->acts) {
             continue;
         }
-        if (l->by_place && l->by_time) {
+        if (is_centrifugal(l)) {
+            spin_out(all, e, s->u);
+        } else if (l->by_place && l->by_time) {
             evaluate(all, e, all->own[omp_get_thread_num() * all->count + e->load], all->time);
         }
         if (e->face >= 0) {
@@ -333,12 +367,38 @@ void rg_loads_book(const rg_loads *all, size_t tile, const rg_real *u, const rg_
     }
 }
 
+static bool lasts(const load *l) {
+    return !(l->input->from > 0) && !(l->input->until > 0);
+}
+
 double rg_loads_work(const rg_loads *all) {
     double work = 0;
     for (int i = 0; i < all->count; i++) {
-        work += all->account->item[all->load[i].item].work_now;
+        const load *l = &all->load[i];
+        work += is_foundation(l) && lasts(l) ? 0 : all->account->item[l->item].work_now;
     }
     return work;
+}
+
+void rg_loads_energy(const rg_loads *all, size_t tile, const rg_real *u, rg_exact_sum *stored,
+                     rg_exact_sum *brief) {
+    for (size_t i = all->tile_begin[tile]; i < all->tile_begin[tile + 1]; i++) {
+        const entry *e = &all->entry[i];
+        const load *l = &all->load[e->load];
+        double moved[RG_FNODES][3], here[3], normal[3];
+        if (!is_foundation(l) || !l->acts) {
+            continue;
+        }
+        displacements(e, u, moved);
+        double area = rg_surface_area(all->surface.domain->corner + 12 * (size_t)e->slot, e->face, normal);
+        for (int q = 0; q < RG_POINTS; q++) {
+            rg_surface_at(&all->surface, q, moved, here);
+            double energy = 0.5 * all->surface.weight[q] * area *
+                            (l->by_place ? e->value[q][0] : l->value[0]) * rg_vector_dot(here, here);
+            rg_exact_add(stored, energy);
+            rg_exact_add(brief, lasts(l) ? 0 : energy);
+        }
+    }
 }
 
 static const char *const key[] = {
@@ -539,7 +599,7 @@ double rg_loads_omega2(const rg_loads *all) {
         const entry *e = &all->entry[n];
         const load *l = &all->load[e->load];
         double normal[3], stiffest = l->value[0];
-        if (l->input->kind != RG_LOAD_FOUNDATION) {
+        if (!is_foundation(l)) {
             continue;
         }
         for (int q = 0; l->by_place && q < RG_POINTS; q++) {
@@ -559,7 +619,7 @@ void rg_loads_show(const rg_loads *all, void (*show)(void *to, size_t slot, int 
     for (size_t n = 0; n < all->tile_begin[all->surface.domain->tiles]; n++) {
         const entry *e = &all->entry[n];
         const load *l = &all->load[e->load];
-        bool holds = l->input->kind == RG_LOAD_FOUNDATION && !(l->input->from > 0);
+        bool holds = is_foundation(l) && !(l->input->from > 0);
         for (int i = 0; holds && i < 3 * RG_FNODES; i++) {
             const double line[3] = {i % 3 == 0, i % 3 == 1, i % 3 == 2};
             show(to, (size_t)e->slot, node_of(e, i / 3), line);
@@ -573,7 +633,7 @@ static void refuse_negative(const rg_loads *all) {
     for (size_t n = 0; n < all->tile_begin[all->surface.domain->tiles]; n++) {
         const entry *e = &all->entry[n];
         const load *l = &all->load[e->load];
-        for (int q = 0; l->input->kind == RG_LOAD_FOUNDATION && q < RG_POINTS; q++) {
+        for (int q = 0; is_foundation(l) && q < RG_POINTS; q++) {
             double value = l->by_place ? e->value[q][0] : l->value[0];
             bad = value < 0 && e->load < bad ? e->load : bad;
         }
@@ -589,14 +649,14 @@ static void refuse_negative(const rg_loads *all) {
 /* Values that do not change, and all others when their load begins. */
 static void first_values(rg_loads *all) {
     for (int i = 0; i < all->count; i++) {
-        if (!all->load[i].by_place) {
+        if (!is_given_by_place(&all->load[i])) {
             set_even_value(all, i, all->load[i].input->from);
         }
     }
     for (size_t n = 0; n < all->tile_begin[all->surface.domain->tiles]; n++) {
         entry *e = &all->entry[n];
         const rg_load_input *in = all->load[e->load].input;
-        if (all->load[e->load].by_place) {
+        if (is_given_by_place(&all->load[e->load])) {
             evaluate(all, e, in->value[in->kind], in->from);
         }
     }
@@ -637,6 +697,7 @@ rg_loads *rg_loads_make(const rg_case *c, const rg_domain *d, const rg_part *par
     for (int i = 0; i < c->loads; i++) {
         load *l = &all->load[i];
         *l = (load){.input = &c->load[i], .item = rg_account_add(account, c->load[i].name)};
+        l->by_place = is_centrifugal(l);
         for (int k = 0; k < components(l); k++) {
             const rg_expr *e = c->load[i].value[c->load[i].kind][k];
             l->by_place = l->by_place || (e != NULL && rg_expr_uses_position(e));

@@ -3,12 +3,16 @@
  * On a face, by its six points (solver/surface.h), f_a = int N_a t dA:
  *   traction, force   t per area of reference: dead, it keeps direction and size
  *   foundation        t = -k u per area of reference, of springs to the ground: a part of the critical
- * step and of a static start
+ * step and of a static start; what they store is a part of the body's energy
  *   pressure          t dA = -p x,1 cross x,2 by the face's own deformed tangents, p at the place of
  * reference. By Nanson this is -p J F^-T N dA with the F of the element at its face, but from six nodes in
  * place of ten, for any state of the element, and a polynomial that the rule takes exactly: on a closed
  * surface that moves as one the forces add up to nothing, and so do their moments. On an element an
  * acceleration a, interpolated between its nodes: f = M a, which moves them by just a, with any mass.
+ * Centrifugal forces are such ones, speed^2 times the way from the axis to the present place of a node: of
+ * the potential -speed^2 r^2/2 per mass, so that a body that moves out gets all that it gains, where those of
+ * the place of reference would leave out what makes a rotor whirl. They soften what they act on and leave the
+ * critical step.
  *
  * Inside cracks a pressure acts on the faces of both elements, each by its own tangents, times the share of
  * the face's points that have separated, as last known on both sides.
@@ -62,8 +66,13 @@ void rg_loads_book(const rg_loads *l, size_t tile, const rg_real *u, const rg_re
 /* Load i in words: "traction on 2.5e-09 m2". */
 void rg_loads_describe(const rg_loads *l, int i, char *words, size_t size);
 
-/* Work of all loads up to the present time (J). */
+/* Work of all loads up to the present time (J), but of foundations that last, which store it. */
 double rg_loads_work(const rg_loads *l);
+
+/* What the foundations of a tile store at a displacement (J): adds it to `stored`, and that of those which
+ * begin or end to `brief`, as what they bring and take away is work from outside. */
+void rg_loads_energy(const rg_loads *l, size_t tile, const rg_real *u, rg_exact_sum *stored,
+                     rg_exact_sum *brief);
 
 /* Collective: whether a value was not finite in any step so far; then words[size] says which, where and when
  * first. */

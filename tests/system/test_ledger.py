@@ -40,7 +40,7 @@ def test_stored_energies_are_not_negative(energy):
 
 
 def test_total_is_the_sum_of_its_parts(energy, figure):
-    parts = sum(energy[name] for name in ("kinetic", "bodies", "bulk", "penalty", "cohesive", "contact", "dissipated"))
+    parts = sum(energy[name] for name in ("kinetic", "bodies", "bulk", "penalty", "cohesive", "contact", "foundation", "dissipated"))
     parts += energy["unresolved"] + energy["radiated"]
     scale = np.abs(energy["external_work"]).max() + parts.max()
     figure("ledger: total against the sum of its parts",

@@ -514,6 +514,7 @@ static void test_energy_table(void **state) {
                                   .penalty = 5,
                                   .cohesive = 6,
                                   .contact = 7,
+                                  .foundation = 7.5,
                                   .dissipated = 8,
                                   .plastic = 9,
                                   .damage = 10,
@@ -532,12 +533,14 @@ static void test_energy_table(void **state) {
                                   .angular_momentum = {23, 24, 25}},
                          .material = {{26, 27, 28}, {29, 30, 31}}};
     static const char header[] =
-        "step,time,kinetic,bodies,bulk,penalty,cohesive,contact,dissipated,plastic,damage,viscous,friction,"
+        "step,time,kinetic,bodies,bulk,penalty,cohesive,contact,foundation,dissipated,plastic,damage,viscous,"
+        "friction,"
         "unresolved,radiated,half_kick,external_work,total,error_rel,error_dissipated,broken_area,failed_"
         "area,"
         "momentum_x,momentum_y,"
         "momentum_z,angular_x,angular_y,angular_z";
-    static const char row[] = "41,1,2,3,4,5,6,7,8,9,10,11,12,13,13.5,14,15,16,17,nan,18,19,20,21,22,23,24,25";
+    static const char row[] =
+        "41,1,2,3,4,5,6,7,7.5,8,9,10,11,12,13,13.5,14,15,16,17,nan,18,19,20,21,22,23,24,25";
     char wanted[1000];
     for (int two = 0; two < 2; two++) {
         rg_csv *t = rg_csv_open(".", "e.csv", 0);

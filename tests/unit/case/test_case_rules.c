@@ -94,7 +94,7 @@ static const mistake bodies[] = {
      ":23:98: bodies[7].length: not used: it belongs to a cylinder with a density\n"},
 };
 
-#define LOAD "allowed: exactly one of traction, pressure, force, acceleration, foundation\n"
+#define LOAD "allowed: exactly one of traction, pressure, force, acceleration, foundation, centrifugal\n"
 
 static const mistake loads[] = {
     {"time:\n",
@@ -112,6 +112,10 @@ static const mistake loads[] = {
      "  - {set: top, pressure: 'nx', until: 0}\n"
      "  - {set: z+, traction: 3}\n"
      "  - 3\n"
+     "  - {set: z+, centrifugal: {speed: x, axis: [0, 0, 1]}}\n"
+     "  - {set: z+, centrifugal: {speed: 1, axis: [0, 0, 0]}}\n"
+     "  - {centrifugal: {speed: 1}}\n"
+     "  - {centrifugal: {axis: [0, 0, 1]}, until: 1}\n"
      "time:\n",
      ":17:12: loads[1].name: p: the name of an earlier one in history.csv; allowed: letters, digits, _ and "
      "-; "
@@ -133,8 +137,15 @@ static const mistake loads[] = {
      ":28:5: loads[12]: 3: not a mapping of keys; allowed: list of {name, set, where, cracks, traction, "
      "pressure, "
      "force, "
-     "acceleration, foundation, from, until}\n"
-     ":33:14: output.probes[0].name: p: the name of an earlier one in history.csv; allowed: letters, digits, "
+     "acceleration, foundation, centrifugal, from, until}\n"
+     ":29:36: loads[13].centrifugal.speed: x: depends on x, y or z, but this is the same everywhere; "
+     "allowed: number "
+     "or expression in t (rad/s)\n"
+     ":30:6: loads[14].set: not used: centrifugal forces act on elements, which `where` selects\n"
+     ":30:45: loads[14].centrifugal.axis: [0, 0, 0]: has no direction\n"
+     ":31:5: loads[15].centrifugal.axis: missing; allowed: 3 numbers\n"
+     ":32:5: loads[16].centrifugal.speed: missing\n"
+     ":37:14: output.probes[0].name: p: the name of an earlier one in history.csv; allowed: letters, digits, "
      "_ "
      "and -; unique in history.csv\n"},
 };

@@ -335,7 +335,8 @@ static void check_unresolved(void) {
         there = near(peak.place[c], (x[corner[0]][c] + x[corner[1]][c] + x[corner[2]][c]) / 3, 1e-3) && there;
     }
     report(there, "ledger", "the face with most of it");
-    double parts = e->kinetic + e->bodies + e->bulk + e->penalty + e->cohesive + e->contact + e->spent;
+    double parts =
+        e->kinetic + e->bodies + e->bulk + e->penalty + e->cohesive + e->contact + e->foundation + e->spent;
     report(near(e->total, parts + e->unresolved - e->half_kick - e->external, parts) &&
                wanted > 1e3 * EXACT * parts,
            "ledger", "total with what no law can take");
