@@ -175,7 +175,7 @@ def test_restart_of_bodies_and_materials(run, tmp_path, case):
 
 @pytest.fixture(scope="module")
 def grains(scratch):
-    """1,296 tetrahedra, eight grains, a surface inside and one of nodes: sets overlap, tiles have two blocks."""
+    """1,296 tetrahedra, eight grains, a surface inside and one by its nodes; tiles have two blocks."""
     n, step = 6, (1, 7, 49)
     corner = [i + 7 * j + 49 * k for k, j, i in itertools.product(range(n), repeat=3)]
     paths = [(0, step[a], step[a] + step[b], 57) for a, b in itertools.permutations(range(3), 2)]
@@ -187,18 +187,19 @@ def grains(scratch):
                 text += "".join(f"{1 + 6 * c + t}, " + ", ".join(str(1 + corner[c] + p) for p in path) + "\n" for t, path in enumerate(paths))
     # of the cubes below the plane z = 1/3 the faces that lie in it: S3 of the two paths that begin along z
     text += "*SURFACE, NAME=weak\n" + "".join(f"{1 + 6 * c + t}, S3\n" for c in range(n * n, 2 * n * n) for t in (4, 5))
-    text += "*NSET, NSET=top, GENERATE\n295, 343\n*NSET, NSET=bottom, GENERATE\n1, 49\n"
+    text += "*NSET, NSET=top, GENERATE\n295, 343\n*NSET, NSET=bottom, GENERATE\n1, 49\n*NSET, NSET=plane, GENERATE\n197, 245\n"
     (scratch / "grains.inp").write_text(text)
     process = launch("mesh", scratch / "grains.inp", "-o", scratch / "grains.h5", "--unit", "mm")
     assert process.returncode == 0, process.stderr
-    assert "weak: 0 faces, and 72 between elements\n" in launch("mesh", "--info", scratch / "grains.h5").stdout
+    said = launch("mesh", "--info", scratch / "grains.h5").stdout
+    assert all(f"{name}: 0 faces, and 72 between elements\n" in said for name in ("weak", "plane"))
     return scratch / "grains.h5"
 
 
 def test_sets_inside_on_any_layout_and_restart(run, grains, tmp_path):
     """A weak surface inside and boundaries of all grains, pulled by sets of nodes."""
     law = {"law": "linear", "strength": 400e6, "energy": 34, "sets": [
-        {"set": "weak", "strength": 100e6}, {"between": "any", "strength": 200e6, "energy": 10}]}
+        {"set": "weak", "strength": 100e6}, {"set": "plane", "strength": 150e6}, {"between": "any", "strength": 200e6, "energy": 10}]}
     case = tmp_path / "grains.yaml"
     case.write_text(json.dumps({
         "mesh": {"file": str(grains)}, "material": {"model": "neo-hookean", "young": 260e9, "poisson": 0.21, "density": 3690},

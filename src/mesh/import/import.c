@@ -318,6 +318,10 @@ struct surface {
     size_t faces, room;
     struct side *inner; /* both sides of named faces between two elements */
     size_t inners, inner_room;
+    const bool *in_node_set; /* [vertices]; NULL: there are none */
+    struct side
+        *within; /* both sides of faces between two elements whose vertices all are in sets of nodes */
+    size_t withins, within_room;
     int64_t inside, nowhere; /* named faces between two elements; triangles that are no faces */
 };
 
@@ -338,6 +342,12 @@ static void look_at_group(const struct triangle *t, size_t count, rg_mesh *mesh,
     for (size_t i = triangles; named > 0 && faces > 1 && i < count; i++) {
         s->inner = rg_grow(s->inner, &s->inner_room, s->inners, sizeof *s->inner);
         s->inner[s->inners++] = (struct side){t[i].name, t, named};
+    }
+    bool within = faces > 1 && s->in_node_set != NULL && s->in_node_set[t->vertex[0]] &&
+                  s->in_node_set[t->vertex[1]] && s->in_node_set[t->vertex[2]];
+    for (size_t i = triangles; within && i < count; i++) {
+        s->within = rg_grow(s->within, &s->within_room, s->withins, sizeof *s->within);
+        s->within[s->withins++] = (struct side){t[i].name, t, named};
     }
     if (triangles > 0 && faces > 1) {
         for (int i = 0; i < 3; i++) {
@@ -408,6 +418,7 @@ struct node_set {
     const rg_import_point *point;
     size_t points;
     int32_t set; /* of the surface; -1: none */
+    bool inside; /* it holds no face of the surface, but some between elements */
 };
 
 static int by_set(const void *a, const void *b) {
@@ -418,12 +429,12 @@ static int by_set(const void *a, const void *b) {
     return (p->node > q->node) - (p->node < q->node);
 }
 
-/* The first face of the surface whose lowest vertex is not below `v`. */
-static size_t first_face(const struct surface *s, rg_gid v) {
-    size_t low = 0, high = s->faces;
+/* The first face whose lowest vertex is not below `v`. */
+static size_t first_face(const struct side *face, size_t faces, rg_gid v) {
+    size_t low = 0, high = faces;
     while (low < high) {
         size_t middle = low + (high - low) / 2;
-        if (s->face[middle].vertex->vertex[0] < v) {
+        if (face[middle].vertex->vertex[0] < v) {
             low = middle + 1;
         } else {
             high = middle;
@@ -445,18 +456,21 @@ static rg_gid vertex_of(const struct marks *k, size_t node) {
     return row < SIZE_MAX ? k->vertex[row] : -1;
 }
 
-/* Puts the faces all of whose vertices have `mark` into the set, or without one only counts them. */
+/* Puts the faces all of whose vertices have `mark` into the set, or without one only counts them: those of
+ * the surface, or if it is `inside` both sides of those between elements. */
 static int64_t take_faces(const struct marks *k, const struct node_set *n, const struct surface *s,
                           int32_t mark, rg_mesh *mesh) {
+    const struct side *face = n->inside ? s->within : s->face;
+    size_t faces = n->inside ? s->withins : s->faces;
     int64_t count = 0;
     for (size_t i = 0; i < n->points; i++) {
         rg_gid v = vertex_of(k, n->point[i].node);
         bool again = i > 0 && n->point[i].node == n->point[i - 1].node;
-        for (size_t f = v < 0 || again ? s->faces : first_face(s, v);
-             f < s->faces && s->face[f].vertex->vertex[0] == v; f++) {
-            const rg_lid *corner = s->face[f].vertex->vertex;
+        for (size_t f = v < 0 || again ? faces : first_face(face, faces, v);
+             f < faces && face[f].vertex->vertex[0] == v; f++) {
+            const rg_lid *corner = face[f].vertex->vertex;
             if (k->mark[corner[1]] == mark && k->mark[corner[2]] == mark) {
-                int32_t *group = &mesh->set[s->face[f].slot];
+                int32_t *group = &mesh->set[face[f].slot];
                 *group = n->set >= 0 ? rg_sets_join(k->joining, *group, n->set) : *group;
                 count++;
             }
@@ -492,7 +506,8 @@ static void choose_node_sets(struct marks *k, struct node_set *sets, const struc
     for (int32_t i = 0; i < m->node_set.count; i++) {
         const char *name = m->node_set.name[i];
         mark_nodes(k, &sets[i], i + 1);
-        if (take_faces(k, &sets[i], s, i + 1, mesh) == 0) {
+        sets[i].inside = take_faces(k, &sets[i], s, i + 1, mesh) == 0;
+        if (sets[i].inside && take_faces(k, &sets[i], s, i + 1, mesh) == 0) {
             note_name(without, sizeof without, name, withouts++);
         } else if (rg_sets_find(&m->surface, name) >= 0) {
             note_name(taken, sizeof taken, name, takens++);
@@ -501,8 +516,8 @@ static void choose_node_sets(struct marks *k, struct node_set *sets, const struc
         }
     }
     if (withouts > 0) {
-        rg_warn("%s: %" PRId64 " sets of nodes hold no whole face of the surface and are left out: %s",
-                m->path, withouts, without);
+        rg_warn("%s: %" PRId64 " sets of nodes hold no whole face and are left out: %s", m->path, withouts,
+                without);
     }
     if (takens > 0) {
         rg_warn("%s: %" PRId64 " sets of nodes are left out, for there are surfaces of their names: %s",
@@ -569,6 +584,14 @@ static void mark_faces(rg_import *m, const rg_gid *vertex, rg_mesh *mesh) {
     struct triangle *list = list_triangles(m, vertex, mesh, &count, &s);
     mesh->inner = RG_NEW(rg_gid, 3 * m->faces + 1);
     qsort(list, count, sizeof *list, by_vertices);
+    bool *in_node_set = m->points > 0 ? RG_NEW(bool, (size_t)mesh->vertices) : NULL;
+    for (size_t i = 0; i < m->points; i++) {
+        size_t row = row_of(m, m->point[i].node);
+        if (row < SIZE_MAX && vertex[row] >= 0) {
+            in_node_set[vertex[row]] = true;
+        }
+    }
+    s.in_node_set = in_node_set;
     for (size_t i = 0, n; i < count; i += n) {
         for (n = 1; i + n < count && memcmp(list[i].vertex, list[i + n].vertex, sizeof list->vertex) == 0;
              n++) {
@@ -586,6 +609,8 @@ static void mark_faces(rg_import *m, const rg_gid *vertex, rg_mesh *mesh) {
     rg_free(sets);
     rg_free(s.face);
     rg_free(s.inner);
+    rg_free(s.within);
+    rg_free(in_node_set);
     rg_free(list);
 }
 

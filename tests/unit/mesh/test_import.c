@@ -352,7 +352,8 @@ static void test_extrude(void **state) {
                 "solids\n");
 }
 
-/* Sets of nodes: faces of the surface all of whose corners are in one. */
+/* Sets of nodes: faces of the surface all of whose corners are in one; if there are none, those between
+ * elements. */
 static void add_points(void) {
     static const struct {
         const char *name;
@@ -379,10 +380,10 @@ static void test_points(void **state) {
         add_points, RG_OK,
         WARNING
         "1 nodes belong to no tetrahedron and are left out; the first is node 60 at (0, 0, 0.5) m\n" WARNING
-        "2 sets of nodes hold no whole face of the surface and are left out: 'none', 'inside'\n" WARNING
+        "1 sets of nodes hold no whole face and are left out: 'none'\n" WARNING
         "1 sets of nodes are left out, for there are surfaces of their names: 'side'\n" X5
-        "e 1: 0 1 2 3, all at 1, side and all at 2, all and foot at 3\n"
-        "e 2: 1 2 3 4, all and back at 0, all at 1, all at 2\n");
+        "e 1: 0 1 2 3, inside at 0, all at 1, side and all at 2, all and foot at 3\n"
+        "e 2: 1 2 3 4, all and back at 0, all at 1, all at 2, inside at 3\n");
 }
 
 /* The message names the first five. */
@@ -397,9 +398,8 @@ static void add_many_points(void) {
 static void test_many_points(void **state) {
     (void)state;
     expect_said(add_many_points, RG_OK,
-                WARNING
-                "7 sets of nodes hold no whole face of the surface and are left out: 'a', 'b', 'c', 'd', "
-                "'e', ...\n" X5 "e 1: 0 1 2 3\ne 2: 1 2 3 4\n");
+                WARNING "7 sets of nodes hold no whole face and are left out: 'a', 'b', 'c', 'd', "
+                        "'e', ...\n" X5 "e 1: 0 1 2 3\ne 2: 1 2 3 4\n");
 }
 
 /* Outer faces of elements, beside faces that are named: sets of both, in any order. */

@@ -91,7 +91,7 @@ static void test_node_sets(void **state) {
            "*NSET, NSET=n\n10, 20, 30\n*SURFACE, NAME=n\n2, S2\n*NSET, NSET=empty\n*NSET, NSET=edge\n"
            "10, 20\n",
            WARNING
-           ": 2 sets of nodes hold no whole face of the surface and are left out: 'empty', 'edge'\n" WARNING
+           ": 2 sets of nodes hold no whole face and are left out: 'empty', 'edge'\n" WARNING
            ": 1 sets of nodes are left out, for there are surfaces of their names: 'n'\n" X5
            "e 1: 0 1 2 3\ne 2: 1 2 3 4, n at 2\n");
 }
@@ -239,7 +239,7 @@ static void test_instances(void **state) {
         "*SURFACE, NAME=t\none.1, S1\nOne.B.2, S2\n*SURFACE, NAME=u, TYPE=NODE\none.b.m\n"
         "*ELSET, ELSET=v\none.b.L, one.1\n*END ASSEMBLY\n*NSET, NSET=w, INSTANCE=one\n10, 20, 30\n",
         WARNING ": elements that are no solids are left out: 1 MASS\n" WARNING
-                ": 1 sets of nodes hold no whole face of the surface and are left out: 'point'\n" BOTH
+                ": 1 sets of nodes hold no whole face and are left out: 'point'\n" BOTH
                 "e 1: 0 1 2 3 in one.L and all and v, one.s and one.n at 2, one.s and t and w at 3\n"
                 "e 2: 1 2 3 4 in one.L and all, one.s at 2\n"
                 "e 11: 5 6 7 8 in one.b.L and all and v, one.b.s and one.b.n at 2, one.b.s at 3\n"
