@@ -43,9 +43,8 @@ static double place_of(const rg_domain *d, size_t slot, int face, int q, const d
 }
 
 static bool has_separated(const rg_solver *s, size_t i, int q) {
-    double whole = rg_separation(s, i, q);
     return rg_point_is_broken(s, i, q) &&
-           (!isfinite(whole) || *rg_crack_value(s, i, q, RG_CRACK_OPENING) >= whole);
+           *rg_crack_value(s, i, q, RG_CRACK_OPENING) >= rg_separation(s, i, q);
 }
 
 bool rg_crack_tips_want(const rg_crack_tips *r, size_t tile) {

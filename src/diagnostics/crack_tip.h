@@ -1,8 +1,8 @@
 /* Tips of cracks: how far along a direction faces have separated, columns NAME_tip and NAME_speed of
  * history.csv.
  *
- * The tip is the furthest point, at its place of reference, whose opening has been that of full separation;
- * of a law without an end, that has broken. It moves from point to point, so its speed is that over at least
+ * The tip is the furthest point, at its place of reference, whose opening has been that of full separation.
+ * It moves from point to point, so its speed is that over at least
  * a distance of the case: from where it was when the speed was last taken. */
 #ifndef RG_CRACK_TIP_H
 #define RG_CRACK_TIP_H

@@ -1,20 +1,14 @@
 #include "solver/exposure.h"
 
-#include <math.h>
-
 #include "base/error.h"
 #include "solver/tile.h"
-
-#define FAR 0.05 /* of the root of a face's area: separated, of a law without an end */
 
 static bool has_separated(const rg_solver *s, size_t i) {
     if (s->broken[i] != (1 << RG_POINTS) - 1) {
         return false;
     }
-    double normal[3], far = FAR * sqrt(rg_interface_area(s->domain, i, normal));
     for (int q = 0; q < RG_POINTS; q++) {
-        double whole = rg_separation(s, i, q);
-        if (!(*rg_crack_value(s, i, q, RG_CRACK_OPENING) >= (isfinite(whole) ? whole : far))) {
+        if (!(*rg_crack_value(s, i, q, RG_CRACK_OPENING) >= rg_separation(s, i, q))) {
             return false;
         }
     }

@@ -4,8 +4,7 @@
  * Every RG_EXPOSURE_EVERY steps interfaces are looked through; those that have separated count as exposed
  * from the next step on, once all ranks know that there are some. So it depends on the number of the step
  * alone, not on ranks or restarts. An interface has separated once all its points are broken and have been
- * open by what their law asks for full separation; of a law without an end by a twentieth of the size of the
- * face. */
+ * open by what their law asks for full separation. */
 #ifndef RG_EXPOSURE_H
 #define RG_EXPOSURE_H
 

@@ -83,11 +83,10 @@ size_t rg_crack_stride(const rg_cohesive *law) {
 /* Breaks a face whose elements are of tile t and opens it beyond full separation. */
 static void open_face(rg_solver *s, const rg_tile *t, size_t i) {
     const rg_domain *d = s->domain;
-    double most = isfinite(s->model->law.separation) ? s->model->law.separation : 1e3 * s->model->law.opening;
     s->broken[i] = s->unlinked[i] = (1 << RG_POINTS) - 1;
     s->active[i / RG_LANES] = 1;
     for (int q = 0; q < RG_POINTS; q++) {
-        *rg_crack_value(s, i, q, RG_CRACK_OPENING) = (rg_real)(2 * most);
+        *rg_crack_value(s, i, q, RG_CRACK_OPENING) = (rg_real)(2 * s->model->law.separation);
     }
     for (int k = 0; k < (i < t->sbegin * RG_LANES ? 2 : 1); k++) {
         s->cracked[t->begin + (size_t)d->side[k][i] / (RG_FACES * RG_LANES)] = 1;

@@ -65,7 +65,7 @@ ROOMS = {
 }
 ELSEWHERE = ("test_count.py", "test_curves.py", "test_documents.py", "test_figures.py", "test_install.py", "test_mutate.py",
              "test_perf.py", "test_rooms.py", "test_scaling.py", "test_validate.py")  # tests of no room here
-LEAST = 8  # faults of a room in a campaign
+LEAST = 10  # faults of a room in a campaign: one that survives leaves 90 %
 PASSED_BY = ("src/main.c", "src/gmsh_main.c", "src/usage.c")  # the words of the command line, and nothing else
 
 

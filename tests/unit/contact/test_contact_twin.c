@@ -10,6 +10,8 @@
 #include "domain/element.h"
 #include "partition/material.h"
 #include "reference/reference.h"
+#include "solver/exposure.h"
+#include "solver/tile.h"
 #include "support/random_state.h"
 #include "support/tap_memory.h"
 
@@ -405,9 +407,57 @@ static void check(void) {
     random_state_free(&r);
 }
 
+/* ---- Which faces are exposed ---- */
+
+static bool drawn_apart(rg_gid face) {
+    bool apart = drawn_broken(SEED, face) == (1 << RG_POINTS) - 1;
+    for (int q = 0; q < RG_POINTS; q++) {
+        apart = apart && drawn_damage(SEED, face, q) >= 1;
+    }
+    return apart;
+}
+
+/* Whether the interfaces that have separated, and no others, are in a state; counts them. */
+static bool all_are(const random_state *r, uint8_t state, int *count) {
+    const rg_solver *s = r->solver;
+    bool good = true;
+    for (size_t n = 0; n < s->domain->tiles; n++) {
+        const rg_tile *t = &s->domain->tile[n];
+        for (size_t i = t->ibegin * RG_LANES; i < t->iend * RG_LANES; i++) {
+            double normal[3];
+            if (rg_interface_area(s->domain, i, normal) > 0) {
+                bool apart = drawn_apart(interface_key(r, t, i));
+                good = good && s->exposed[i] == (apart ? state : RG_UNEXPOSED);
+                *count += apart;
+            }
+        }
+    }
+    return good;
+}
+
+static void check_exposure(const char *interface) {
+    const char *change[] = {"contact={model: general, penalty: 4}", "bodies=[]", interface};
+    random_state r = random_state_make(3, change, MPI_COMM_WORLD);
+    rg_solver *s = r.solver;
+    int count = 0;
+    random_state_draw(&r, SEED);
+    bool waiting = rg_exposure_mark(s), good = all_are(&r, RG_SEPARATED, &count) && waiting;
+    rg_exposure_take(s);
+    good = all_are(&r, RG_NEWLY_EXPOSED, &count) && good && !rg_exposure_mark(s);
+    rg_exposure_settle(s);
+    good = all_are(&r, RG_EXPOSED, &count) && good;
+    MPI_Allreduce(MPI_IN_PLACE, &count, 1, MPI_INT, MPI_SUM, MPI_COMM_WORLD);
+    report(good && !rg_exposure_mark(s) && count > 60, interface,
+           "faces that have separated are exposed, by and by");
+    random_state_free(&r);
+}
+
 int main(int argc, char **argv) {
     MPI_Init(&argc, &argv);
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);
     check();
+    check_exposure("interface={law: linear, strength: 400e6, energy: 34}");
+    check_exposure(
+        "interface={form: intrinsic, law: needleman, strength: 400e6, energy: 34, contact: potential}");
     return finish_with_nothing_left();
 }
