@@ -313,12 +313,17 @@ struct side {
     size_t named;
 };
 
+enum {
+    OF_NODE_SET = 1,
+    OF_FACE = 2 /* of a triangle of the input, or an element whose outer faces are in sets */
+};
+
 struct surface {
     struct side *face; /* of the surface, by vertices, ascending */
     size_t faces, room;
     struct side *inner; /* both sides of named faces between two elements */
     size_t inners, inner_room;
-    const bool *in_node_set; /* [vertices]; NULL: there are none */
+    unsigned char *mark; /* [vertices]: OF_NODE_SET, OF_FACE; those of 0 are of no face that matters here */
     struct side
         *within; /* both sides of faces between two elements whose vertices all are in sets of nodes */
     size_t withins, within_room;
@@ -343,8 +348,8 @@ static void look_at_group(const struct triangle *t, size_t count, rg_mesh *mesh,
         s->inner = rg_grow(s->inner, &s->inner_room, s->inners, sizeof *s->inner);
         s->inner[s->inners++] = (struct side){t[i].name, t, named};
     }
-    bool within = faces > 1 && s->in_node_set != NULL && s->in_node_set[t->vertex[0]] &&
-                  s->in_node_set[t->vertex[1]] && s->in_node_set[t->vertex[2]];
+    bool within = faces > 1 &&
+                  (s->mark[t->vertex[0]] & s->mark[t->vertex[1]] & s->mark[t->vertex[2]] & OF_NODE_SET) != 0;
     for (size_t i = triangles; within && i < count; i++) {
         s->within = rg_grow(s->within, &s->within_room, s->withins, sizeof *s->within);
         s->within[s->withins++] = (struct side){t[i].name, t, named};
@@ -369,7 +374,29 @@ static void sort_three(rg_lid v[3]) {
     swap_if_less(&v[0], &v[1]);
 }
 
-/* The input's triangles that have corners, then all faces of the mesh. */
+/* Vertices of all faces that may come into sets: most faces have others, and need not be sorted. */
+static void mark_vertices(rg_import *m, const rg_gid *vertex, const rg_mesh *mesh, struct surface *s) {
+    s->mark = RG_NEW(unsigned char, (size_t)mesh->vertices);
+    for (size_t i = 0; i < m->points; i++) {
+        size_t row = row_of(m, m->point[i].node);
+        if (row < SIZE_MAX && vertex[row] >= 0) {
+            s->mark[vertex[row]] |= OF_NODE_SET;
+        }
+    }
+    for (size_t i = 0; i < 3 * m->faces; i++) {
+        size_t row = row_of(m, m->face[i / 3].node[i % 3]);
+        if (row < SIZE_MAX && vertex[row] >= 0) {
+            s->mark[vertex[row]] |= OF_FACE;
+        }
+    }
+    for (rg_gid e = 0; m->skin != NULL && e < mesh->elements; e++) {
+        for (int i = 0; m->skin[e] >= 0 && i < 4; i++) {
+            s->mark[mesh->corner[4 * e + i]] |= OF_FACE;
+        }
+    }
+}
+
+/* The input's triangles that have corners, then the faces of the mesh that may be in sets. */
 static struct triangle *list_triangles(rg_import *m, const rg_gid *vertex, const rg_mesh *mesh, size_t *count,
                                        struct surface *s) {
     struct triangle *list = RG_NEW(struct triangle, m->faces + 4 * (size_t)mesh->elements);
@@ -393,7 +420,9 @@ static struct triangle *list_triangles(rg_import *m, const rg_gid *vertex, const
         for (int k = 0; k < 3; k++) {
             t.vertex[k] = (rg_lid)mesh->corner[slot / 4 * 4 + rg_face_node[slot % 4][k]];
         }
-        list[(*count)++] = t;
+        if (s->mark[t.vertex[0]] != 0 && s->mark[t.vertex[1]] != 0 && s->mark[t.vertex[2]] != 0) {
+            list[(*count)++] = t;
+        }
     }
     return list;
 }
@@ -581,17 +610,10 @@ static void put_into_sets(struct marks *k, const struct node_set *sets, const st
 static void mark_faces(rg_import *m, const rg_gid *vertex, rg_mesh *mesh) {
     struct surface s = {.faces = 0};
     size_t count;
+    mark_vertices(m, vertex, mesh, &s);
     struct triangle *list = list_triangles(m, vertex, mesh, &count, &s);
     mesh->inner = RG_NEW(rg_gid, 3 * m->faces + 1);
     qsort(list, count, sizeof *list, by_vertices);
-    bool *in_node_set = m->points > 0 ? RG_NEW(bool, (size_t)mesh->vertices) : NULL;
-    for (size_t i = 0; i < m->points; i++) {
-        size_t row = row_of(m, m->point[i].node);
-        if (row < SIZE_MAX && vertex[row] >= 0) {
-            in_node_set[vertex[row]] = true;
-        }
-    }
-    s.in_node_set = in_node_set;
     for (size_t i = 0, n; i < count; i += n) {
         for (n = 1; i + n < count && memcmp(list[i].vertex, list[i + n].vertex, sizeof list->vertex) == 0;
              n++) {
@@ -610,7 +632,7 @@ static void mark_faces(rg_import *m, const rg_gid *vertex, rg_mesh *mesh) {
     rg_free(s.face);
     rg_free(s.inner);
     rg_free(s.within);
-    rg_free(in_node_set);
+    rg_free(s.mark);
     rg_free(list);
 }
 
