@@ -219,6 +219,38 @@ def test_sets_inside_on_any_layout_and_restart(run, grains, tmp_path):
     assert_same_results(again, one, frames=4)
 
 
+# All that acts from outside and is measured at once; tiles of four blocks. Static starts: test_static.py.
+AT_ONCE = {
+    **EVERYWHERE["loads"], "mesh": {"cells": [4, 4, 24], "size": [0.4e-3, 0.4e-3, 3.2e-3], "origin": [-0.2e-3, -0.2e-3, -1.6e-3]}, "time.end": 0.1e-6,
+    "materials": [{"name": "soft", "where": "z > 0.8e-3", "model": "neo-hookean", "density": 2500, "young": 70e9, "poisson": 0.3}],
+    "bodies": [{"name": "ball", "shape": "sphere", "motion": "free", "at": [-1.2e-3, 0, -0.9e-3], "radius": 1e-3, "density": 8000, "velocity": {"x": 30}, "spin": {"y": 1e4}}],
+    "output.fields": [], "output.interval": 1e-8, "output.energy_limit": 1e9, "checkpoint.steps": 20, "checkpoint.keep": 100,
+    "output.probes": [{"name": "a", "at": [0.01e-3, 0.03e-3, 0.5e-3], "strain": True}],
+    "output.crack_fronts": [*EVERYWHERE["loads"]["output.crack_fronts"], {"name": "still", "at": [0, 0, 0], "direction": [-1, 0, 0], "normal": [0, 0, 1], "radius": {"inner": 4e-5, "outer": 1.5e-4},
+                                                                         "values": ["J", "K", "KI", "KII", "KIII"]}],
+}
+
+
+def test_everything_at_once_on_any_layout_and_through_a_restart(run, tmp_path):
+    """Loads from a table, supports with a begin and an end, cracks that are there and one that opens, sensors, tips, fronts."""
+    one = run(FRAGMENTS, sets=AT_ONCE)
+    steps, history = one.summary["steps"], one.history
+    assert one.summary["broken_area_m2"] > 0 and steps > 80
+    for name in ("pull_work", "gas_work", "bed_work", "fall_work", "hold_work", "roll_work", "catch_work", "ball_fx", "end_szz_max", "left_tip", "front_J", "still_KI", "a_exy"):
+        assert np.any(history[name] != 0) and np.ptp(history[name][np.isfinite(history[name])]) > 0, name
+    for ranks, threads in ((1, 2), (5, 1)):
+        assert_same_results(run(FRAGMENTS, ranks=ranks, threads=threads, sets=AT_ONCE), one, frames=-1)
+    before = run(FRAGMENTS, ranks=2, sets={**AT_ONCE, "time.steps": steps - 5})
+    assert tables(one)["history.csv"].startswith(tables(before)["history.csv"])
+    directory = copy(before, tmp_path / "out")
+    for path in checkpoints(directory):
+        if int(path.stem[5:]) > steps // 2:
+            path.unlink()
+    again = go_on(directory, "--set", "time.steps=100000", ranks=3)
+    assert 0 < again.summary["restarted_from_step"] <= steps // 2
+    assert_same_results(again, one, frames=-1)
+
+
 def test_a_finished_run_can_be_made_longer(run, whole, tmp_path):
     """From a checkpoint before the last step, which was cut to end on time: a longer run does not come through its state."""
     short = run(FRAGMENTS, sets={**CASE, "time.end": 0.15e-6})
