@@ -107,6 +107,7 @@ static bool check_times(const rg_entry *e, const rg_boundary *b) {
     return good;
 }
 
+/* Whether there is a motion or a side that absorbs. */
 static bool check_absorbing(const rg_entry *e, const rg_boundary *b) {
     const rg_node *node = rg_entry_given(e, "absorbing"), *name = rg_entry_given(e, "name");
     if (node != NULL && !b->absorbing) {
@@ -115,7 +116,7 @@ static bool check_absorbing(const rg_entry *e, const rg_boundary *b) {
         rg_entry_wrong(e, "name", name->key_at, (rg_subject){0},
                        "not used: what leaves is `radiated` in energy.csv");
     }
-    return (node == NULL || b->absorbing) && !(rg_boundary_damps(b) && name != NULL);
+    return node == NULL || b->absorbing;
 }
 
 static const rg_node *same_motion(const rg_case *c, const rg_node *list, int i) {
@@ -137,7 +138,11 @@ void rg_boundary_rule(rg_check *ck, const rg_node *list, int i, const char *path
     }
     bool mapping = e.item->kind == RG_NODE_MAPPING, part = mapping && check_part(&e);
     good = mapping && one_kind(&e, b) && part && good;
-    good = good && check_absorbing(&e, b) && check_times(&e, b) && check_line(&e, b) && check_axis(&e, b);
+    good = good && check_absorbing(&e, b);
+    if (good) { /* all that is wrong with it */
+        bool times = check_times(&e, b), line = check_line(&e, b), axis = check_axis(&e, b);
+        good = times && line && axis;
+    }
     if (!good || !rg_boundary_has_component(b)) {
         b->component = -1; /* equals no other */
         return;
