@@ -487,13 +487,16 @@ static int conclude(run *r) {
     const rg_solver *s = r->solver;
     bool failed = r->failure[0] != '\0', speaks = s->rank == 0 && !r->options->quiet;
     if (r->stopped) {
+        const char *why = s->stop_request == RG_REQUEST_STOP ? "by a signal" : "before the wall-time limit";
+        char status[64];
+        snprintf(status, sizeof status, "stopped %s", why);
+        r->summary.failure = status;
+        rg_summary_write(&r->summary, r->solver, &r->ledger, r->fragments);
         if (s->rank == 0) {
             fprintf(stderr,
                     "rhegma: stopped with a checkpoint at step %" PRId64 ", time %.6g s, %s; goes on with: "
                     "rhegma run --restart %s\n",
-                    s->step, s->time,
-                    s->stop_request == RG_REQUEST_STOP ? "by a signal" : "before the wall-time limit",
-                    r->input->output.dir);
+                    s->step, s->time, why, r->input->output.dir);
         }
         return RG_INTERRUPTED;
     }

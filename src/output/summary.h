@@ -20,7 +20,7 @@ typedef struct {
     double checkpoint_seconds;  /* wall time of that */
     double checkpoint_median;   /* of one of them, on the last partition that wrote any (s) */
     double halo_wait_seconds;   /* longest wait for messages on any rank; filled by rg_summary_write */
-    const char *failure;        /* "" where the run reached its end */
+    const char *failure;        /* "" where the run reached its end; else why not */
     double us_per_tet_step,
         first_fracture; /* filled by rg_summary_write; us of core time; s, infinite for none */
     rg_peak unresolved; /* likewise: the face with most of it (J) */

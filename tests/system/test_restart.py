@@ -387,7 +387,10 @@ def test_signals_that_stop(tmp_path, long_run, name, ranks):
     status, said = background.end()
     assert status == 3, said
     assert re.search(r"stopped with a checkpoint at step \d+, .*by a signal; goes on with: rhegma run --restart", said)
-    assert len(checkpoints(tmp_path / "out")) == 1 and not (tmp_path / "out" / "summary.json").exists()
+    assert len(checkpoints(tmp_path / "out")) == 1
+    left = json.loads((tmp_path / "out" / "summary.json").read_text())
+    step, = re.findall(r"checkpoint at step (\d+),", said)
+    assert left["status"] == "stopped by a signal" and left["steps"] == int(step) and left["elements"] > 0
     if name == "SIGTERM":
         finish(tmp_path / "out", long_run)
 
