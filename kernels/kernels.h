@@ -205,6 +205,7 @@ typedef struct {
 
 typedef struct {
     const double *corner; /* [face][3][3] (m) */
+    const double *box;    /* [face][lowest, highest][3] of its corners: rg_contact_box */
     const double *sunk;   /* [face]: the larger one of both adds to the skin (m) */
     const rg_contact_pair *pair;
     double *force;  /* out: [pair][A, B][3 corners][3] (N) */
@@ -212,6 +213,16 @@ typedef struct {
     double *depth;  /* out: [pair] largest depth where they are over each other; 0: they are not, or nowhere
                        less deep than the limit, or have no share (m) */
 } rg_contact_args;
+
+/* The box of a face, out of its corners. */
+static inline void rg_contact_box(const double *corner, double *box) {
+    for (int c = 0; c < 3; c++) {
+        double a = corner[c], b = corner[3 + c], d = corner[6 + c];
+        double low = a < b ? a : b, high = a < b ? b : a;
+        box[c] = d < low ? d : low;
+        box[3 + c] = d > high ? d : high;
+    }
+}
 
 /* A set of kernels. `begin` and `end` count blocks; of contact, pairs. */
 typedef struct {

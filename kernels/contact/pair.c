@@ -3,11 +3,11 @@
 #include "isa.h"
 
 /* Writes out what the first `count` lanes come to. */
-static void store_pairs(const rg_contact_args *args, size_t first, int count, wide energy,
+static void store_pairs(const rg_contact_args *args, const size_t pair[], int count, wide energy,
                         wide force[2][3][3]) {
     for (int l = 0; l < count; l++) {
-        double *f = args->force + 18 * (first + (size_t)l);
-        args->energy[first + (size_t)l] = energy[l];
+        double *f = args->force + 18 * pair[l];
+        args->energy[pair[l]] = energy[l];
         for (int k = 0; energy[l] > 0 && k < 2; k++) {
             for (int i = 0; i < 9; i++) {
                 f[9 * k + 3 * corner_of[k][i / 3] + i % 3] = force[k][i / 3][i % 3][l];
@@ -16,10 +16,10 @@ static void store_pairs(const rg_contact_args *args, size_t first, int count, wi
     }
 }
 
-static void meet(const rg_contact_args *args, size_t first, int count) {
+static void meet(const rg_contact_args *args, const size_t pair[], int count) {
     meeting m;
     for (int l = 0; l < WIDE; l++) { /* behind the last one, that again */
-        load_pair(&m, args, first + (size_t)(l < count ? l : count - 1), l);
+        load_pair(&m, args, pair[l < count ? l : count - 1], l);
     }
     set_normal(&m, 0);
     set_normal(&m, 1);
@@ -42,13 +42,35 @@ static void meet(const rg_contact_args *args, size_t first, int count) {
         energy = wide_where(presses & (wide_mask)(energy > 0), energy);
     }
     for (int l = 0; l < count; l++) {
-        args->depth[first + (size_t)l] = depth[l];
+        args->depth[pair[l]] = depth[l];
     }
-    store_pairs(args, first, count, energy, force);
+    store_pairs(args, pair, count, energy, force);
+}
+
+/* Whether there may be points over each other that are less deep than the limit: most pairs of a search are
+ * some way from that. */
+static bool are_near(const rg_contact_args *args, const rg_contact_pair *p) {
+    const double *a = args->box + 6 * (size_t)p->face[0], *b = args->box + 6 * (size_t)p->face[1];
+    bool near = true;
+    for (int c = 0; c < 3; c++) {
+        near = near & (a[c] - b[3 + c] <= p->limit) & (b[c] - a[3 + c] <= p->limit);
+    }
+    return near;
 }
 
 void RG_ISA_NAME(rg_contact)(const rg_contact_args *args, size_t begin, size_t end) {
-    for (size_t i = begin; i < end; i += WIDE) {
-        meet(args, i, end - i < WIDE ? (int)(end - i) : WIDE);
+    size_t pair[WIDE];
+    int count = 0;
+    for (size_t i = begin; i < end; i++) {
+        args->energy[i] = args->depth[i] = 0;
+        pair[count] = i;
+        count += are_near(args, &args->pair[i]);
+        if (count == WIDE) {
+            meet(args, pair, count);
+            count = 0;
+        }
+    }
+    if (count > 0) {
+        meet(args, pair, count);
     }
 }

@@ -13,7 +13,7 @@
 #include "domain/element.h"
 
 /* A face travels as its u^ and by how much it has sunk. */
-enum { ROW = 9, VALUES = ROW + 1, HALO_TAG = 11 };
+enum { ROW = 9, BOX = 6, VALUES = ROW + 1, HALO_TAG = 11 };
 
 #define NO_INTERFACE SIZE_MAX
 
@@ -55,6 +55,7 @@ struct rg_contacts {
     size_t *tile_begin; /* faces of tile t: from tile_begin[t] on */
     face *face;
     double *rest, *corner, *last; /* [faces, then far][9]: undeformed, now; [faces][9] at the last search */
+    double *box;                  /* [faces, then far][6]: now */
     rg_gid *id;                   /* [faces, then far] */
     rg_real *row;                 /* [faces, then far][VALUES] */
     double *sunk;                 /* [faces, then far]: as it came (m) */
@@ -209,14 +210,15 @@ static void set_corners(const rg_contacts *c, size_t i) {
     for (size_t k = 0; k < ROW; k++) {
         c->corner[ROW * i + k] = c->rest[ROW * i + k] + c->row[VALUES * i + k];
     }
+    rg_contact_box(c->corner + ROW * i, c->box + BOX * i);
     c->sunk[i] = c->row[VALUES * i + ROW];
 }
 
 static void forget(rg_contacts *c) {
     rg_halo_free(c->halo);
     c->halo = NULL;
-    void *blocks[] = {c->face,    c->rest, c->corner, c->last,  c->id,     c->row,   c->moved,
-                      c->stepped, c->pair, c->touch,  c->force, c->energy, c->depth, c->sunk};
+    void *blocks[] = {c->face, c->rest,  c->corner, c->last,   c->id,    c->row,  c->moved, c->stepped,
+                      c->pair, c->touch, c->force,  c->energy, c->depth, c->sunk, c->box};
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) {
         rg_free(blocks[i]);
     }
@@ -304,6 +306,7 @@ static shared *make_rows(rg_contacts *c, const rg_exposed_face *own, const rg_ca
     c->sunk = RG_NEW(double, rows + 1);
     c->rest = RG_NEW(double, ROW *(rows + 1));
     c->corner = RG_NEW(double, ROW *(rows + 1));
+    c->box = RG_NEW(double, BOX *(rows + 1));
     c->last = RG_NEW(double, ROW *(c->faces + 1));
     c->id = RG_NEW(rg_gid, rows + 1);
     c->moved = RG_NEW(double, c->faces + 1);
@@ -453,7 +456,7 @@ rg_halo *rg_contacts_halo(const rg_contacts *c) {
 
 void rg_contacts_meet(rg_contacts *c, const rg_kernels *kernels) {
     enum { BATCH = 32 };
-    rg_contact_args args = {c->corner, c->sunk, c->pair, c->force, c->energy, c->depth};
+    rg_contact_args args = {c->corner, c->box, c->sunk, c->pair, c->force, c->energy, c->depth};
     size_t batches = (c->pairs + BATCH - 1) / BATCH;
 #pragma omp for schedule(static)
     for (size_t i = c->faces; i < c->faces + c->far; i++) {

@@ -62,7 +62,7 @@ static void compare(const rg_candidate *p, size_t pairs, int pass, int *over, in
     for (int i = 0; i < FACES; i++) {
         for (int k = i + 1; k < FACES; k++) {
             rg_contact_pair pair;
-            double corner[18], force[18], sunk[2] = {0, 0}, energy, depth;
+            double corner[18], box[12], force[18], sunk[2] = {0, 0}, energy, depth;
             if ((f[i].rank != rank && f[k].rank != rank) || !rg_search_may_touch(&by, &f[i], &f[k], &pair)) {
                 continue;
             }
@@ -70,8 +70,10 @@ static void compare(const rg_candidate *p, size_t pairs, int pass, int *over, in
             pair.face[1] = 1;
             memcpy(corner, f[i].corner, sizeof f[i].corner);
             memcpy(corner + 9, f[k].corner, sizeof f[k].corner);
-            rg_kernels_select()->contact(&(rg_contact_args){corner, sunk, &pair, force, &energy, &depth}, 0,
-                                         1);
+            rg_contact_box(corner, box);
+            rg_contact_box(corner + 9, box + 6);
+            rg_kernels_select()->contact(&(rg_contact_args){corner, box, sunk, &pair, force, &energy, &depth},
+                                         0, 1);
             if (depth > 0) {
                 *over += 1;
                 *missed += !is_found(p, pairs, f[i].id, f[k].id);

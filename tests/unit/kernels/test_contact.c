@@ -14,13 +14,23 @@
 enum { PAIRS = 4000, TRIES = 400000 };
 
 typedef struct {
-    double corner[2 * PAIRS][9], sunk[2 * PAIRS], force[PAIRS][18], energy[PAIRS], depth[PAIRS];
+    double corner[2 * PAIRS][9], box[2 * PAIRS][6], sunk[2 * PAIRS], force[PAIRS][18], energy[PAIRS],
+        depth[PAIRS];
     rg_contact_pair pair[PAIRS];
     size_t count;
 } bunch;
 
 static rg_contact_args args_of(bunch *b) {
-    return (rg_contact_args){b->corner[0], b->sunk, b->pair, b->force[0], b->energy, b->depth};
+    return (rg_contact_args){b->corner[0], b->box[0], b->sunk, b->pair, b->force[0], b->energy, b->depth};
+}
+
+/* The first `pairs` pairs. */
+static void meet(const rg_kernels *set, bunch *b, size_t pairs) {
+    for (size_t i = 0; i < 2 * pairs; i++) {
+        rg_contact_box(b->corner[i], b->box[i]);
+    }
+    rg_contact_args args = args_of(b);
+    set->contact(&args, 0, pairs);
 }
 
 /* Two faces of edges near 1 that lie near each other, flat or steep, turned at random. */
@@ -87,13 +97,11 @@ static void test_reference(void **state) {
     const rg_kernels *sets[INPUT_SETS];
     int n = input_sets(sets, INPUT_SETS), touching = 0;
     throw_pairs(&expected, 7);
-    rg_contact_args args = args_of(&expected);
-    rg_kernels_reference.contact(&args, 0, PAIRS);
+    meet(&rg_kernels_reference, &expected, PAIRS);
     for (int s = 0; s < n; s++) {
         found = expected;
         memset(found.energy, 0, sizeof found.energy);
-        args = args_of(&found);
-        sets[s]->contact(&args, 0, PAIRS);
+        meet(sets[s], &found, PAIRS);
         for (size_t i = 0; i < PAIRS; i++) {
             double energy = expected.energy[i], kappa = expected.pair[i].stiffness;
             if (!(fabs(found.energy[i] - energy) <= 4e-17 * kappa)) {
@@ -124,8 +132,7 @@ static void test_gradient(void **state) {
     static const double h = 1e-5;
     int off = 0, all = 0;
     throw_pairs(&found, 8);
-    rg_contact_args args = args_of(&found);
-    set->contact(&args, 0, PAIRS);
+    meet(set, &found, PAIRS);
     expected = found;
     for (int k = 0; k < 18; k++) {
         double up[PAIRS];
@@ -134,7 +141,7 @@ static void test_gradient(void **state) {
                 double *x = &found.corner[2 * i + (size_t)k / 9][k % 9];
                 *x = expected.corner[2 * i + (size_t)k / 9][k % 9] + sign * h;
             }
-            set->contact(&args, 0, PAIRS);
+            meet(set, &found, PAIRS);
             memcpy(sign > 0 ? up : found.energy, found.energy, sizeof up);
         }
         for (size_t i = 0; i < PAIRS; i++) {
@@ -154,8 +161,7 @@ static void test_momenta(void **state) {
     (void)state;
     const rg_kernels *set = rg_kernels_select();
     throw_pairs(&found, 9);
-    rg_contact_args args = args_of(&found);
-    set->contact(&args, 0, PAIRS);
+    meet(set, &found, PAIRS);
     for (size_t i = 0; i < PAIRS; i++) {
         double sum[3] = {0, 0, 0}, moment[3] = {0, 0, 0}, size = size_of(&found, i);
         for (int k = 0; found.energy[i] > 0 && k < 6; k++) {
@@ -178,13 +184,12 @@ static void test_exchange(void **state) {
     const rg_kernels *set = rg_kernels_select();
     throw_pairs(&expected, 10);
     found = expected;
-    rg_contact_args args = args_of(&expected), exchanged = args_of(&found);
     for (size_t i = 0; i < PAIRS; i++) {
         found.pair[i].face[0] = expected.pair[i].face[1];
         found.pair[i].face[1] = expected.pair[i].face[0];
     }
-    set->contact(&args, 0, PAIRS);
-    set->contact(&exchanged, 0, PAIRS);
+    meet(set, &expected, PAIRS);
+    meet(set, &found, PAIRS);
     for (size_t i = 0; i < PAIRS; i++) {
         double kappa = expected.pair[i].stiffness;
         assert_true(fabs(expected.energy[i] - found.energy[i]) <= 2e-17 * kappa);
@@ -220,8 +225,7 @@ static void test_cut(void **state) {
             b->pair[f] =
                 (rg_contact_pair){.face = {2 * f, 2 * f + 1}, .stiffness = 1, .skin = 1e-3, .limit = 0.501};
         }
-        rg_contact_args args = args_of(b);
-        set->contact(&args, 0, (size_t)faces[k]);
+        meet(set, b, (size_t)faces[k]);
         for (int f = 0; f < faces[k]; f++) {
             energy[k] += b->energy[f];
             for (int c = 0; b->energy[f] > 0 && c < 9; c++) {
@@ -279,14 +283,12 @@ static void test_edges_along_each_other(void **state) {
             found.sunk[2 * i + (size_t)k] = expected.sunk[2 * i + (size_t)k] = 0;
         }
     }
-    rg_contact_args args = args_of(&expected);
-    rg_kernels_reference.contact(&args, 0, PAIRS);
+    meet(&rg_kernels_reference, &expected, PAIRS);
     for (int s = 0; s < n; s++) {
         if (sets[s] == &rg_kernels_reference) {
             continue;
         }
-        args = args_of(&found);
-        sets[s]->contact(&args, 0, PAIRS);
+        meet(sets[s], &found, PAIRS);
         for (size_t i = 0; i < PAIRS; i++) {
             if (!(fabs(found.energy[i] - expected.energy[i]) <= 0.4 * shake)) {
                 fail_msg("%s: energy %g instead of %g", sets[s]->name, found.energy[i], expected.energy[i]);
@@ -315,8 +317,7 @@ static void test_value(void **state) {
         memcpy(b->corner, x, sizeof x);
         b->pair[0] = (rg_contact_pair){.face = {0, 1}, .stiffness = 3, .skin = 0.0005, .limit = 0.502};
         b->sunk[0] = 0.0015;
-        rg_contact_args args = args_of(b);
-        set->contact(&args, 0, 1);
+        meet(set, b, 1);
         assert_true(fabs(b->energy[0] - 0.5 * 3 * 0.5 * phi) <= 1e-15 * phi);
         double push = phi > 0 ? b->force[0][11] + b->force[0][14] + b->force[0][17] : 0;
         double slope = phi > 0 ? 2 * d * (1 - r * r) * (1 - 3 * r * r) : 0;
