@@ -12,6 +12,7 @@
 #include "reference/reference.h"
 #include "solver/exposure.h"
 #include "solver/tile.h"
+#include "support/near.h"
 #include "support/random_state.h"
 #include "support/tap_memory.h"
 
@@ -69,15 +70,6 @@ static void project(double mean[RG_FNODES][3]) {
     }
 }
 
-static double volume_of(double x[4][3]) {
-    double e[3][3], cross[3];
-    for (int k = 0; k < 9; k++) {
-        e[k / 3][k % 3] = x[k / 3 + 1][k % 3] - x[0][k % 3];
-    }
-    rg_reference_cross(e[1], e[2], cross);
-    return fabs(rg_reference_dot(e[0], cross)) / 6;
-}
-
 /* (b - a) x (c - a). */
 static void twice_area(const double a[3], const double b[3], const double c[3], double out[3]) {
     double p[3], q[3];
@@ -110,7 +102,7 @@ static body_face make_face(const random_state *r, rg_gid e, int k) {
         f.order[1] = 2;
         f.order[2] = 1;
     }
-    f.is.height = 3 * volume_of(x) / area;
+    f.is.height = 3 * tet_volume(x) / area;
     project(f.mean);
     for (int i = 0; i < 3; i++) {
         for (int c = 0; c < 3; c++) {
@@ -154,12 +146,14 @@ static void feel(twin *t, const body_face *f, const double force[9]) {
 
 static void meet(twin *t, int a, int b, rg_contact_pair *pair) {
     const body_face *f[2] = {&t->face[a], &t->face[b]};
-    double corner[18], sunk[2] = {f[0]->sunk, f[1]->sunk}, force[18], energy, depth;
+    double corner[18], box[12], sunk[2] = {f[0]->sunk, f[1]->sunk}, force[18], energy, depth;
     memcpy(corner, f[0]->is.corner, sizeof f[0]->is.corner);
     memcpy(corner + 9, f[1]->is.corner, sizeof f[1]->is.corner);
+    rg_contact_box(corner, box);
+    rg_contact_box(corner + 9, box + 6);
     pair->face[0] = 0;
     pair->face[1] = 1;
-    rg_reference_contact(&(rg_contact_args){corner, sunk, pair, force, &energy, &depth}, 0, 1);
+    rg_reference_contact(&(rg_contact_args){corner, box, sunk, pair, force, &energy, &depth}, 0, 1);
     t->depth_of[a] = fmax(t->depth_of[a], depth - pair->skin);
     t->depth_of[b] = fmax(t->depth_of[b], depth - pair->skin);
     if (!(energy > 0)) {
@@ -270,14 +264,6 @@ static const body_face *face_of(const twin *t, rg_gid id, int *at) {
     return NULL;
 }
 
-static bool near(double found, double wanted, double most) {
-    bool good = fabs(found - wanted) <= most;
-    if (!good) {
-        printf("# %.17g, not %.17g: %.2g of what may be\n", found, wanted, fabs(found - wanted) / most);
-    }
-    return good;
-}
-
 /* Lengths of 1e-6 m between corners at 1e-3. */
 #define LENGTH 3e-18
 
@@ -315,7 +301,7 @@ static bool pushed_well(const random_state *r, const twin *t, const rg_real *v, 
             continue;
         }
         mesh_corners(r->mesh, e, x);
-        double mass = r->solver->model->material[mesh_material(r, e)].density * volume_of(x);
+        double mass = r->solver->model->material[mesh_material(r, e)].density * tet_volume(x);
         for (int k = 0; good && k < 3 * RG_NODES; k++) {
             double found = 0;
             for (int b = 0; b < RG_NODES; b++) {

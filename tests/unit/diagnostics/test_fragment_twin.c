@@ -134,15 +134,6 @@ typedef struct {
         second[3][3]; /* about the origin `from` */
 } integrals;
 
-static double volume_of(double x[4][3]) {
-    double e[3][3], cross[3];
-    for (int k = 0; k < 9; k++) {
-        e[k / 3][k % 3] = x[k / 3 + 1][k % 3] - x[0][k % 3];
-    }
-    rg_reference_cross(e[1], e[2], cross);
-    return fabs(rg_reference_dot(e[0], cross)) / 6;
-}
-
 /* Point k of an element's mass, and its share: the nodes of a lumped one, else those of a rule that is exact.
  */
 static double mass_point(rg_mass mass, int k, double l[4]) {
@@ -165,7 +156,7 @@ static double mass_point(rg_mass mass, int k, double l[4]) {
 static void integrate(const random_state *r, uint64_t seed, rg_gid e, const double from[3], integrals *sum) {
     double x[4][3], density = r->solver->model->material[mesh_material(r, e)].density;
     mesh_corners(r->mesh, e, x);
-    double volume = volume_of(x);
+    double volume = tet_volume(x);
     sum->elements++;
     sum->volume += volume;
     sum->mass += density * volume;
@@ -316,7 +307,7 @@ static void check_large(void) {
         for (rg_gid e = 0; e < r.mesh->elements; e++) {
             double x[4][3];
             mesh_corners(r.mesh, e, x);
-            steel += mesh_material(&r, e) == 1 ? volume_of(x) : 0;
+            steel += mesh_material(&r, e) == 1 ? tet_volume(x) : 0;
         }
         double volume = 1.1e-3 * 1.7e-3 * 2.9e-3, mass = 2500 * volume + (7800 - 2500) * steel;
         good = row[i].id == 0 && row[i].elements == 4374 && near(row[i].volume, volume, volume) &&
@@ -337,12 +328,12 @@ static double thrown(uint64_t seed, rg_gid piece, int c, double spread) {
 }
 
 static bool inside(double x[4][3], const double point[3]) {
-    double whole = volume_of(x), sum = 0;
+    double whole = tet_volume(x), sum = 0;
     for (int k = 0; k < 4; k++) {
         double y[4][3];
         memcpy(y, x, sizeof y);
         memcpy(y[k], point, sizeof y[k]);
-        sum += volume_of(y);
+        sum += tet_volume(y);
     }
     return sum <= whole * (1 + 1e-12);
 }

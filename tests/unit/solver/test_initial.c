@@ -49,8 +49,6 @@ static void wanted(const random_state *r, rg_gid e, const double x[3], double u[
 }
 
 static void check_values(void) {
-    static const int end[RG_NODES][2] = {{0, 0}, {1, 1}, {2, 2}, {3, 3}, {0, 1},
-                                         {1, 2}, {0, 2}, {0, 3}, {1, 3}, {2, 3}};
     const char *change[] = {values, "bodies=[]"};
     random_state r = random_state_make(2, change, MPI_COMM_WORLD);
     const rg_solver *s = r.solver;
@@ -60,14 +58,11 @@ static void check_values(void) {
     for (size_t k = 0; k < RG_NODES * s->domain->blocks * RG_LANES; k++) {
         size_t slot = k / RG_NODES;
         int n = (int)(k % RG_NODES), set = -2;
-        double corner[4][3], x[3], u[3], v[3];
+        double x[3], u[3], v[3];
         if (s->domain->id[slot] < 0) {
             continue;
         }
-        mesh_corners(r.mesh, s->domain->id[slot], corner);
-        for (int c = 0; c < 3; c++) {
-            x[c] = 0.5 * (corner[end[n][0]][c] + corner[end[n][1]][c]);
-        }
+        mesh_node(r.mesh, s->domain->id[slot], n, x);
         wanted(&r, s->domain->id[slot], x, u, v);
         for (int c = 0; c < 3; c++) {
             worst = fmax(worst, fabs(s->u[rg_node_index(slot, n, c)] - u[c]) / 1e-6);

@@ -12,6 +12,7 @@
 #include "solver/absorbing.h"
 #include "solver/constraint.h"
 #include "solver/fields.h"
+#include "support/near.h"
 #include "support/random_state.h"
 #include "support/tap_memory.h"
 
@@ -48,28 +49,6 @@ static unsigned nodes_on(const random_state *r, rg_gid e, int side) {
         }
     }
     return mask;
-}
-
-static void node_place(const random_state *r, rg_gid e, int n, double at[3]) {
-    static const int end[RG_NODES][2] = {{0, 0}, {1, 1}, {2, 2}, {3, 3}, {0, 1},
-                                         {1, 2}, {0, 2}, {0, 3}, {1, 3}, {2, 3}};
-    double x[4][3];
-    mesh_corners(r->mesh, e, x);
-    for (int c = 0; c < 3; c++) {
-        at[c] = 0.5 * (x[end[n][0]][c] + x[end[n][1]][c]);
-    }
-}
-
-/* Of an element (kg). */
-static double mass_of(const random_state *r, rg_gid e) {
-    double x[4][3], edge[3][3], cross[3];
-    mesh_corners(r->mesh, e, x);
-    for (int k = 0; k < 9; k++) {
-        edge[k / 3][k % 3] = x[k / 3 + 1][k % 3] - x[0][k % 3];
-    }
-    rg_reference_cross(edge[1], edge[2], cross);
-    return r->solver->model->material[mesh_material(r, e)].density * fabs(rg_reference_dot(edge[0], cross)) /
-           6;
 }
 
 /* ---- Prescribed motions ---- */
@@ -195,14 +174,6 @@ static double target(const support *s, const double x[3], bool now, double displ
     return s->value(x, now ? TIME : TIME + 0.5 * DT, c);
 }
 
-static bool near(double found, double wanted, double most) {
-    bool good = fabs(found - wanted) <= most;
-    if (!good) {
-        printf("# %.17g, not %.17g: %.2g of what may be\n", found, wanted, fabs(found - wanted) / most);
-    }
-    return good;
-}
-
 /* M (after - before) of an element (N s). */
 static void impulses(const random_state *r, rg_gid e, size_t slot, const rg_real *before,
                      const rg_real *after, double out[RG_NODES][3]) {
@@ -211,7 +182,7 @@ static void impulses(const random_state *r, rg_gid e, size_t slot, const rg_real
         for (int b = 0; b < RG_NODES; b++) {
             size_t at = rg_node_index(slot, b, k % 3);
             out[k / 3][k % 3] +=
-                mass_of(r, e) * rg_mass_entry(r->input->mass, k / 3, b) * ((double)after[at] - before[at]);
+                mesh_mass(r, e) * rg_mass_entry(r->input->mass, k / 3, b) * ((double)after[at] - before[at]);
         }
     }
 }
@@ -258,12 +229,12 @@ static void judge_element(const random_state *r, const held_case *c, size_t slot
     const rg_real *given = now ? f->now : f->kicked,
                   *found = now ? r->solver->step_velocity : r->solver->velocity;
     rg_gid e = r->solver->domain->id[slot];
-    double J[RG_NODES][3], scale = 20 * mass_of(r, e);
+    double J[RG_NODES][3], scale = 20 * mesh_mass(r, e);
     impulses(r, e, slot, given, found, J);
     for (int n = 0; n < RG_NODES; n++) {
         holding h = hold(r, c, e, n);
         double x[3];
-        node_place(r, e, n, x);
+        mesh_node(r->mesh, e, n, x);
         for (int i = 0; i < h.lines; i++) {
             double wanted = target(h.of[i], x, now, along(h.of[i]->line, f->u, slot, n));
             v->met =
@@ -335,7 +306,7 @@ static bool drifted(const random_state *r, const held_case *c) {
             continue;
         }
         holding h = hold(r, c, e, n);
-        node_place(r, e, n, x);
+        mesh_node(r->mesh, e, n, x);
         for (int i = 0; i < h.lines; i++) {
             int axis = h.of[i]->line[1] == 1 ? 1 : h.of[i]->line[2] == 1 ? 2 : 0;
             good = (!h.of[i]->placed || h.lines > 1 ||
@@ -469,7 +440,7 @@ static bool damped_well(const random_state *r, size_t slot, const fields *f, dou
     const rg_solver *s = r->solver;
     rg_gid e = s->domain->id[slot];
     double J[RG_NODES][3], seen[RG_NODES][3], w[RG_NODES][3], force[RG_NODES][3];
-    double h = 0.5 * (DT_LAST + DT), scale = ROUNDED * 100 * mass_of(r, e);
+    double h = 0.5 * (DT_LAST + DT), scale = ROUNDED * 100 * mesh_mass(r, e);
     bool good = true;
     impulses(r, e, slot, f->kicked, s->velocity, J);
     impulses(r, e, slot, f->now, s->step_velocity, seen);

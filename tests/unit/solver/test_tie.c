@@ -9,6 +9,7 @@
 #include "base/mem.h"
 #include "domain/element.h"
 #include "reference/reference.h"
+#include "support/near.h"
 #include "support/random_state.h"
 #include "support/tap_memory.h"
 
@@ -40,27 +41,6 @@ static unsigned nodes_at(const random_state *r, rg_gid e, int body) {
         }
     }
     return mask;
-}
-
-static void node_place(const random_state *r, rg_gid e, int n, double at[3]) {
-    static const int end[RG_NODES][2] = {{0, 0}, {1, 1}, {2, 2}, {3, 3}, {0, 1},
-                                         {1, 2}, {0, 2}, {0, 3}, {1, 3}, {2, 3}};
-    double x[4][3];
-    mesh_corners(r->mesh, e, x);
-    for (int c = 0; c < 3; c++) {
-        at[c] = 0.5 * (x[end[n][0]][c] + x[end[n][1]][c]);
-    }
-}
-
-static double mass_of(const random_state *r, rg_gid e) {
-    double x[4][3], edge[3][3], cross[3];
-    mesh_corners(r->mesh, e, x);
-    for (int k = 0; k < 9; k++) {
-        edge[k / 3][k % 3] = x[k / 3 + 1][k % 3] - x[0][k % 3];
-    }
-    rg_reference_cross(edge[1], edge[2], cross);
-    return r->solver->model->material[mesh_material(r, e)].density * fabs(rg_reference_dot(edge[0], cross)) /
-           6;
 }
 
 /* ---- Where bodies put a place ---- */
@@ -99,14 +79,6 @@ static void place_of(const rg_body *b, const motion *m, const double X[3], doubl
     for (int c = 0; c < 3; c++) {
         out[c] += m->x[c];
     }
-}
-
-static bool near(double found, double wanted, double most) {
-    bool good = fabs(found - wanted) <= most;
-    if (!good) {
-        printf("# %.17g, not %.17g: %.2g of what may be\n", found, wanted, fabs(found - wanted) / most);
-    }
-    return good;
 }
 
 /* ---- A step ---- */
@@ -157,7 +129,7 @@ static void judge_node(const random_state *r, const step *of, size_t slot, int n
     rg_gid e = s->domain->id[slot];
     double X[3], from[3], to[3], arm[3], turn[3];
     const rg_body *b = &s->bodies->body[body];
-    node_place(r, e, n, X);
+    mesh_node(r->mesh, e, n, X);
     place_of(b, &of->before[body], X, from);
     place_of(b, &of->after[body], X, to);
     for (int c = 0; c < 3; c++) {
@@ -177,12 +149,12 @@ static void judge_element(const random_state *r, const step *of, size_t slot, ve
     const rg_solver *s = r->solver;
     rg_gid e = s->domain->id[slot];
     unsigned tied[2] = {nodes_at(r, e, 0), nodes_at(r, e, 1)};
-    double scale = 100 * mass_of(r, e), share = DT_LAST / (DT_LAST + DT);
+    double scale = 100 * mesh_mass(r, e), share = DT_LAST / (DT_LAST + DT);
     for (int n = 0; n < RG_NODES; n++) {
         double J[3] = {0, 0, 0};
         for (int k = 0; k < 3 * RG_NODES; k++) {
             size_t at = rg_node_index(slot, k / 3, k % 3);
-            J[k % 3] += mass_of(r, e) * rg_mass_entry(r->input->mass, n, k / 3) *
+            J[k % 3] += mesh_mass(r, e) * rg_mass_entry(r->input->mass, n, k / 3) *
                         ((double)s->velocity[at] - of->given[at]);
         }
         int body = (tied[0] >> n & 1) != 0 ? 0 : (tied[1] >> n & 1) != 0 ? 1 : -1;
@@ -247,7 +219,7 @@ static bool starts_well(const random_state *r) {
             const rg_body *b = &s->bodies->body[i];
             double X[3], arm[3], turn[3];
             const double spin[2][3] = {{2e5, -3e5, 1e5}, {1e5, 0, 0}}, v[2][3] = {{5, 0, -2}, {0, 3, 0}};
-            node_place(r, e, n, X);
+            mesh_node(r->mesh, e, n, X);
             for (int c = 0; c < 3; c++) {
                 arm[c] = X[c] - b->input->at[c];
             }

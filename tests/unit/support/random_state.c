@@ -4,6 +4,7 @@
 #include "solver/step.h"
 #include "support/random_state.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,6 +13,7 @@
 #include "base/mem.h"
 #include "domain/element.h"
 #include "partition/material_map.h"
+#include "reference/reference.h"
 #include "solver/tile.h"
 #include "solver/stepper.h"
 
@@ -234,6 +236,31 @@ void mesh_corners(const rg_mesh *mesh, rg_gid id, double x[4][3]) {
     for (int k = 0; k < 4; k++) {
         memcpy(x[k], mesh->x + 3 * mesh->corner[4 * id + k], sizeof x[k]);
     }
+}
+
+void mesh_node(const rg_mesh *mesh, rg_gid id, int n, double at[3]) {
+    static const int end[RG_NODES][2] = {{0, 0}, {1, 1}, {2, 2}, {3, 3}, {0, 1},
+                                         {1, 2}, {0, 2}, {0, 3}, {1, 3}, {2, 3}};
+    double x[4][3];
+    mesh_corners(mesh, id, x);
+    for (int c = 0; c < 3; c++) {
+        at[c] = 0.5 * (x[end[n][0]][c] + x[end[n][1]][c]);
+    }
+}
+
+double tet_volume(double x[4][3]) {
+    double e[3][3], cross[3];
+    for (int k = 0; k < 9; k++) {
+        e[k / 3][k % 3] = x[k / 3 + 1][k % 3] - x[0][k % 3];
+    }
+    rg_reference_cross(e[1], e[2], cross);
+    return fabs(rg_reference_dot(e[0], cross)) / 6;
+}
+
+double mesh_mass(const random_state *r, rg_gid id) {
+    double x[4][3];
+    mesh_corners(r->mesh, id, x);
+    return r->solver->model->material[mesh_material(r, id)].density * tet_volume(x);
 }
 
 int mesh_material(const random_state *r, rg_gid id) {

@@ -72,7 +72,14 @@ rg_gid interface_key(const random_state *r, const rg_tile *t, size_t i);
 /* Reference corners of an element (m). */
 void mesh_corners(const rg_mesh *mesh, rg_gid id, double x[4][3]);
 
-/* Material of an element, as the case has it. */
+/* Where node n of an element is at rest (m). */
+void mesh_node(const rg_mesh *mesh, rg_gid id, int n, double at[3]);
+
+/* Volume of a tetrahedron (m^3). */
+double tet_volume(double x[4][3]);
+
+/* Material of an element, as the case has it; its mass (kg). */
 int mesh_material(const random_state *r, rg_gid id);
+double mesh_mass(const random_state *r, rg_gid id);
 
 #endif
