@@ -7,6 +7,7 @@ import h5py
 import numpy as np
 import pytest
 from conftest import ROOT, launch
+import test_meshes as meshes
 from test_abaqus import ELEMENTS, NODES, SIDES, corners, found, on_plane
 
 INPUTS = ROOT / "tests" / "inputs"
@@ -186,3 +187,62 @@ def test_what_is_no_such_file(tmp_path, name):
     assert "Traceback" not in process.stderr and process.stderr.endswith(f"rhegma: {tmp_path / name}: it cannot be read\n")
     process = launch("mesh", tmp_path / f"no-{name}", "-o", tmp_path / "a.h5")
     assert process.returncode == 2 and process.stderr == f"rhegma: {tmp_path}/no-{name}: cannot be read: No such file or directory\n"
+
+
+# ---- Quadrangles of Abaqus ----
+
+SHEET = """*NODE
+1, 0., 0.
+2, 2., 0.
+3, 3., 0.
+4, 0., 1.
+5, 2., 1.
+6, 3., 1.
+7, 4., 0.
+*ELEMENT, TYPE=CPS4R, ELSET=steel
+1, 1, 2, 5, 4
+*ELEMENT, TYPE=S4, ELSET=brass
+2, 2, 3, 6, 5
+*ELEMENT, TYPE=S3, ELSET=brass
+3, 3, 7, 6
+*SURFACE, NAME=left
+1, S4
+*SURFACE, NAME=weld
+1, S2
+*SURFACE, NAME=right
+3, S2
+"""
+
+
+def parts(path):
+    """Volumes of sets, areas of sets of faces and of those between elements (both sides)."""
+    with h5py.File(path) as file:
+        c = meshes.corners(file)
+        volume = {name: meshes.volumes(c)[meshes.in_set(file, "volume", name)].sum() for name in meshes.names(file, "volume")}
+        area = {name: meshes.face_areas(c)[meshes.in_set(file, "surface", name)].sum() for name in meshes.names(file, "surface")}
+    return volume, area
+
+
+def test_quadrangles_are_extruded(tmp_path):
+    (tmp_path / "a.inp").write_text(SHEET)
+    process = launch("mesh", tmp_path / "a.inp", "-o", tmp_path / "a.h5", "--extrude", "0.5,2")
+    assert process.returncode == 0, process.stderr
+    volume, area = parts(tmp_path / "a.h5")
+    assert volume == pytest.approx({"steel": 1, "brass": 0.75})
+    assert area == pytest.approx({"left": 0.5, "weld": 2 * 0.5, "right": 0.5 * 2**0.5, "bottom": 3.5, "top": 3.5})
+    (tmp_path / "a.inp").write_text(SHEET.replace("3, S2", "3, S4"))
+    process = launch("mesh", tmp_path / "a.inp", "-o", tmp_path / "b.h5", "--extrude", "0.5,2")
+    assert process.returncode == 2 and process.stderr.endswith("of a triangle that is extruded, S1 to S3 is expected\n")
+
+
+def test_quadrangles_name_faces_of_split_solids(tmp_path):
+    """A cube of 1 and one beside it; quadrangles on the lower side of the first, of eight nodes, and between them."""
+    nodes = "".join(f"{1 + i + 3 * j + 6 * k}, {i}., {j}., {k}.\n" for k, j, i in itertools.product(range(2), range(2), range(3)))
+    middles = "".join(f"{20 + k}, {x}, {y}, 0.\n" for k, (x, y) in enumerate([(0.5, 0), (1, 0.5), (0.5, 1), (0, 0.5)]))
+    text = "*NODE\n" + nodes + middles + "*ELEMENT, TYPE=C3D8, ELSET=all\n1, 1, 2, 5, 4, 7, 8, 11, 10\n2, 2, 3, 6, 5, 8, 9, 12, 11\n"
+    text += "*ELEMENT, TYPE=S8R, ELSET=foot\n3, 1, 2, 5, 4, 20, 21, 22, 23\n*ELEMENT, TYPE=M3D4, ELSET=joint\n4, 2, 5, 11, 8\n"
+    (tmp_path / "a.inp").write_text(text)
+    process = launch("mesh", tmp_path / "a.inp", "-o", tmp_path / "a.h5", "--split")
+    assert process.returncode == 0, process.stderr
+    volume, area = parts(tmp_path / "a.h5")
+    assert volume == pytest.approx({"all": 2}) and area == pytest.approx({"foot": 1, "joint": 2})

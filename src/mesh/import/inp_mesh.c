@@ -26,6 +26,14 @@ static void take_nodes(building *b) {
     }
 }
 
+static bool is_solid(int kind) {
+    return kind > 3 && kind != RG_INP_CORNERS_4;
+}
+
+static bool is_flat(int kind) {
+    return kind == 3 || kind == RG_INP_CORNERS_4;
+}
+
 static void take_tetrahedron(building *b, size_t e) {
     const rg_inp_model *m = b->model;
     const uint32_t *from = m->node + m->start[e];
@@ -56,7 +64,7 @@ static void take_elements(building *b) {
         b->element[e] = b->import.elements;
         if (m->kind[e] == 4 || m->kind[e] == 10) {
             take_tetrahedron(b, e);
-        } else if (m->kind[e] > 3) {
+        } else if (is_solid(m->kind[e])) {
             take_split(b, e);
         }
     }
@@ -139,8 +147,8 @@ static void name_element_sets(building *b) {
         name_of(b, RG_INP_ELEMENTS, s->name, s->scope, name);
         bool tets = false, triangles = false, lines = false;
         for (size_t k = 0; k < found.count; k++) {
-            tets = tets || b->model->kind[found.row[k]] > 3;
-            triangles = triangles || b->model->kind[found.row[k]] == 3;
+            tets = tets || is_solid(b->model->kind[found.row[k]]);
+            triangles = triangles || is_flat(b->model->kind[found.row[k]]);
             lines = lines || b->model->kind[found.row[k]] == 2;
         }
         if (tets) {
@@ -161,9 +169,15 @@ static void add_face(building *b, size_t element, const size_t node[3], int32_t 
         &b->import, (rg_import_face){{node[0], node[1], node[2]}, b->model->elements.number[element], set});
 }
 
-static void add_triangle(building *b, size_t element, int32_t set) {
+/* A triangle or a quadrangle. */
+static void add_flat(building *b, size_t element, int32_t set) {
     const uint32_t *node = b->model->node + b->model->start[element];
-    add_face(b, element, (const size_t[]){node[0], node[1], node[2]}, set);
+    if (b->model->kind[element] == RG_INP_CORNERS_4) {
+        rg_import_add_quadrangle(&b->import, (const size_t[]){node[0], node[1], node[2], node[3]},
+                                 b->model->elements.number[element], set);
+    } else {
+        add_face(b, element, (const size_t[]){node[0], node[1], node[2]}, set);
+    }
 }
 
 /* Of an element that is one or has some, by its nodes there. */
@@ -186,12 +200,12 @@ static void fill_element_sets(building *b) {
         rg_inp_members found = rg_inp_members_of_set(b->model, s);
         for (size_t k = 0; k < found.count; k++) {
             size_t e = found.row[k];
-            if (b->model->kind[e] > 3) {
+            if (is_solid(b->model->kind[e])) {
                 for (rg_gid tet = b->element[e]; tet < b->element[e + 1]; tet++) {
                     rg_import_put(&b->import, tet, volume);
                 }
-            } else if (b->model->kind[e] == 3) {
-                add_triangle(b, e, surface);
+            } else if (is_flat(b->model->kind[e])) {
+                add_flat(b, e, surface);
             } else if (b->model->kind[e] == 2) {
                 add_edge(b, e, 0, 1, rg_sets_find(&b->import.edge_set, name));
             }
@@ -203,21 +217,22 @@ static void fill_element_sets(building *b) {
 /* Those that are to be extruded, also if they are in no set. */
 static void take_triangles(building *b) {
     for (size_t e = 0; e < b->model->elements.count && b->import.how.thickness > 0; e++) {
-        if (b->model->kind[e] == 3) {
-            add_triangle(b, e, RG_IMPORT_UNNAMED);
+        if (is_flat(b->model->kind[e])) {
+            add_flat(b, e, RG_IMPORT_UNNAMED);
         }
     }
 }
 
 /* ---- surfaces ---- */
 
-/* Of a triangle that is to be extruded: S1 to S3. */
+/* Of what is to be extruded: S1 to S3 of a triangle, S1 to S4 of a quadrangle. */
 static void take_edge(building *b, const rg_inp_surface *s, const rg_inp_patch *p, int32_t set, size_t e) {
-    if (p->face < 0 || p->face > 2 || b->model->kind[e] != 3) {
-        rg_inp_refuse(p->of.at, "*SURFACE, NAME=%s: of a triangle that is extruded, S1 to S3 is expected",
-                      s->name);
+    int corners = b->model->kind[e] == 3 ? 3 : 4;
+    if (p->face < 0 || p->face >= corners || !is_flat(b->model->kind[e])) {
+        rg_inp_refuse(p->of.at, "*SURFACE, NAME=%s: of a %s that is extruded, S1 to S%d is expected", s->name,
+                      corners == 3 ? "triangle" : "quadrangle", corners);
     }
-    add_edge(b, e, p->face, (p->face + 1) % 3, set);
+    add_edge(b, e, p->face, (p->face + 1) % corners, set);
 }
 
 static void take_face(building *b, const rg_inp_surface *s, const rg_inp_patch *p, int32_t set, size_t e) {
@@ -227,20 +242,20 @@ static void take_face(building *b, const rg_inp_surface *s, const rg_inp_patch *
         return; /* of an element that is left out, and said to be: it has no nodes here */
     }
     if (b->import.how.thickness > 0) { /* solids are refused in the end */
-        kind < 4 ? take_edge(b, s, p, set, e) : (void)0;
+        is_solid(kind) ? (void)0 : take_edge(b, s, p, set, e);
         return;
     }
-    if (kind == 3 && (p->face == RG_INP_FREE || p->face == RG_INP_SIDE)) {
-        add_triangle(b, e, set);
+    if (is_flat(kind) && (p->face == RG_INP_FREE || p->face == RG_INP_SIDE)) {
+        add_flat(b, e, set);
         return;
     }
     for (rg_gid tet = b->element[e]; p->face == RG_INP_FREE && tet < b->element[e + 1]; tet++) {
         rg_import_put_skin(&b->import, tet, set);
     }
-    for (int k = 0; kind > 3 && k < (kind == 10 ? 4 : kind); k++) {
+    for (int k = 0; is_solid(kind) && k < (kind == 10 ? 4 : kind); k++) {
         node[k] = rg_import_number(&b->import, b->model->node[b->model->start[e] + (size_t)k]);
     }
-    if (kind > 3 && p->face >= 0 && p->face < RG_SOLID_FACES) {
+    if (is_solid(kind) && p->face >= 0 && p->face < RG_SOLID_FACES) {
         count = rg_solid_face(kind, p->face, node, triangle);
     }
     for (int t = 0; t < count; t++) {

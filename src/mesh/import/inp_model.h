@@ -80,8 +80,8 @@ typedef struct {
     double *x; /* [nodes][3], in units of the input */
     size_t x_room;
     rg_inp_rows elements;
-    int8_t *kind;  /* [elements] nodes: 4, 10: a tetrahedron; 3: a triangle; 2: a line; 5, 6, 8: to be split;
-                      0: left out */
+    int8_t *kind; /* [elements] nodes: 4, 10: a tetrahedron; 3: a triangle; 2: a line; RG_INP_CORNERS_4; 5, 6,
+                     8: to be split; 0: left out */
     size_t *start; /* [elements] where its nodes begin in: */
     uint32_t *node;
     size_t kind_room, start_room, node_room, node_count;
@@ -104,6 +104,10 @@ void rg_inp_model_free(rg_inp_model *m);
 
 /* Adds a node; one that is there already moves. */
 void rg_inp_add_node(rg_inp_model *m, rg_gid number, const double x[3]);
+
+/* What is kept of a quadrangle: its corners, the last one 3 times more, so that no solid has as many nodes.
+ */
+enum { RG_INP_CORNERS_4 = 7 };
 
 /* Adds an element of `kind` with its first `kind` nodes. False: its number is taken. */
 bool rg_inp_add_element(rg_inp_model *m, rg_gid number, int kind, const rg_gid node[]);

@@ -139,7 +139,8 @@ static void begin_elements(reader *r) {
     r->have = 0;
     r->goes_on = false;
     r->set = set_to_fill(r, RG_INP_ELEMENTS, "ELSET");
-    bool idle = (r->type.shape == RG_INP_SOLID && !r->split) || (r->type.shape == RG_INP_LINE && !r->flat);
+    bool idle = (r->type.shape == RG_INP_SOLID && !r->split) || (r->type.shape == RG_INP_LINE && !r->flat) ||
+                (r->type.shape == RG_INP_QUADRANGLE && !r->split && !r->flat);
     r->type.nodes = idle ? 0 : r->type.nodes;
     bool of_mesh = r->type.nodes > 0;
     if (of_mesh && is_outside(r, r->scope)) {
@@ -335,6 +336,19 @@ static void end_element(reader *r, int kind) {
     r->have = 0;
 }
 
+/* The element that has all its nodes. */
+static void take_element(reader *r) {
+    if (r->type.shape == RG_INP_QUADRANGLE) {
+        for (int k = 5; k <= RG_INP_CORNERS_4; k++) {
+            r->element[k] = r->element[4];
+        }
+    }
+    end_element(r, r->type.shape == RG_INP_TRIANGLE     ? 3
+                   : r->type.shape == RG_INP_QUADRANGLE ? RG_INP_CORNERS_4
+                   : r->type.shape == RG_INP_SOLID      ? r->type.corners
+                                                        : r->type.nodes);
+}
+
 /* An element may go on in the next line. */
 static void read_element(reader *r) {
     for (char *field = rg_inp_field(r->lines); field != NULL; field = rg_inp_field(r->lines)) {
@@ -344,9 +358,7 @@ static void read_element(reader *r) {
         rg_gid number = rg_inp_number(r->lines, field);
         r->element[r->have] = shifted(r, r->have == 0 ? RG_INP_ELEMENTS : RG_INP_NODES, number);
         if (++r->have == r->type.nodes + 1) {
-            end_element(r, r->type.shape == RG_INP_TRIANGLE ? 3
-                           : r->type.shape == RG_INP_SOLID  ? r->type.corners
-                                                            : r->type.nodes);
+            take_element(r);
         }
     }
 }

@@ -10,7 +10,8 @@
  * manuals define it: nodes and elements, given (*NODE, *ELEMENT, in local systems) and generated (*NGEN,
  * *NFILL, *ELGEN, *ELCOPY), in one body or in parts that instances place, in one file or several. Elements
  * are tetrahedra of any physics, with `split` those too that hexahedra, wedges and pyramids are cut into
- * (solid.h), by their numbers; triangles (S3, CPS6, SFM3D3, ...) only name faces.
+ * (solid.h), by their numbers; triangles (S3, CPS6, SFM3D3, ...) and with `split` quadrangles only name
+ * faces.
  *
  * Volume sets are all sets of elements, surface sets all surfaces, sets of triangles, and sets of nodes that
  * hold whole faces; they may overlap. Sets that the preprocessor made for its own use (INTERNAL) are none.

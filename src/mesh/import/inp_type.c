@@ -26,6 +26,8 @@ static const struct {
                   {"6", {RG_INP_SOLID, 6, 6}},       {"15", {RG_INP_SOLID, 15, 6}},
                   {"5", {RG_INP_SOLID, 5, 5}},       {"13", {RG_INP_SOLID, 13, 5}}};
 
+static const char *const quadrangle[] = {"S", "CPS", "CPE", "CPEG", "M3D", "SFM3D", "R3D", "DS", "DC2D"};
+
 static const struct {
     const char *begin;
     int nodes;
@@ -46,6 +48,14 @@ rg_inp_type rg_inp_type_of(const char *name) {
     for (size_t i = 0; i < sizeof triangle / sizeof *triangle; i++) {
         if (is(name, triangle[i].begin)) {
             return (rg_inp_type){RG_INP_TRIANGLE, triangle[i].nodes, 0};
+        }
+    }
+    for (size_t i = 0; i < sizeof quadrangle / sizeof *quadrangle; i++) {
+        size_t length = strlen(quadrangle[i]);
+        const char *nodes = name + length;
+        if (strncasecmp(name, quadrangle[i], length) == 0 &&
+            (is(nodes, "4") || is(nodes, "8") || is(nodes, "9"))) {
+            return (rg_inp_type){RG_INP_QUADRANGLE, nodes[0] - '0', 0};
         }
     }
     for (size_t i = 0; i < sizeof solid / sizeof *solid; i++) {

@@ -2,11 +2,19 @@
 #ifndef RG_INP_TYPE_H
 #define RG_INP_TYPE_H
 
-typedef enum { RG_INP_TETRAHEDRON, RG_INP_TRIANGLE, RG_INP_LINE, RG_INP_SOLID, RG_INP_OTHER } rg_inp_shape;
+typedef enum {
+    RG_INP_TETRAHEDRON,
+    RG_INP_TRIANGLE,
+    RG_INP_QUADRANGLE,
+    RG_INP_LINE,
+    RG_INP_SOLID,
+    RG_INP_OTHER
+} rg_inp_shape;
 
 typedef struct {
-    rg_inp_shape shape; /* SOLID: of another shape; OTHER: no solid (a mass, a shell of quadrangles, ...) */
-    int nodes;   /* of a tetrahedron, triangle or line: 4 or 10, 3 or 6, 2; of a SOLID that can be split: */
+    rg_inp_shape shape; /* SOLID: of another shape; OTHER: no solid (a mass, a spring, ...) */
+    int nodes; /* of a tetrahedron 4 or 10, triangle 3 or 6, quadrangle 4, 8 or 9, line 2; of a SOLID that can
+                  be split: */
     int corners; /* of such a one: 8, 6 or 5 (hexahedron, wedge, pyramid) */
 } rg_inp_type;
 

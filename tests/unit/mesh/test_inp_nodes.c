@@ -66,7 +66,7 @@ static void test_systems(void **state) {
 }
 
 #define SEVENTHS                                                                                             \
-    WARNING ": 2 sets of nodes hold no whole face and are left out: 'a', 'b'\n"               \
+    WARNING ": 2 sets of nodes hold no whole face and are left out: 'a', 'b'\n"                              \
             "x 0: 0 0 0\nx 1: 3 6 9\nx 2: 0 1 0\nx 3: 0 0 1\nx 4: 0.428571 0.857143 1.28571\n"               \
             "x 5: 0 0.857143 0.142857\nx 6: 1.28571 2.57143 3.85714\nx 7: 0 0.571429 0.428571\n"             \
             "e 1: 0 2 4 5\ne 2: 4 5 6 7\ne 3: 1 3 6 7\n"
@@ -103,8 +103,7 @@ static void test_generated_nodes(void **state) {
         "1, 1, 2, 4, 5\n2, 2, 3, 4, 5\n",
         "x 0: 0 0 0\nx 1: 9 0 0\nx 2: 0 9 0\nx 3: 0 0 9\nx 4: 20 0 0\nx 5: 21 2 3\nx 6: 22 4 6\nx 7: 20 1 0\n"
         "x 8: 20 0 1\ne 1: 0 1 2 3\ne 11: 4 5 7 8\ne 12: 5 6 7 8\n");
-    snprintf(said, sizeof said,
-             WARNING ": 1 sets of nodes hold no whole face and are left out: 'g'\n" SPREAD,
+    snprintf(said, sizeof said, WARNING ": 1 sets of nodes hold no whole face and are left out: 'g'\n" SPREAD,
              ", h at 3", ", h at 3", ", h at 3");
     expect(ENDS "*NGEN, NSET=g\n1, 4, 1\n" FAN "*NSET, NSET=h\n5, g\n", said);
     /* two lines at once: pairs by number, or as they are listed where the sets are not sorted */
@@ -118,8 +117,7 @@ static void test_generated_nodes(void **state) {
                  ends[i]);
         expect(words, WARNING
                ": 2 nodes belong to no tetrahedron and are left out; the first is node 4 at (2, 4, 6) "
-               "m\n" WARNING
-               ": 2 sets of nodes hold no whole face and are left out: 'a', 'b'\n"
+               "m\n" WARNING ": 2 sets of nodes hold no whole face and are left out: 'a', 'b'\n"
                "x 0: 0 0 0\nx 1: 0 0 1\nx 2: 1 2 3\nx 3: 0 1 0\nx 4: 1 3 3\n"
                "e 1: 0 1 2 3, f and g at 1, g at 2, g at 3\ne 2: 1 2 3 4, f and g at 0, g at 1, g at 2\n");
     }
