@@ -90,10 +90,9 @@ static void test_node_sets(void **state) {
     expect(NODES SOLIDS ONE TWO
            "*NSET, NSET=n\n10, 20, 30\n*SURFACE, NAME=n\n2, S2\n*NSET, NSET=empty\n*NSET, NSET=edge\n"
            "10, 20\n",
-           WARNING
-           ": 2 sets of nodes hold no whole face and are left out: 'empty', 'edge'\n" WARNING
-           ": 1 sets of nodes are left out, for there are surfaces of their names: 'n'\n" X5
-           "e 1: 0 1 2 3\ne 2: 1 2 3 4, n at 2\n");
+           WARNING ": 2 sets of nodes hold no whole face and are left out: 'empty', 'edge'\n" WARNING
+                   ": 1 sets of nodes are left out, for there are surfaces of their names: 'n'\n" X5
+                   "e 1: 0 1 2 3\ne 2: 1 2 3 4, n at 2\n");
 }
 
 static void test_surface_sets(void **state) {
