@@ -52,7 +52,9 @@ struct rg_contacts {
 
     size_t faces, far, pairs; /* of this rank, of others, with a part of this rank */
     bool any;
-    size_t *tile_begin; /* faces of tile t: from tile_begin[t] on */
+    size_t *tile_begin;  /* faces of tile t: from tile_begin[t] on */
+    double *tile_omega2; /* [tiles]: of what touches now (1/s^2) */
+    int64_t *tile_touching;
     face *face;
     double *rest, *corner, *last; /* [faces, then far][9]: undeformed, now; [faces][9] at the last search */
     double *box;                  /* [faces, then far][6]: now */
@@ -101,8 +103,14 @@ static void make_element(rg_contacts *c, rg_mass mass) {
     c->eigenvalue = fmax((own + 2 * other) / 3, (own - other) / 12);
 }
 
-/* Both sides of a pair bear its stiffness, and each face by half of the jump's square at most: twice kappa.
- */
+/* What a face adds to the squared frequency of its element, over kappa: both sides of a pair bear its
+ * stiffness, and each face by half of the jump's square at most, so twice. */
+static double omega2_of(const rg_contacts *c, size_t slot, int k) {
+    double normal[3], area = rg_surface_area(c->domain->corner + 12 * slot, k, normal);
+    return 2 * area * c->eigenvalue / rg_element_mass(c->domain, c->material, slot);
+}
+
+/* With all of the surface pressed. */
 static double largest_omega2(const rg_contacts *c) {
     const rg_domain *d = c->domain;
     double most = 0;
@@ -110,10 +118,9 @@ static double largest_omega2(const rg_contacts *c) {
         double sum = 0;
         for (int k = 0; k < RG_FACES; k++) {
             if (rg_surface_has(d, slot, k)) {
-                double normal[3], area = rg_surface_area(d->corner + 12 * slot, k, normal);
                 const rg_material *m = &c->material[d->material[slot / RG_LANES]];
                 double kappa = c->penalty * rg_material_modulus(m) / rg_surface_height(d, slot, k);
-                sum += 2 * kappa * area * c->eigenvalue / rg_element_mass(d, c->material, slot);
+                sum += kappa * omega2_of(c, slot, k);
             }
         }
         most = fmax(most, sum);
@@ -132,6 +139,8 @@ rg_contacts *rg_contacts_make(const rg_case *input, const rg_domain *d, const rg
     make_element(c, input->mass);
     c->omega2 = largest_omega2(c);
     c->tile_begin = RG_NEW(size_t, d->tiles + 1);
+    c->tile_omega2 = RG_NEW(double, d->tiles + 1);
+    c->tile_touching = RG_NEW(int64_t, d->tiles + 1);
     return c;
 }
 
@@ -400,6 +409,7 @@ static double largest(const double *x, size_t count) {
 
 void rg_contacts_search(rg_contacts *c, const uint8_t *exposed, const rg_real *u) {
     forget(c);
+    memset(c->tile_omega2, 0, c->domain->tiles * sizeof *c->tile_omega2);
     rg_exposed_face *own = expose(c, exposed, u);
     c->fat = set_fat(c, own);
     rg_search by = {c->penalty, SKIN, REACH, c->fat, TURN};
@@ -454,6 +464,28 @@ rg_halo *rg_contacts_halo(const rg_contacts *c) {
     return c->halo;
 }
 
+/* Counts the pairs of a tile that touch, and bounds the squared frequency of elements that they press. */
+static void note_touching(rg_contacts *c, size_t tile) {
+    double most = 0, sum = 0;
+    int64_t count = 0;
+    for (size_t i = c->tile_begin[tile]; i < c->tile_begin[tile + 1]; i++) {
+        const face *f = &c->face[i];
+        double kappa = 0;
+        sum = i > c->tile_begin[tile] && f->slot == f[-1].slot ? sum : 0;
+        for (size_t k = f->touch; k < f[1].touch; k++) {
+            size_t pair = c->touch[k].pair;
+            if (c->energy[pair] > 0) {
+                kappa = fmax(kappa, c->pair[pair].stiffness);
+                count += c->touch[k].side == 0;
+            }
+        }
+        sum += kappa > 0 ? kappa * omega2_of(c, (size_t)f->slot, f->face) : 0;
+        most = fmax(most, sum);
+    }
+    c->tile_omega2[tile] = most;
+    c->tile_touching[tile] = count;
+}
+
 void rg_contacts_meet(rg_contacts *c, const rg_kernels *kernels) {
     enum { BATCH = 32 };
     rg_contact_args args = {c->corner, c->box, c->sunk, c->pair, c->force, c->energy, c->depth};
@@ -466,6 +498,10 @@ void rg_contacts_meet(rg_contacts *c, const rg_kernels *kernels) {
     for (size_t b = 0; b < batches; b++) {
         size_t end = (b + 1) * BATCH;
         kernels->contact(&args, b * BATCH, end < c->pairs ? end : c->pairs);
+    }
+#pragma omp for schedule(static)
+    for (size_t t = 0; t < c->domain->tiles; t++) {
+        note_touching(c, t);
     }
 }
 
@@ -558,8 +594,8 @@ double rg_contacts_moved(const rg_contacts *c) {
 
 int64_t rg_contacts_touching(const rg_contacts *c) {
     int64_t count = 0;
-    for (size_t i = 0; i < c->pairs; i++) {
-        count += (size_t)c->pair[i].face[0] < c->faces && c->energy[i] > 0;
+    for (size_t i = 0; i < c->domain->tiles; i++) {
+        count += c->tile_touching[i];
     }
     return count;
 }
@@ -605,10 +641,16 @@ double rg_contacts_omega2(const rg_contacts *c) {
     return c->omega2;
 }
 
+double rg_contacts_omega2_now(const rg_contacts *c) {
+    return largest(c->tile_omega2, c->domain->tiles);
+}
+
 void rg_contacts_free(rg_contacts *c) {
     if (c != NULL) {
         forget(c);
         rg_free(c->tile_begin);
+        rg_free(c->tile_omega2);
+        rg_free(c->tile_touching);
         rg_free(c);
     }
 }

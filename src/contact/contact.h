@@ -71,8 +71,10 @@ double rg_contacts_moved(const rg_contacts *c);
 int64_t rg_contacts_touching(const rg_contacts *c);
 bool rg_contacts_any(const rg_contacts *c);
 
-/* What contact adds to the largest squared frequency, at most (1/s^2). */
+/* What contact adds to the largest squared frequency (1/s^2): at most, if all of the undeformed surface is
+ * pressed; and of what touches now, of this rank. */
 double rg_contacts_omega2(const rg_contacts *c);
+double rg_contacts_omega2_now(const rg_contacts *c);
 
 void rg_contacts_free(rg_contacts *c);
 

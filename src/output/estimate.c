@@ -300,8 +300,8 @@ void rg_estimate_print(const rg_solver *s, const rg_estimate *e, FILE *out) {
                 100 * (1 - sqrt(1 - s->bodies->omega2 / s->omega2)));
     }
     if (s->contacts != NULL) {
-        fprintf(out, "               shorter by %.2g %% for fragments that may touch\n",
-                100 * (1 - sqrt(1 - rg_contacts_omega2(s->contacts) / s->omega2)));
+        fprintf(out, "               shorter by up to %.2g %% while fragments touch\n",
+                100 * (1 - sqrt(s->omega2 / (s->omega2 + rg_contacts_omega2(s->contacts)))));
     }
     fprintf(out, "steps          %" PRId64 " to %.4g s\n", e->steps,
             fmin(c->time.end, (double)e->steps * e->dt));

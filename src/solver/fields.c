@@ -71,6 +71,7 @@ void rg_state_of_solver(rg_state *st, rg_solver *s) {
     rg_state_add(st, "pace", RG_OF_RUN, RG_STATE_DOUBLE, 1, &s->opening_rate); /* likewise */
     if (s->contacts != NULL) {
         rg_state_add(st, "contacts", RG_OF_RUN, RG_STATE_INT64, 1, &s->contacts_most);
+        rg_state_add(st, "contact_omega2", RG_OF_RUN, RG_STATE_DOUBLE, 1, &s->contact_omega2);
     }
     if (rg_case_opens(s->input)) {
         rg_state_add(st, "openings", RG_OF_RUN, RG_STATE_DOUBLE, 2, &s->openings.until);

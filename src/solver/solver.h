@@ -84,6 +84,7 @@ struct rg_solver {
     rg_absorbing *absorbing;
     rg_contacts *contacts; /* between fragments; NULL: not computed */
     int64_t contacts_most; /* most pairs of faces that touched at a time */
+    double contact_omega2; /* most that they added to the squared frequency (1/s^2) */
     double time, dt;       /* of the current state (s); dt is the step that led to it */
     double dt_next;        /* step that leads on, once kicked */
     int64_t step;

@@ -471,5 +471,4 @@ void rg_spectrum(rg_solver *s) {
         keep(s, &found);
     }
     s->omega2 += s->bodies->omega2 + rg_loads_omega2(s->loads);
-    s->omega2 += s->contacts != NULL ? rg_contacts_omega2(s->contacts) : 0;
 }

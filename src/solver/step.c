@@ -295,7 +295,8 @@ static void start_stiffening(rg_solver *s) {
         s->stepper->here[1] = rg_interrupt_request();
         s->stepper->here[2] = s->contacts != NULL ? rg_contacts_moved(s->contacts) : 0;
         s->stepper->here[3] = s->stepper->separated;
-        MPI_Iallreduce(s->stepper->here, s->stepper->anywhere, 4, MPI_DOUBLE, MPI_MAX, s->comm,
+        s->stepper->here[4] = s->contacts != NULL ? rg_contacts_omega2_now(s->contacts) : 0;
+        MPI_Iallreduce(s->stepper->here, s->stepper->anywhere, 5, MPI_DOUBLE, MPI_MAX, s->comm,
                        &s->stepper->stiffening_request);
     }
     mark(s, RG_PHASE_REDUCE);
@@ -382,6 +383,13 @@ static void finish_tied(rg_solver *s, const impulse *p) {
     mark(s, RG_PHASE_JUMP);
 }
 
+/* With what contact between fragments adds: the most it has so far. A step that came and went with each touch
+ * would cost energy at every change. */
+static double stiffened(rg_solver *s, double stiffening) {
+    s->contact_omega2 = fmax(s->contact_omega2, s->stepper->anywhere[4]);
+    return s->contact_omega2 > 0 ? fmax(stiffening, 1) + s->contact_omega2 / s->omega2 : stiffening;
+}
+
 /* All forces. The traces of the displacement, sent at the end of the last drift, arrive under the first sweep
  * of the tiles that touch no other rank; the tractions under the second. */
 static void evaluate(rg_solver *s, const impulse *whole) {
@@ -405,9 +413,9 @@ static void evaluate(rg_solver *s, const impulse *whole) {
         sweep(s, element_sweep, p, 0, outer, NULL);
         mark(s, RG_PHASE_COMPUTE);
         start(s, s->stepper->halo_t);
+        meet(s, p);
         start_stiffening(s);
         start_bodies(s, p);
-        meet(s, p);
         sweep(s, boundary_sweep, p, outer, all, s->stepper->halo_t);
         mark(s, RG_PHASE_JUMP);
         finish(s, s->stepper->halo_t);
@@ -423,7 +431,7 @@ static void evaluate(rg_solver *s, const impulse *whole) {
     }
     MPI_Wait(&s->stepper->stiffening_request, MPI_STATUS_IGNORE);
     finish_meeting(s);
-    s->stiffening_anywhere = s->stepper->anywhere[0];
+    s->stiffening_anywhere = stiffened(s, s->stepper->anywhere[0]);
     s->stop_request = (int)s->stepper->anywhere[1];
     if (s->tile_opening_rate != NULL && p->constrain) {
         rg_step_limiter_agree(s);

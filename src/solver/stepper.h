@@ -10,9 +10,9 @@ struct rg_stepper {
     rg_real *rows[2], *tractions; /* trace rows, of the current state and of the next; traction rows */
     int current;                  /* which of `rows` */
     rg_halo *halo_u[2], *halo_t;  /* of `rows` and `tractions` */
-    /* Stiffening, stop request, way that faces in contact have moved (contact/contact.h), and 1 where faces
-     * have separated: of this rank, of all; both on their way. */
-    double here[4], anywhere[4];
+    /* Stiffening, stop request, way that faces in contact have moved (contact/contact.h), 1 where faces have
+     * separated, and what contact adds to the squared frequency: of this rank, of all; both on their way. */
+    double here[5], anywhere[5];
     MPI_Request stiffening_request; /* of these */
     bool separated;                 /* some faces have, and wait to be exposed */
     int64_t touching, touching_anywhere;
