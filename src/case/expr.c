@@ -9,7 +9,7 @@
 #include "base/mem.h"
 #include "case/tree.h"
 
-enum { VARIABLES = 7 }; /* x, y, z, t, nx, ny, nz */
+enum { VARIABLES = 7, LONGEST = 19999 }; /* x, y, z, t, nx, ny, nz; characters that muParser takes */
 
 /* clang-format off */
 const rg_expr_word rg_expr_words[] = {
@@ -151,6 +151,9 @@ rg_expr *rg_expr_with(const char *text, const rg_curves *tables, char **message)
     e->text = rg_text_copy(text, strlen(text));
     if (rg_is_number(text, &integer)) {
         e->constant = strtod(text, NULL);
+    } else if (strlen(text) > LONGEST) {
+        *message =
+            rg_text_format("longer than %d characters: a set of the mesh, or a table, can say more", LONGEST);
     } else if (assigns(text)) {
         *message = rg_text_format("an assignment is not an expression");
     } else {
