@@ -8,10 +8,11 @@
 #include <stdio.h>
 
 #include "mesh/import/inp_line.h"
+#include "mesh/rows.h"
 
 typedef struct {
-    char name[RG_INP_WORD];
-    bool solid; /* of an element type: it has a volume, which must not be lost */
+    char name[RG_SET_NAME]; /* a type may be as long as any name */
+    bool solid;             /* of an element type: it has a volume, which must not be lost */
     int64_t count;
     rg_inp_place at; /* of the first */
 } rg_inp_tally;

@@ -339,6 +339,15 @@ static void test_limits(void **state) {
         }
         name[length] = 'n';
     }
+    /* also the type of an element that is left out */
+    memset(name, 'n', 255);
+    name[255] = '\0';
+    snprintf(words, sizeof words, NODES SOLIDS ONE TWO "*ELEMENT, TYPE=%s\n3, 10\n", name);
+    write_input(words);
+    static char left[4000];
+    assert_int_equal(run_child(read_and_print, left, sizeof left), RG_OK);
+    snprintf(said, sizeof said, ": elements that are no solids are left out: 1 %s\n", name);
+    assert_non_null(strstr(left, said));
     static char many[1 << 16];
     char *to = many + sprintf(many, NODES SOLIDS ONE TWO);
     for (int s = 0; s < 1000; s++) {
