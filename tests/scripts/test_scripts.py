@@ -84,6 +84,13 @@ def test_ceramic_curves(tmp_path):
     assert_pictures(tmp_path, told, "ceramic-curves.png")
 
 
+@pytest.mark.parametrize("kind", ["inp", "vtu"])
+def test_import(tmp_path, kind):
+    told, _ = script("bench/studies/import", "--out", tmp_path, "--cells", 4, "--kind", kind)
+    assert re.fullmatch(rf"{kind}: 384 tets: \d+\.\d\d us each, \d+\.\d\d of it in the system, \d+ bytes\n", told)
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_intrinsic(tmp_path):
     told, _ = script("bench/studies/intrinsic", "--out", tmp_path, "--only", "spall", "--set", "mesh.cells=[1, 1, 10]", "--set",
                      "time.end=0.2e-6")
