@@ -84,6 +84,12 @@ typedef struct {
     double *heat;             /* in/out: [block][lane], dissipated so far (J) */
 } rg_viscosity_args;
 
+/* Strengths that rise with the rate of stress (element/interface_rise.h). */
+typedef struct {
+    double rate; /* beyond which they do (Pa/s); 0: nowhere */
+    double exponent, most;
+} rg_rise;
+
 /* 12-node interface. The area vector points from minus to plus, jump [u] = u+ - u-. Force on the minus side
  * is +g, on the plus side -g. */
 typedef struct {
@@ -103,7 +109,16 @@ typedef struct {
     rg_shear shear; /* fading: with a conserving activation */
     rg_sliding sliding;
     double friction; /* coefficient mu of Coulomb's */
+    rg_rise rise;
 } rg_cohesive;
+
+/* Index of value k of RG_RISE at point q of interface i, in crack state of `stride` values a block. */
+static inline size_t rg_rise_index(const rg_cohesive *law, size_t i, int q, int k, size_t stride) {
+    size_t friction = law->sliding == RG_SLIDING_COULOMB ? RG_FRICTION_BLOCK : 0;
+    size_t loan = law->criterion == RG_CRITERION_MOHR_COULOMB ? RG_LOAN_BLOCK : 0;
+    return (i / RG_LANES + 1) * stride - friction - loan - RG_RISE_BLOCK +
+           (size_t)(q * RG_RISE + k) * RG_LANES + i % RG_LANES;
+}
 
 typedef struct {
     rg_cohesive law;
@@ -120,15 +135,17 @@ typedef struct {
     const rg_real *geom;    /* interface geometry */
     const rg_real *scale; /* NULL: all faces alike; else [block][2][lane]: strength and critical opening over
                              those of the law */
-    const rg_real *beta, *friction; /* NULL: the law's; else [block][lane], of each face */
-    uint8_t *broken;                /* [interface] in/out: bit q set where point q has switched */
+    const rg_real *beta, *friction,
+        *rise;         /* NULL: the law's; else [block][lane], of each face; rise: exponent */
+    uint8_t *broken;   /* [interface] in/out: bit q set where point q has switched */
     uint8_t *unlinked; /* [interface] in/out: bit q set where point q has no DG terms (never set for a closed
                           point under flux contact) */
     uint8_t *active;   /* [block] in/out: not 0 where some lane of the block has a broken point */
     rg_real *crack;    /* crack state, in/out */
     size_t crack_stride; /* values from one block's crack state to the next: RG_CRACK_BLOCK, the memory of the
-                            law, with shear that fades RG_BOND_BLOCK, with Mohr and Coulomb's criterion
-                            RG_LOAN_BLOCK and with Coulomb's friction RG_FRICTION_BLOCK; or 0 to share one */
+                            law, with shear that fades RG_BOND_BLOCK, with strengths that rise RG_RISE_BLOCK,
+                            with Mohr and Coulomb's criterion RG_LOAN_BLOCK and with Coulomb's friction
+                            RG_FRICTION_BLOCK; or 0 to share one */
     rg_real *force;      /* out: g, nodal force on the minus side (N) */
     rg_real *turn;       /* out, of contact as a potential and only of broken faces: nodal force on either
                             side (N), laid out as `force` */

@@ -22,9 +22,9 @@
  *   interface nodal force           [interface block][6 nodes][3][lane]
  *   crack state                     [interface block]: [6 points][RG_CRACK][lane], then
  *                                   [6 points][memory of the law][lane], then, with shear that fades,
- *                                   [6 points][RG_BOND][lane], then, with Mohr and Coulomb's
- *                                   criterion, [6 points][lane], lent at the switch (J), then, with friction,
- *                                   [6 points][RG_FRICTION][lane]
+ *                                   [6 points][RG_BOND][lane], then, where strengths rise with the rate of
+ *                                   stress, [6 points][RG_RISE][lane], then, with Mohr and Coulomb's
+ * criterion, [6 points][lane], lent at the switch (J), then, with friction, [6 points][RG_FRICTION][lane]
  *   ghost traces                    [tile face block][6 nodes][3][lane]
  *   trace rows, traction rows       [row][6 nodes][3], [row][3 corners][3]
  *
@@ -107,6 +107,14 @@ enum {                      /* shear that fades at one interface point (element/
        RG_BOND = 8,
 };
 
+enum { /* strength that rises with the rate of stress, at one point (element/interface_rise.h) */
+       RG_RISE_STRESS = 0, /* where the mean rate counts from (Pa) */
+       RG_RISE_SPAN = 1,   /* time since then (s) */
+       RG_RISE_LAST = 2,   /* of the last state that counted (s) */
+       RG_RISE_FACTOR = 3, /* strength over that of the law; 0: never tested */
+       RG_RISE = 4,
+};
+
 /* History of a material with n values per point: those of the 4 points of the element, then the energy that
  * the element has set free since the start (J), by cause. */
 enum { RG_RELEASED_PLASTIC, RG_RELEASED_DAMAGE, RG_RELEASED };
@@ -124,6 +132,7 @@ enum { /* values per row, and per block */
        RG_FRICTION_BLOCK = RG_POINTS * RG_FRICTION * RG_LANES,
        RG_LOAN_BLOCK = RG_POINTS * RG_LANES,
        RG_BOND_BLOCK = RG_POINTS * RG_BOND * RG_LANES,
+       RG_RISE_BLOCK = RG_POINTS * RG_RISE * RG_LANES,
        RG_TRACE_ROW = RG_FNODES * 3,
        RG_TILE_FACE_ROW = RG_FCORNERS * 3, /* tractions of one face */
        RG_GHOST_BLOCK = RG_TRACE_ROW * RG_LANES,

@@ -19,14 +19,18 @@
 #include "element/interface_face.h"
 #include "element/interface_friction.h"
 #include "element/interface_law.h"
+#include "element/interface_rise.h"
 
 /* ---- Points of damaged faces ---- */
 
 /* Step 1: the broken points, with those that break now. */
-RG_INLINE rg_mask break_point(const interface *s, int q, const vec3 n, rg_vec area, rg_mask broken,
+RG_INLINE rg_mask break_point(interface *s, int q, const vec3 n, rg_vec area, rg_mask broken,
                               rg_activation activation, int mixed) {
     cauchy t;
     cauchy_traction(s, q, n, area, &t);
+    if (rises(s)) {
+        raise_strength(s, q, &t, broken);
+    }
     rg_mask now = breaking(s, q, &t, ~broken);
     if (rg_any(now)) {
         activate(s, q, n, &t, now, activation, mixed);
@@ -98,6 +102,9 @@ static __attribute__((noinline)) void rub(interface *s, const uint8_t before[RG_
         rg_mask broken = bit_mask(bits, q);
         if (rg_any(broken)) {
             rg_mask now = broken & ~bit_mask(before, q);
+            if (rises(s)) {
+                load_risen_law(s, q);
+            }
             add_friction(s, q, g[q], n[q], broken, now, turn);
             add_bond(s, q, g[q], n[q], broken, now, turn);
         }
@@ -217,6 +224,9 @@ RG_INLINE void crack_energy(interface *s, rg_vec sum[RG_E_INTERFACE], law_functi
     mid_tangents(s, g);
     mid_surface(g, n, area);
     for (int q = 0; q < RG_POINTS; q++) {
+        if (rises(s)) {
+            load_risen_law(s, q);
+        }
         broken_energy(s, q, n[q], bit_mask(broken, q), bit_mask(unlinked, q), sum, law, activation);
     }
 }

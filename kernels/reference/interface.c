@@ -29,7 +29,8 @@ typedef struct {
 
 /* Crack state of a point, the memory of its law, and its friction. */
 typedef struct {
-    rg_real *state[RG_CRACK], *memory[RG_LAW_MEMORY], *friction[RG_FRICTION], *loan, *bond[RG_BOND];
+    rg_real *state[RG_CRACK], *memory[RG_LAW_MEMORY], *friction[RG_FRICTION], *loan, *bond[RG_BOND],
+        *rise[RG_RISE];
 } crack;
 
 /* Whether side k of interface i is what `side[0]` names: the minus side, or the own one of a tile-boundary
@@ -145,7 +146,9 @@ static void sample_traction(const rg_interface_args *args, size_t i, int q, poin
 static crack crack_of(const rg_interface_args *args, size_t i, int q) {
     rg_real *block = args->crack + i / RG_LANES * args->crack_stride;
     int memory = rg_law_facts_of(args->law.law, args->law.shape, args->law.beta).memory;
-    crack found = {{NULL}, {NULL}, {NULL}, NULL, {NULL}};
+    crack found = {{NULL}, {NULL}, {NULL}, NULL, {NULL}, {NULL}};
+    for (int k = 0; k < RG_RISE && args->law.rise.rate > 0; k++)
+        found.rise[k] = args->crack + rg_rise_index(&args->law, i, q, k, args->crack_stride);
     for (int b = 0; b < RG_BOND && args->law.shear == RG_SHEAR_FADING; b++)
         found.bond[b] =
             block + RG_CRACK_BLOCK + (size_t)(memory * RG_POINTS + q * RG_BOND + b) * RG_LANES + i % RG_LANES;
@@ -162,15 +165,16 @@ static crack crack_of(const rg_interface_args *args, size_t i, int q) {
 
 /* ---- 1. Criterion (5.3, 5.17), and the opening with which a point that breaks starts ---- */
 
-/* Whether an unbroken point breaks now; if so, `direction` is that of its first opening. */
-static bool breaks(const rg_cohesive *law, point *p, double direction[3]) {
+/* Effective traction of an unbroken point, and the direction of its first opening if it breaks now; 0 below
+ * half of the strength. */
+static double effective_traction(const rg_cohesive *law, point *p, double direction[3]) {
     double beta2 = p->beta * p->beta, shear[3];
     double weight = p->beta > 0 ? fmax(1, 1 / beta2) : 1;
     double limit = p->strength * p->area;
     if (p->area == 0 || !isfinite(law->strength))
-        return false;
+        return 0;
     if (!(rg_reference_dot(p->traction, p->traction) * weight > 0.25 * limit * limit))
-        return false;
+        return 0;
     double across = rg_reference_dot(p->traction, p->normal) / p->current;
     double pull = fmax(0, across);
     for (int c = 0; c < 3; c++)
@@ -185,7 +189,33 @@ static bool breaks(const rg_cohesive *law, point *p, double direction[3]) {
         effective = sqrt(pull * pull + rg_reference_dot(shear, shear) / beta2);
     for (int c = 0; c < 3; c++)
         direction[c] = p->beta > 0 ? (shear[c] / beta2 + pull * p->normal[c]) / effective : p->normal[c];
-    return effective > p->strength;
+    return effective;
+}
+
+/* Strength of a point whose effective traction is not 0, by its mean rate since half of the strength. */
+static void raise_strength(const rg_interface_args *args, size_t i, point *p, const crack *k,
+                           double effective) {
+    const rg_rise *rise = &args->law.rise;
+    double step = args->step, exponent = args->rise == NULL ? rise->exponent : args->rise[i];
+    bool anew = *k->rise[RG_RISE_FACTOR] == 0 || args->time - *k->rise[RG_RISE_LAST] > 1.5 * step;
+    if (anew) {
+        *k->rise[RG_RISE_STRESS] = (rg_real)(step > 0 ? fmin(effective, p->strength / 2) : effective);
+        *k->rise[RG_RISE_SPAN] = (rg_real)step;
+    } else if ((rg_real)args->time > *k->rise[RG_RISE_LAST])
+        *k->rise[RG_RISE_SPAN] += (rg_real)step;
+    double span = *k->rise[RG_RISE_SPAN];
+    double rate = span > 0 ? fmax(0, effective - *k->rise[RG_RISE_STRESS]) / span : 0;
+    *k->rise[RG_RISE_LAST] = (rg_real)args->time;
+    *k->rise[RG_RISE_FACTOR] = (rg_real)fmin(rise->most, pow(fmax(1, rate / rise->rate), exponent));
+}
+
+/* The law at a point by the factor of its strength. */
+static void apply_rise(const rg_interface_args *args, point *p, const crack *k) {
+    if (!(args->law.rise.rate > 0))
+        return;
+    double factor = fmax(1, *k->rise[RG_RISE_FACTOR]);
+    p->strength *= factor;
+    p->opening /= factor;
 }
 
 /* Opening from which a point that switches starts (m). */
@@ -546,9 +576,15 @@ static void point_traction(const rg_interface_args *args, size_t i, int q, point
     bool broken = args->broken[i] >> q & 1;
     for (int c = 0; c < 3; c++)
         t[c] = p->dg[c];
-    if (!broken && !breaks(&args->law, p, direction))
+    double effective = broken ? 0 : effective_traction(&args->law, p, direction);
+    if (!broken && !(effective > 0))
         return;
     crack k = crack_of(args, i, q);
+    if (!broken && args->law.rise.rate > 0)
+        raise_strength(args, i, p, &k, effective);
+    apply_rise(args, p, &k);
+    if (!broken && !(effective > p->strength))
+        return;
     if (!broken) {
         activate(args, p, direction, &k);
         set_bit(&args->broken[i], q, true);
@@ -604,6 +640,7 @@ static void point_energy(const rg_interface_args *args, size_t i, int q, double 
     if (!broken)
         return;
     crack k = crack_of(args, i, q);
+    apply_rise(args, &p, &k);
     opening o = measure(&p, &k);
     rg_law_answer a = ask(args, &p, &o, &k, *k.state[RG_CRACK_OPENING], false);
     if (unlinked)

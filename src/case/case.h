@@ -134,8 +134,8 @@ typedef struct {
     double opens_at; /* ... this time on (s); 0: from the start */
     /* Numbers, or where the expression beside them is no number that: of these faces (Pa, J/m^2); without an
      * expression the interface's. */
-    double strength, energy, beta, friction;
-    rg_expr *strength_at, *energy_at, *beta_at, *friction_at;
+    double strength, energy, beta, friction, rise;
+    rg_expr *strength_at, *energy_at, *beta_at, *friction_at, *rise_at;
     double modulus, area; /* of Weibull's distribution (m^2); modulus 0: the interface's */
     int64_t seed;         /* 0: the interface's */
 } rg_face_set;
@@ -282,6 +282,7 @@ typedef struct {
         double onset; /* of a conserving activation (kernels.h: RG_ONSET) */
         rg_contact contact;
         double friction;                     /* coefficient of closed faces */
+        rg_rise rise;                        /* of strengths with the rate of stress; rate 0: none */
         double shape[RG_LAWS][RG_LAW_SHAPE]; /* parameters of its own of each law */
         int sets;
         rg_face_set *set; /* faces with properties of their own */

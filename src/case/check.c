@@ -193,6 +193,9 @@ static const char *why_unused(const scan *s, const rg_key *key, char *text, size
     if (key->group == RG_GROUP_WEIBULL) {
         return "not used without interface.weibull.modulus";
     }
+    if (key->group == RG_GROUP_RISE) {
+        return "not used without interface.rise.rate";
+    }
     if (key->group == RG_GROUP_CONTACT) {
         return "not used, because contact.model is interfaces";
     }
@@ -357,6 +360,8 @@ static void learn(rg_check *ck, const rg_key *key, const rg_node *node, bool goo
         rg_mass_rule(ck, node);
     } else if (key->offset == offsetof(rg_case, interface.weibull.modulus)) {
         ck->usage[RG_GROUP_WEIBULL] = node == NULL ? RG_UNUSED : good ? RG_USED : RG_UNSURE;
+    } else if (key->offset == offsetof(rg_case, interface.rise.rate)) {
+        ck->usage[RG_GROUP_RISE] = node == NULL ? RG_UNUSED : good ? RG_USED : RG_UNSURE;
     } else if (key->offset == offsetof(rg_case, mesh.file) && node != NULL) {
         ck->usage[RG_GROUP_BOX] = RG_UNUSED;
         ck->box = false;

@@ -49,8 +49,8 @@ static void refuse(rg_check *ck, const rg_node *item, const char *path, const ch
 
 /* Faces that never break have none of the properties of those that do; form intrinsic has no others. */
 static void check_breaking(rg_check *ck, const rg_node *item, const rg_face_set *set, const char *path) {
-    static const char *const keys[] = {"strength",        "energy",       "beta",        "friction",
-                                       "weibull.modulus", "weibull.area", "weibull.seed"};
+    static const char *const keys[] = {"strength", "energy",          "beta",         "friction",
+                                       "rise",     "weibull.modulus", "weibull.area", "weibull.seed"};
     if (set->breaking != RG_BREAKING_NEVER) {
         return;
     }
@@ -64,8 +64,8 @@ static void check_breaking(rg_check *ck, const rg_node *item, const rg_face_set 
 
 /* Faces that are open have no law, only contact and friction. */
 static void check_open(rg_check *ck, const rg_node *item, const rg_face_set *set, const char *path) {
-    static const char *const keys[] = {"law",          "strength",    "energy", "beta", "weibull.modulus",
-                                       "weibull.area", "weibull.seed"};
+    static const char *const keys[] = {"law",  "strength",        "energy",       "beta",
+                                       "rise", "weibull.modulus", "weibull.area", "weibull.seed"};
     for (size_t i = 0; set->open && i < sizeof keys / sizeof *keys; i++) {
         refuse(ck, item, path, keys[i], "not used, because this set is open");
     }
@@ -91,6 +91,12 @@ static void check_shear(rg_check *ck, const rg_node *item, const rg_face_set *se
     if (!none && ck->c->interface.contact == RG_CONTACT_FLUX) {
         refuse(ck, item, path, "friction",
                "contact flux holds closed faces by all DG terms, so they do not slide");
+    }
+}
+
+static void check_rise(rg_check *ck, const rg_node *item, const char *path) {
+    if (ck->usage[RG_GROUP_RISE] == RG_UNUSED) {
+        refuse(ck, item, path, "rise", "not used without interface.rise.rate");
     }
 }
 
@@ -126,5 +132,6 @@ void rg_face_set_rule(rg_check *ck, const rg_node *list, int i, const char *path
         check_open(ck, item, set, path);
         check_shear(ck, item, set, path);
         check_weibull(ck, item, set, path);
+        check_rise(ck, item, path);
     }
 }

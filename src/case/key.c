@@ -236,6 +236,8 @@ bool rg_key_used(const rg_key *key, const void *base) {
         return rg_group_used(key->group, base);
     case RG_GROUP_WEIBULL:
         return ((const rg_case *)base)->interface.weibull.modulus > 0;
+    case RG_GROUP_RISE:
+        return ((const rg_case *)base)->interface.rise.rate > 0;
     case RG_GROUP_CONTACT:
         return ((const rg_case *)base)->contact.model == RG_CONTACT_GENERAL;
     case RG_GROUP_LAW:

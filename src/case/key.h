@@ -48,6 +48,7 @@ typedef enum {
     RG_GROUP_SWITCH,     /* if points switch from DG to a law: there is one, and DG terms */
     RG_GROUP_ONSET,      /* ... by the conserving activation */
     RG_GROUP_WEIBULL,    /* if interface.weibull.modulus is given */
+    RG_GROUP_RISE,       /* if interface.rise.rate is given */
     RG_GROUP_CONTACT,    /* if contact.model is general */
     RG_GROUP_LINE,       /* boundary entries: if a velocity or displacement is prescribed */
     RG_GROUP_COMPONENT,  /* ... of a component */

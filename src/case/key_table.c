@@ -243,6 +243,13 @@ static const rg_key case_keys[] = {
      .law = RG_LAW_##NAME, CASE(interface.shape[RG_LAW_##NAME][index]), MEANS(words)},
 #include "laws.h"
 #undef RG_LAW_PARAMETER
+    {.name = "interface.rise.rate", .unit = "Pa/s", REAL, ABOVE(0), ELSE("strengths do not rise"), GROUP(SWITCH),
+     CASE(interface.rise.rate),
+     MEANS("rate of stress r_0 beyond which strengths rise: times (r/r_0)^exponent, r the mean rate since half of the strength; the energy stays")},
+    {.name = "interface.rise.exponent", REAL, FROM_TO(0, 1), REQUIRED, GROUP(RISE), CASE(interface.rise.exponent),
+     MEANS("of the rate of stress; of concrete in tension 0.02 to 0.03 from 1e5 Pa/s on")},
+    {.name = "interface.rise.most", REAL, FROM(1), DEFAULT(10), GROUP(RISE), CASE(interface.rise.most),
+     MEANS("most that strengths rise by, times")},
     {.name = "interface.sets", .type = RG_KEY_LIST, ELSE("none"), GROUP(COHESIVE), CASE(interface.set), .entry = &rg_face_set_table,
      .offset_count = offsetof(rg_case, interface.sets),
      MEANS("faces with properties of their own; of those that select a face the last one counts")},
@@ -352,6 +359,8 @@ static const rg_key face_set_keys[] = {
      MEANS("weight of shear against opening, but in form intrinsic")},
     {.name = "friction", FACE, FROM(0), ELSE("interface.friction"), OF_SET(friction),
      MEANS("Coulomb's coefficient of these faces, closed")},
+    {.name = "rise", FACE, FROM(0), ELSE("interface.rise.exponent"), OF_SET(rise),
+     MEANS("exponent of the rate of stress by which their strength rises, with interface.rise")},
     {.name = "weibull.modulus", REAL, ABOVE(0), ELSE("interface.weibull.modulus"), .offset = offsetof(rg_face_set, modulus),
      MEANS("of strengths that differ at random")},
     {.name = "weibull.area", .unit = "m2", REAL, ABOVE(0), ELSE("required with weibull.modulus"), .offset = offsetof(rg_face_set, area),

@@ -401,6 +401,8 @@ static void put_conditions(writer *w, const rg_key_table *table, const char *sec
         put_presence(w, section, "file", RG_GROUP_BOX, false);
     } else if (strcmp(section, "interface.weibull.") == 0) {
         put_presence(w, section, "modulus", RG_GROUP_WEIBULL, true);
+    } else if (strcmp(section, "interface.rise.") == 0) {
+        put_presence(w, section, "rate", RG_GROUP_RISE, true);
     }
     if (material || interface) {
         close_group(w, ']');

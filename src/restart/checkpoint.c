@@ -18,6 +18,7 @@
 #include "restart/checksum.h"
 #include "restart/state_table.h"
 #include "revision.h"
+#include "solver/tile.h"
 
 enum { FORMAT_VERSION = 2, WORD = 32 };
 
@@ -394,7 +395,7 @@ static bool get_group(const rg_h5_file *f, rg_checkpoints *k, const char *name, 
 static bool get_all(rg_h5_file *f, rg_checkpoints *k) {
     rg_solver *s = k->solver;
     bool ok = get_group(f, k, "run", RG_OF_RUN) && get_group(f, k, "element", RG_OF_ELEMENT);
-    memset(s->broken, 0, s->domain->iblocks * RG_LANES); /* what another attempt may have left */
+    rg_faces_forget(s); /* what another attempt may have left */
     memset(s->unlinked, 0, s->domain->iblocks * RG_LANES);
     rg_state_table table[RG_MAX_STATE];
     int tables = rg_state_tables(k->state, table);

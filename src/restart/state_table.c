@@ -5,6 +5,7 @@
 
 #include "base/mem.h"
 #include "domain/sparse.h"
+#include "solver/tile.h"
 
 /* A record of the table on this rank: its key, and where its arrays have it. */
 typedef struct {
@@ -48,13 +49,13 @@ hid_t rg_state_h5_type(const rg_state_array *a) {
 
 /* ---- records of this rank ---- */
 
-static size_t face_entries(const rg_solver *s, bool broken, entry *list) {
+static size_t face_entries(const rg_solver *s, bool marked, entry *list) {
     const rg_domain *d = s->domain;
     size_t n = 0;
     for (size_t t = 0; t < d->tiles; t++) {
         for (size_t i = d->tile[t].ibegin * RG_LANES; i < d->tile[t].iend * RG_LANES; i++) {
             double normal[3];
-            if ((!broken || s->broken[i] != 0) &&
+            if ((!marked || rg_face_is_marked(s, i)) &&
                 rg_interface_area(d, i, normal) >
                     0) { /* not padding, which may break in the intrinsic form */
                 list[n++] = (entry){rg_face_number(d, &d->tile[t], i), i};
@@ -65,12 +66,12 @@ static size_t face_entries(const rg_solver *s, bool broken, entry *list) {
 }
 
 /* At least as many as face_entries finds. */
-static size_t most_faces(const rg_solver *s, bool broken) {
+static size_t most_faces(const rg_solver *s, bool marked) {
     size_t all = s->domain->iblocks * RG_LANES, n = 0;
     for (size_t i = 0; i < all; i++) {
-        n += s->broken[i] != 0;
+        n += rg_face_is_marked(s, i);
     }
-    return broken ? n : all;
+    return marked ? n : all;
 }
 
 /* Those that have something to keep, or (all) those that there are. */

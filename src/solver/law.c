@@ -52,7 +52,8 @@ rg_cohesive rg_law_make(const rg_case *c) {
                        .contact = c->interface.contact,
                        .shear = c->interface.shear,
                        .sliding = has_friction(c) ? RG_SLIDING_COULOMB : RG_SLIDING_FREE,
-                       .friction = c->interface.friction};
+                       .friction = c->interface.friction,
+                       .rise = c->interface.rise};
     memcpy(law.shape, c->interface.shape[law.law], sizeof law.shape);
     rg_law_facts facts = facts_of(&law);
     if ((facts.forms & RG_NORMAL_MEASURE) != 0) {
@@ -77,7 +78,9 @@ size_t rg_crack_stride(const rg_cohesive *law) {
     size_t friction = law->sliding == RG_SLIDING_COULOMB ? RG_FRICTION_BLOCK : 0;
     size_t bond = law->shear == RG_SHEAR_FADING ? RG_BOND_BLOCK : 0;
     size_t loan = law->criterion == RG_CRITERION_MOHR_COULOMB ? RG_LOAN_BLOCK : 0;
-    return RG_CRACK_BLOCK + (size_t)facts_of(law).memory * RG_POINTS * RG_LANES + bond + loan + friction;
+    size_t rise = law->rise.rate > 0 ? RG_RISE_BLOCK : 0;
+    return RG_CRACK_BLOCK + (size_t)facts_of(law).memory * RG_POINTS * RG_LANES + bond + rise + loan +
+           friction;
 }
 
 /* Breaks a face whose elements are of tile t and opens it beyond full separation. */

@@ -31,6 +31,7 @@ void rg_model_free(rg_model *m) {
         rg_free(m->scale);
         rg_free((void *)m->beta);
         rg_free((void *)m->friction);
+        rg_free((void *)m->rise);
         rg_free((void *)m->opening);
         rg_free((void *)m->opening_area);
         rg_free(m);

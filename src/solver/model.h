@@ -18,9 +18,9 @@ typedef struct {
     const rg_material *material; /* [materials], at rest */
     rg_gradient gradient;
     rg_cohesive law;
-    rg_real *scale;                 /* layout as in rg_interface_args; NULL: all faces alike. Of a face that
-                                       opens at a time infinite before, 0 after */
-    const rg_real *beta, *friction; /* likewise */
+    rg_real *scale; /* layout as in rg_interface_args; NULL: all faces alike. Of a face that
+                       opens at a time infinite before, 0 after */
+    const rg_real *beta, *friction, *rise; /* likewise */
     double stiffest; /* largest ratio of strength to critical opening, over that of the law; 1: all alike */
     size_t openings;
     const rg_opening *opening;  /* [openings] */

@@ -12,10 +12,10 @@
 /* What a face has. */
 typedef struct {
     bool breaks, open;
-    int set;                                 /* whose they are; -1: the interface's */
-    double opens_at;                         /* s; 0: an open face is so from the start */
-    double strength, energy, beta, friction; /* before they differ at random (Pa, J/m^2) */
-    double modulus, area;                    /* of Weibull's distribution (m^2); modulus 0: none */
+    int set;                                       /* whose they are; -1: the interface's */
+    double opens_at;                               /* s; 0: an open face is so from the start */
+    double strength, energy, beta, friction, rise; /* before they differ at random (Pa, J/m^2) */
+    double modulus, area;                          /* of Weibull's distribution (m^2); modulus 0: none */
     int64_t seed;
 } properties;
 
@@ -27,7 +27,7 @@ typedef struct {
 /* Expressions of the interface and of each set, by whose number the first bad one is found. */
 enum { ANY = -1 };
 
-enum { WHERE, STRENGTH, ENERGY, BETA, FRICTION, EXPRESSIONS };
+enum { WHERE, STRENGTH, ENERGY, BETA, FRICTION, RISE, EXPRESSIONS };
 
 /* Looks at the faces, one after the other. */
 typedef struct {
@@ -143,7 +143,7 @@ static double value_of(search *look, int64_t which, double number, const rg_expr
         return number;
     }
     double value = rg_expr_face_value(at, middle, normal);
-    bool may_vanish = which % EXPRESSIONS == BETA || which % EXPRESSIONS == FRICTION;
+    bool may_vanish = which % EXPRESSIONS >= BETA;
     if (!isfinite(value) || value < 0 || (value <= 0 && !may_vanish)) {
         rg_first_bad_note(&look->bad, which, middle, value);
     }
@@ -175,6 +175,7 @@ static properties find_properties(search *look, const rg_tile *t, size_t face, c
         [ENERGY] = {set->energy, c->interface.energy, set->energy_at, c->interface.energy_at},
         [BETA] = {set->beta, look->s->model->law.beta, set->beta_at, NULL},
         [FRICTION] = {set->friction, c->interface.friction, set->friction_at, NULL},
+        [RISE] = {set->rise, c->interface.rise.exponent, set->rise_at, NULL},
     };
     double value[EXPRESSIONS] = {0};
     for (int k = STRENGTH; k < EXPRESSIONS; k++) {
@@ -191,6 +192,7 @@ static properties find_properties(search *look, const rg_tile *t, size_t face, c
                         .energy = value[ENERGY],
                         .beta = value[BETA],
                         .friction = value[FRICTION],
+                        .rise = value[RISE],
                         .modulus = random ? set->modulus : c->interface.weibull.modulus,
                         .area = random ? set->area : c->interface.weibull.area,
                         .seed = random && set->seed > 0 ? set->seed : c->interface.weibull.seed};
@@ -227,7 +229,7 @@ static factors factors_of(const search *look, const properties *p, const double 
 
 /* Fields that are filled, NULL where all faces are alike. */
 typedef struct {
-    rg_real *scale, *beta, *friction;
+    rg_real *scale, *beta, *friction, *rise;
     double stiffest; /* as in rg_model, of this rank */
     rg_opening *opening;
     size_t openings;
@@ -259,6 +261,9 @@ static void fill_face(search *look, const rg_tile *t, size_t i, fields *to) {
     if (to->friction != NULL) {
         to->friction[i] = (rg_real)p.friction;
     }
+    if (to->rise != NULL) {
+        to->rise[i] = (rg_real)p.rise;
+    }
     if (p.breaks && p.open && p.opens_at > 0) {
         add_opening(to, &(rg_opening){(size_t)(t - look->s->domain->tile), i, p.set, p.opens_at});
     }
@@ -288,7 +293,7 @@ static void refuse_empty_sets(const search *look) {
 
 /* Ends the run at the first expression that is not what it must be. */
 static void refuse_bad_values(search *look) {
-    static const char *const key[] = {"where", "strength", "energy", "beta", "friction"};
+    static const char *const key[] = {"where", "strength", "energy", "beta", "friction", "rise"};
     const rg_case *c = look->s->input;
     const rg_first_bad *bad = &look->bad;
     if (!rg_first_bad_lowest(&look->bad, look->s->comm)) {
@@ -299,15 +304,15 @@ static void refuse_bad_values(search *look) {
     const rg_expr *at[] = {of == NULL ? NULL : of->where,
                            of == NULL ? c->interface.strength_at : of->strength_at,
                            of == NULL ? c->interface.energy_at : of->energy_at,
-                           of == NULL ? NULL : of->beta_at, of == NULL ? NULL : of->friction_at};
+                           of == NULL ? NULL : of->beta_at,
+                           of == NULL ? NULL : of->friction_at,
+                           of == NULL ? NULL : of->rise_at};
     char place[32] = "";
     if (of != NULL) {
         snprintf(place, sizeof place, ".sets[%d]", set);
     }
     rg_speak(look->s->comm);
-    const char *wrong = !isfinite(bad->value)                ? "finite"
-                        : which == BETA || which == FRICTION ? "0 or positive"
-                                                             : "positive";
+    const char *wrong = !isfinite(bad->value) ? "finite" : which >= BETA ? "0 or positive" : "positive";
     rg_fatal(RG_USAGE, "%s: interface%s.%s: %s is not %s at (%g, %g, %g)", c->path, place, key[which],
              rg_expr_text(at[which]), wrong, bad->x[0], bad->x[1], bad->x[2]);
 }
@@ -370,7 +375,8 @@ void rg_strength_make(const rg_solver *s, rg_model *m) {
                    .bad = {.which = RG_NOWHERE}};
     fields to = {.scale = field_if(true, 2 * slots),
                  .beta = field_if(sets_have(c, offsetof(rg_face_set, beta_at)), slots),
-                 .friction = field_if(sets_have(c, offsetof(rg_face_set, friction_at)), slots)};
+                 .friction = field_if(sets_have(c, offsetof(rg_face_set, friction_at)), slots),
+                 .rise = field_if(sets_have(c, offsetof(rg_face_set, rise_at)), slots)};
     find_materials(&look);
     find_groups(&look);
     for (size_t t = 0; t < d->tiles; t++) { /* expressions are not for threads */
@@ -392,5 +398,6 @@ void rg_strength_make(const rg_solver *s, rg_model *m) {
     m->opening_area = rg_case_opens(c) ? opening_areas(s, &to) : NULL;
     m->beta = to.beta;
     m->friction = to.friction;
+    m->rise = to.rise;
     MPI_Allreduce(&to.stiffest, &m->stiffest, 1, MPI_DOUBLE, MPI_MAX, s->comm);
 }

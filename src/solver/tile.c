@@ -1,5 +1,6 @@
 #include "solver/tile.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "base/mem.h"
@@ -87,6 +88,7 @@ rg_interface_args rg_tile_interfaces(const rg_solver *s, const rg_tile *t, const
                                                                 : s->model->scale + t->ibegin * 2 * RG_LANES,
                                .beta = of_faces(s->model->beta, first),
                                .friction = of_faces(s->model->friction, first),
+                               .rise = of_faces(s->model->rise, first),
                                .broken = s->broken + first,
                                .unlinked = s->unlinked + first,
                                .active = s->active + t->ibegin,
@@ -105,11 +107,35 @@ bool rg_face_is_open(const rg_solver *s, size_t i) {
     return s->model->scale != NULL && !(s->model->scale[i / RG_LANES * 2 * RG_LANES + i % RG_LANES] > 0);
 }
 
+static rg_real *risen(const rg_solver *s, size_t i, int q) {
+    return s->crack + rg_rise_index(&s->model->law, i, q, RG_RISE_FACTOR, s->model->crack_stride);
+}
+
 double rg_separation(const rg_solver *s, size_t i, int q) {
     const rg_real *scale =
         s->model->scale == NULL ? NULL : s->model->scale + (i / RG_LANES * 2 + 1) * RG_LANES;
     double whole = s->model->law.separation * (scale == NULL ? 1 : scale[i % RG_LANES]);
+    if (s->model->law.rise.rate > 0) {
+        whole /= fmax(1, *risen(s, i, q));
+    }
     return is_mixed(&s->model->law) ? whole * (1 + rg_law_memory(s, i, q)) : whole;
+}
+
+bool rg_face_is_marked(const rg_solver *s, size_t i) {
+    bool marked = s->broken[i] != 0;
+    for (int q = 0; s->model->law.rise.rate > 0 && q < RG_POINTS; q++) {
+        marked = marked || *risen(s, i, q) > 0;
+    }
+    return marked;
+}
+
+void rg_faces_forget(rg_solver *s) {
+    memset(s->broken, 0, s->domain->iblocks * RG_LANES);
+    for (size_t i = 0; s->model->law.rise.rate > 0 && i < s->domain->iblocks * RG_LANES; i++) {
+        for (int q = 0; q < RG_POINTS; q++) {
+            *risen(s, i, q) = 0;
+        }
+    }
 }
 
 bool rg_point_is_broken(const rg_solver *s, size_t i, int q) {

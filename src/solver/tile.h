@@ -75,6 +75,13 @@ bool rg_face_is_open(const rg_solver *s, size_t i);
 /* Opening of full separation at point q of interface i (m), which is broken if the law is RG_MIXED. */
 double rg_separation(const rg_solver *s, size_t i, int q);
 
+/* Whether interface i has a state of its own: some point has broken, or has been tested for a strength that
+ * rises with the rate of stress. */
+bool rg_face_is_marked(const rg_solver *s, size_t i);
+
+/* Takes that back from all faces. */
+void rg_faces_forget(rg_solver *s);
+
 /* Some point of interface i is broken. */
 bool rg_face_is_broken(const rg_solver *s, size_t i);
 

@@ -125,7 +125,8 @@ def test_restart_of_less_output_on_other_ranks(run, tmp_path):
 VARIANTS = {  # test_checkpoint.c has more, on one rank
     "incomplete": {"interface.form": "incomplete", "mass": "lumped"},
     "thesis": {"defaults": 0, "interface.activation": "total", "interface.contact": "flux"},
-    "conserving": {"interface.activation": "conserving", "interface.criterion": "mohr-coulomb", "interface.friction": 0.4, "interface.law": "linear" if SINGLE else "rate"},
+    "conserving": {"interface.activation": "conserving", "interface.criterion": "mohr-coulomb", "interface.friction": 0.4, "interface.law": "linear" if SINGLE else "rate",
+                   "interface.rise": {"rate": 1e15, "exponent": 0.1, "most": 2}, "interface.sets": [{"where": "z > 0", "rise": 0.05}]},
     "intrinsic": {"interface.form": "intrinsic", "interface.law": "xu-needleman"},
     "viscosity": {"viscosity": {"linear": 0.06, "quadratic": 1.2}},
     **EVERYWHERE,

@@ -165,6 +165,12 @@ static const mistake mistakes[] = {
      "exponential; allowed: with activation conserving: $RIGID_LAWS\n"},
     {"  law: linear\n", "  law: exponential\n  form: intrinsic\n  onset: 0.2\n",
      ":12:3: interface.onset: 0.2" BY_FORM},
+    {"  energy: 34\n", "  energy: 34\n  rise: {exponent: 0.1}\n  sets: [{where: z, rise: 0}]\n",
+     ":13:10: interface.rise.exponent: 0.1: not used without interface.rise.rate\n"
+     ":14:21: interface.sets[0].rise: 0: not used without interface.rise.rate\n"},
+    {"  energy: 34\n", "  energy: 34\n  rise: {rate: 1e5, most: 0.5}\n",
+     ":13:9: interface.rise.exponent: missing; allowed: number >= 0 and <= 1\n"
+     ":13:27: interface.rise.most: 0.5: out of range; allowed: number >= 1\n"},
     {"  law: linear\n", "  law: free\n",
      ":12:3: interface.energy: 34: not used, because interface.law is free\n"},
     {"output:\n", "output:\n  dir: 12\n",

@@ -488,7 +488,7 @@ static const mistake materials[] = {
      "twice: material, tin, zinc\n"
      ":20:7: interface.sets[6]: 8: not a mapping of keys; allowed: list of {set, where, between, law, open, "
      "at, "
-     "strength, energy, beta, friction, weibull}\n"},
+     "strength, energy, beta, friction, rise, weibull}\n"},
     {"output:\n",
      "output:\n"
      "  fields: [damage, rank, plastic_strain, regime, triaxiality, material]\n"

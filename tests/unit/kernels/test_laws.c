@@ -368,7 +368,8 @@ static size_t stride_of(const input *in) {
     size_t friction = in->law.sliding == RG_SLIDING_COULOMB ? RG_FRICTION_BLOCK : 0;
     size_t loan = in->law.criterion == RG_CRITERION_MOHR_COULOMB ? RG_LOAN_BLOCK : 0;
     size_t bond = in->law.shear == RG_SHEAR_FADING ? RG_BOND_BLOCK : 0;
-    return RG_CRACK_BLOCK + friction + loan + bond +
+    size_t rise = in->law.rise.rate > 0 ? RG_RISE_BLOCK : 0;
+    return RG_CRACK_BLOCK + friction + loan + bond + rise +
            (size_t)rg_law_facts_of(in->law.law, in->law.shape, in->law.beta).memory * RG_POINTS * RG_LANES;
 }
 
@@ -395,7 +396,7 @@ static void output_free(output *out) {
 
 /* Properties of each face. */
 typedef struct {
-    const rg_real *scale, *beta, *friction;
+    const rg_real *scale, *beta, *friction, *rise;
 } faces;
 
 /* Three steps, each with larger displacements, so that memories matter; then the energies. */
@@ -408,6 +409,7 @@ static output run(const rg_kernels *set, const input *in, const faces *own) {
     args.scale = own == NULL ? NULL : own->scale;
     args.beta = own == NULL ? NULL : own->beta;
     args.friction = own == NULL ? NULL : own->friction;
+    args.rise = own == NULL ? NULL : own->rise;
     args.step = 1e-9;
     rg_real *u = input_alloc(INPUT_EBLOCKS * RG_NODE_BLOCK * sizeof *u);
     args.u = u;
@@ -415,6 +417,7 @@ static output run(const rg_kernels *set, const input *in, const faces *own) {
         static const double grown[3] = {1, 1.03, 0.98};
         for (size_t k = 0; k < INPUT_EBLOCKS * RG_NODE_BLOCK; k++)
             u[k] = (rg_real)(grown[step] * in->u[k]);
+        args.time += args.step;
         set->interface(&args, 0, INPUT_IBLOCKS);
     }
     set->interface_state(&(rg_interface_state_args){&args, out.energy}, 0, INPUT_IBLOCKS);
@@ -530,6 +533,11 @@ static void check_kernel(const rg_kernels *set, input_kind kind, const rg_cohesi
     size_t stride = stride_of(in), memory = (size_t)rg_law_facts_of(law->law, law->shape, law->beta).memory;
     compare_cracks(set->name, word, &out, &ref, stride);
     compare_kept(set->name, word, &(kept){"memory", stride, RG_CRACK_BLOCK, memory, 1}, &out, &ref);
+    size_t loan = law->criterion == RG_CRITERION_MOHR_COULOMB ? RG_LOAN_BLOCK : 0,
+           behind = law->sliding == RG_SLIDING_COULOMB ? loan + RG_FRICTION_BLOCK : loan;
+    if (law->rise.rate > 0)
+        compare_kept(set->name, word, &(kept){"rise", stride, stride - behind - RG_RISE_BLOCK, RG_RISE, 1},
+                     &out, &ref);
     if (law->shear == RG_SHEAR_FADING)
         compare_kept(
             set->name, word,
@@ -570,18 +578,20 @@ static void test_kernels(void **state) {
     rg_real *scale = input_alloc(2 * INPUT_ISLOTS * sizeof *scale),
             *some = input_alloc(2 * INPUT_ISLOTS * sizeof *some);
     rg_real *beta = input_alloc(INPUT_ISLOTS * sizeof *beta),
-            *friction = input_alloc(INPUT_ISLOTS * sizeof *beta);
+            *friction = input_alloc(INPUT_ISLOTS * sizeof *beta),
+            *rise = input_alloc(INPUT_ISLOTS * sizeof *beta);
     (void)state;
     for (size_t k = 0; k < 2 * INPUT_ISLOTS; k++)
         scale[k] = (rg_real)(0.7 + 0.6 * rg_hash_uniform(rg_hash(3, k)));
     for (size_t k = 0; k < INPUT_ISLOTS; k++) {
         beta[k] = (rg_real)fmax(0, 2 * rg_hash_uniform(rg_hash(4, k)) - 0.3);
         friction[k] = (rg_real)rg_hash_uniform(rg_hash(5, k));
+        rise[k] = (rg_real)(0.3 * rg_hash_uniform(rg_hash(6, k)));
     }
     memcpy(some, scale, 2 * INPUT_ISLOTS * sizeof *some);
     for (size_t k = 0; k < INPUT_ISLOTS; k += 11)
         some[k / RG_LANES * 2 * RG_LANES + k % RG_LANES] = (rg_real)INFINITY;
-    const faces own = {scale, NULL, NULL}, all = {some, beta, friction};
+    const faces own = {scale, NULL, NULL, NULL}, all = {some, beta, friction, rise};
     for (int k = 0; k < n; k++)
         for (int l = 0; l < (int)RG_LAWS; l++)
             for (int kind = 0; kind < 2 && exists((rg_law)l); kind++) {
@@ -618,12 +628,17 @@ static void test_kernels(void **state) {
                     law.shear = RG_SHEAR_RELEASED;
                     check_kernel(sets[k], (input_kind)kind, &law, NULL);
                     check_kernel(sets[k], (input_kind)kind, &law, &all);
+                    law.rise = (rg_rise){1e16, 0.1, 1.4};
+                    check_kernel(sets[k], (input_kind)kind, &law, NULL);
+                    law.shear = RG_SHEAR_FADING;
+                    check_kernel(sets[k], (input_kind)kind, &law, &all);
                 }
             }
     free(scale);
     free(some);
     free(beta);
     free(friction);
+    free(rise);
 }
 
 /* Of a face with a scale the answer is that of a law with these parameters; faces beside it do not matter. */

@@ -21,7 +21,7 @@ static void bench_link(face_bench *b, size_t i) {
 static size_t stride_of(const rg_cohesive *law) {
     int memory = rg_law_facts_of(law->law, law->shape, law->beta).memory;
     return RG_CRACK_BLOCK + (size_t)memory * RG_POINTS * RG_LANES +
-           (law->shear == RG_SHEAR_FADING ? RG_BOND_BLOCK : 0) +
+           (law->shear == RG_SHEAR_FADING ? RG_BOND_BLOCK : 0) + (law->rise.rate > 0 ? RG_RISE_BLOCK : 0) +
            (law->criterion == RG_CRITERION_MOHR_COULOMB ? RG_LOAN_BLOCK : 0) +
            (law->sliding == RG_SLIDING_COULOMB ? RG_FRICTION_BLOCK : 0);
 }

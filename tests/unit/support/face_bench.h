@@ -14,7 +14,7 @@
 enum {
     FACE_BENCH_ALL = 63, /* points */
     FACE_BENCH_CRACK = RG_CRACK_BLOCK + RG_LAW_MEMORY * RG_POINTS * RG_LANES + RG_BOND_BLOCK + RG_LOAN_BLOCK +
-                       RG_FRICTION_BLOCK,
+                       RG_RISE_BLOCK + RG_FRICTION_BLOCK,
 };
 
 /* How the kernel sees the face. */
