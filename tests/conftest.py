@@ -22,20 +22,21 @@ from launch import options as overrides  # noqa: E402
 
 PROGRAM = pathlib.Path(os.environ.get("RHEGMA", ROOT / "build" / "rhegma")).resolve()
 CASES = ROOT / "tests" / "cases"
+FRONT = {"output.crack_tips": [{"name": "left", "direction": [-1, 0, 0], "where": "abs(z) < 1e-4 && abs(nz) > 0.5"}],
+         "output.crack_fronts": [{"name": "front", "at": [0, 0, 0], "direction": [-2, 0, 0], "normal": [0, 0, 1], "radius": {"inner": 5e-5, "outer": 1.6e-4}, "length": 3e-4,
+                                  "tip": "left", "values": ["J"]}]}
 EVERYWHERE = {  # changes of fragments.yaml that must not change the bits, on any layout and through a restart
     "friction": {"interface.friction": 0.5, "interface.contact": "potential", "interface.activation": "conserving",
                  "interface.law": "benzeggagh-kenane", "interface.shear": "fading", "interface.strength": "4e8*(1.05 + 0.05*nx)", "interface.sets": [
         {"where": "x > 0", "beta": "y > 0 ? 0 : 1.5 + 0.2*ny", "energy": "30 + 5e4*x", "friction": 0.2, "weibull": {"modulus": 20, "area": 1e-9}},
-        {"where": "z*z < 1e-8", "law": "none"}]},
-    "continuous": {"interface.form": "continuous", "interface.faces": "nz*nz > 0.5"},
+        {"where": "z*z < 1e-8", "law": "none"}], **FRONT},
+    "continuous": {**FRONT, "interface.form": "continuous", "interface.faces": "nz*nz > 0.5"},
     "loads": {"materials": [{"name": "crystal", "where": "x > 0", "model": "anisotropic", "density": 3690, "young": [300e9, 250e9, 200e9], "poisson": [0.2, 0.3, 0.25],
                              "shear": [90e9, 110e9, 130e9], "orientation": {"angles": [20, 40, 60]}}],
               "interface.sets": [{"where": "abs(z) < 5e-5 && abs(nz) > 0.8 && x > 0", "open": True},
                                  {"where": "abs(z - 5.3e-4) < 5e-5 && abs(nz) > 0.8", "open": True, "at": 6e-8}],
               "tables": {"pulse": {"points": [[0, 0], [5e-8, 1], [2e-7, 0.2]], "smooth": True}},
               "output.crack_tips": [{"name": "left", "direction": [-1, 0, 0], "where": "abs(z) < 1e-4 && abs(nz) > 0.5", "distance": 5e-5}, {"name": "up", "direction": [0, 0, 2]}],
-              "output.crack_fronts": [{"name": "front", "at": [0, 0, 0], "direction": [-2, 0, 0], "normal": [0, 0, 1], "radius": {"inner": 5e-5, "outer": 1.6e-4}, "length": 3e-4,
-                                       "tip": "left", "values": ["J"]}],
               "output.sensors": [{"name": "end", "set": "z+", "values": ["uz", "vz", "szz"], "measures": ["mean", "min", "max", "integral"]},
                                  {"name": "core", "where": "abs(z) < 5e-4", "values": ["von_mises", "vx"], "measures": ["mean", "max"]}],
               "loads": [{"name": "pull", "set": "z+", "traction": {"x": "2e7*pulse(t)*(1 + 1e3*y)", "z": "3e8*pulse(t)"}},

@@ -521,7 +521,7 @@ static const rg_key crack_front_keys[] = {
     {.name = "normal", REAL3, ANY, REQUIRED, FRONT(normal), MEANS("of the plane of the crack, at right angles to the direction: of any length")},
     {.name = "radius.inner", .unit = "m", REAL, ABOVE(0), REQUIRED, FRONT(radius.inner), MEANS("about the front, of what the integral encloses: the cohesive zone, and an element or two")},
     {.name = "radius.outer", .unit = "m", REAL, ABOVE(0), REQUIRED, FRONT(radius.outer),
-     MEANS("the integral's weight falls from 1 to 0 between them; openings are those between them. There the solid should be elastic, all faces behind the front free, and no load")},
+     MEANS("the integral's weight falls from 1 to 0 between them; openings are those between them. There the solid should be elastic, all faces behind the front free, and no load; J and K are refused beside a pressure inside cracks")},
     {.name = "length", .unit = "m", REAL, ABOVE(0), ELSE("the whole front, through a body of one thickness"), FRONT(length),
      MEANS("of a piece of the front, about `at`; its weight falls linearly from its middle to its ends")},
     {.name = "symmetric", .type = RG_KEY_BOOL, ELSE("false"), FRONT(symmetric), MEANS("true: the body is one half, on rollers in the plane of the crack ahead of it")},

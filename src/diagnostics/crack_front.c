@@ -432,6 +432,14 @@ static void look(const front *f, const rg_solver *s, size_t slot, vicinity *v) {
     }
 }
 
+static bool has_gas(const rg_case *c) {
+    bool any = false;
+    for (int i = 0; i < c->loads; i++) {
+        any |= c->load[i].cracks;
+    }
+    return any;
+}
+
 /* Counts, extent and solid of a front, the same on all ranks. */
 static void survey(rg_crack_fronts *r, const rg_solver *s, int i) {
     front *f = &r->front[i];
@@ -444,6 +452,9 @@ static void survey(rg_crack_fronts *r, const rg_solver *s, int i) {
     }
     MPI_Allreduce(MPI_IN_PLACE, &v.elements, 3, MPI_INT64_T, MPI_SUM, r->comm);
     MPI_Allreduce(MPI_IN_PLACE, v.most, 4, MPI_DOUBLE, MPI_MAX, r->comm);
+    if (has_gas(s->input) && (f->in->values & ~by_opening) != 0) {
+        refuse(r, i, "J does not know of a pressure inside cracks; values: KI, KII, KIII");
+    }
     if (v.elements == 0) {
         refuse(r, i, "no element is within its outer radius");
     }

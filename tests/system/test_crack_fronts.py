@@ -187,6 +187,14 @@ def test_fronts_that_are_refused(tmp_path, front, message):
     assert told.returncode == 2 and told.stderr.endswith(f"output.crack_fronts[0]{message}\n"), told.stderr
 
 
+def test_gas_in_cracks_is_refused(tmp_path):
+    case = {**PULLED, "loads": [{"cracks": True, "pressure": 1}], "output": {"crack_fronts": [{"name": "a", **MOVING, "at": [3e-3, 0, 2e-3]}]}}
+    told = launch("check", written(tmp_path / "gas.yaml", case))
+    assert told.returncode == 2 and told.stderr.endswith("output.crack_fronts[0]: J does not know of a pressure inside cracks; values: KI, KII, KIII\n")
+    case["output"]["crack_fronts"][0]["values"] = ["KI"]
+    assert launch("check", written(tmp_path / "gas.yaml", case)).returncode == 0
+
+
 def test_check_tells_what_fronts_look_at(tmp_path):
     case = written(tmp_path / "front.yaml", {**PULLED, "output": {"crack_fronts": [{"name": "a", **MOVING, "at": [3e-3, 0, 2e-3]}]}})
     assert "crack front    a: 0.001 m long, " in launch("check", case).stdout

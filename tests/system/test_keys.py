@@ -210,3 +210,26 @@ def test_what_the_program_takes_is_valid(path, changes):
     ([[0, 0]], False), ([[0], [1]], False), ({"points": [[0, 0], [1, 1]], "smooth": 1}, False), ({"table": "a.csv"}, False), (3, False)])
 def test_tables(table, good):
     assert validator().is_valid({**rhegma.read_case(CASES[0]), "tables": {"f": table}}) == good
+
+
+# ---- the examples ----
+
+
+def uses(node, path=""):
+    """Keys that a case gives, as the reference writes them."""
+    if isinstance(node, dict):
+        for key, value in node.items():
+            yield from uses(value, f"{path}.{key}" if path else key)
+    elif isinstance(node, list) and any(isinstance(value, dict) for value in node):
+        for value in node:
+            yield from uses(value, f"{path}[]")
+    yield path
+
+
+def test_each_key_of_loads_and_supports_is_in_an_example():
+    """Of vectors one component; not sets, which need a mesh file where no side of a box is meant."""
+    groups = ("start", "tables", "loads", "boundary", "initial", "interface.sets[].open", "interface.sets[].at", "output.probes", "output.sensors", "output.crack_tips", "output.crack_fronts")
+    keys = [line.split("`")[1] for line in said("--markdown").splitlines() if line.startswith("| `")]
+    wanted = {key.removesuffix(".y").removesuffix(".z").removesuffix(".x") for key in keys if key.startswith(groups) and not key.endswith("[].set")}
+    used = {key.removesuffix(".y").removesuffix(".z").removesuffix(".x") for path in (ROOT / "bench/examples").rglob("*.yaml") for key in uses(rhegma.read_case(path))}
+    assert len(wanted) > 60 and wanted - used == set()

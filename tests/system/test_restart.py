@@ -227,8 +227,8 @@ AT_ONCE = {
     "bodies": [{"name": "ball", "shape": "sphere", "motion": "free", "at": [-1.2e-3, 0, -0.9e-3], "radius": 1e-3, "density": 8000, "velocity": {"x": 30}, "spin": {"y": 1e4}}],
     "output.fields": [], "output.interval": 1e-8, "output.energy_limit": 1e9, "checkpoint.steps": 20, "checkpoint.keep": 100,
     "output.probes": [{"name": "a", "at": [0.01e-3, 0.03e-3, 0.5e-3], "strain": True}],
-    "output.crack_fronts": [*EVERYWHERE["loads"]["output.crack_fronts"], {"name": "still", "at": [0, 0, 0], "direction": [-1, 0, 0], "normal": [0, 0, 1], "radius": {"inner": 4e-5, "outer": 1.5e-4},
-                                                                         "values": ["J", "K", "KI", "KII", "KIII"]}],
+    "output.crack_fronts": [{"name": name, "at": [0, 0, 0], "direction": [-1, 0, 0], "normal": [0, 0, 1], "radius": {"inner": 4e-5, "outer": 1.5e-4}, "values": ["KI", "KII", "KIII"],
+                             **more} for name, more in (("still", {}), ("front", {"tip": "left"}))],
 }
 
 
@@ -237,7 +237,7 @@ def test_everything_at_once_on_any_layout_and_through_a_restart(run, tmp_path):
     one = run(FRAGMENTS, sets=AT_ONCE)
     steps, history = one.summary["steps"], one.history
     assert one.summary["broken_area_m2"] > 0 and steps > 80
-    for name in ("pull_work", "gas_work", "bed_work", "fall_work", "hold_work", "roll_work", "catch_work", "ball_fx", "end_szz_max", "left_tip", "front_J", "still_KI", "a_exy"):
+    for name in ("pull_work", "gas_work", "bed_work", "fall_work", "hold_work", "roll_work", "catch_work", "ball_fx", "end_szz_max", "left_tip", "front_KI", "still_KI", "a_exy"):
         assert np.any(history[name] != 0) and np.ptp(history[name][np.isfinite(history[name])]) > 0, name
     for ranks, threads in ((1, 2), (5, 1)):
         assert_same_results(run(FRAGMENTS, ranks=ranks, threads=threads, sets=AT_ONCE), one, frames=-1)
