@@ -58,19 +58,83 @@ static bool are_near(const rg_contact_args *args, const rg_contact_pair *p) {
     return near;
 }
 
+/* Pairs that wait for the next step until they fill a vector. */
+typedef struct {
+    size_t pair[2 * WIDE];
+    int count;
+} queue;
+
+static void meet_some(const rg_contact_args *args, queue *q, int count) {
+    meet(args, q->pair, count);
+    q->count -= count;
+    for (int k = 0; k < q->count; k++) {
+        q->pair[k] = q->pair[count + k];
+    }
+}
+
+/* Lanes whose faces do not face each other, are no part of the way above each other, or lie beside each
+ * other: no corner of one on the inner side of an edge of the other one, seen along n. */
+static wide_mask are_apart(const meeting *m) {
+    wide n[3], low[2], high[2];
+    for (int c = 0; c < 3; c++) {
+        n[c] = m->normal[0][c] + m->normal[1][c];
+    }
+    wide_mask apart = (wide_mask)(wide_dot(m->normal[0], m->normal[1]) <= 0);
+    for (int k = 0; k < 2; k++) {
+        for (int i = 0; i < 3; i++) {
+            wide r[3], edge[3], inward[3], most = wide_splat(-INFINITY);
+            wide_minus(m->corner[k][i], m->corner[0][0], r);
+            wide z = wide_dot(r, n);
+            low[k] = i == 0 ? z : wide_select((wide_mask)(z < low[k]), z, low[k]);
+            high[k] = i == 0 ? z : wide_select((wide_mask)(z > high[k]), z, high[k]);
+            wide_minus(m->corner[k][(i + 1) % 3], m->corner[k][i], edge);
+            wide_cross(n, edge, inward);
+            for (int j = 0; j < 3; j++) {
+                wide_minus(m->corner[1 - k][j], m->corner[k][i], r);
+                wide side = wide_dot(inward, r);
+                most = wide_select((wide_mask)(side > most), side, most);
+            }
+            apart |= (wide_mask)(most < 0);
+        }
+    }
+    return apart | (wide_mask)(high[0] < low[1]);
+}
+
+/* Passes on those of a vector of pairs that are not. */
+static void sift(const rg_contact_args *args, const size_t pair[], int count, queue *q) {
+    meeting m;
+    for (int l = 0; l < WIDE; l++) {
+        load_pair(&m, args, pair[l < count ? l : count - 1], l);
+    }
+    set_normal(&m, 0);
+    set_normal(&m, 1);
+    wide_mask apart = are_apart(&m);
+    for (int l = 0; l < count; l++) {
+        q->pair[q->count] = pair[l];
+        q->count += apart[l] == 0;
+    }
+    if (q->count >= WIDE) {
+        meet_some(args, q, WIDE);
+    }
+}
+
 void RG_ISA_NAME(rg_contact)(const rg_contact_args *args, size_t begin, size_t end) {
-    size_t pair[WIDE];
+    size_t near[WIDE];
+    queue q = {.count = 0};
     int count = 0;
     for (size_t i = begin; i < end; i++) {
         args->energy[i] = args->depth[i] = 0;
-        pair[count] = i;
+        near[count] = i;
         count += are_near(args, &args->pair[i]);
         if (count == WIDE) {
-            meet(args, pair, count);
+            sift(args, near, count, &q);
             count = 0;
         }
     }
     if (count > 0) {
-        meet(args, pair, count);
+        sift(args, near, count, &q);
+    }
+    if (q.count > 0) {
+        meet_some(args, &q, q.count);
     }
 }

@@ -487,7 +487,7 @@ static void note_touching(rg_contacts *c, size_t tile) {
 }
 
 void rg_contacts_meet(rg_contacts *c, const rg_kernels *kernels) {
-    enum { BATCH = 32 };
+    enum { BATCH = 256 };
     rg_contact_args args = {c->corner, c->box, c->sunk, c->pair, c->force, c->energy, c->depth};
     size_t batches = (c->pairs + BATCH - 1) / BATCH;
 #pragma omp for schedule(static)
