@@ -55,10 +55,11 @@ static __attribute__((noinline)) void raise_strength(interface *s, int q, const 
         rg_vec now = rg_splat(time), last = rg_load(rise_state(s, q, RG_RISE_LAST));
         rg_vec from = rg_load(rise_state(s, q, RG_RISE_STRESS)),
                span = rg_load(rise_state(s, q, RG_RISE_SPAN));
-        rg_mask anew = (rg_load(rise_state(s, q, RG_RISE_FACTOR)) == 0.0) | (now - last > 1.5 * step);
+        rg_mask anew =
+            (rg_load(rise_state(s, q, RG_RISE_FACTOR)) == 0.0) | (now - last > rg_splat(1.5 * step));
         rg_vec half = step > 0 ? rg_min(t->effective, 0.5 * s->strength) : t->effective;
         from = rg_select(anew, half, from);
-        span = rg_select(anew, rg_splat(step), rg_select(now > last, span + step, span));
+        span = rg_select(anew, rg_splat(step), rg_select(now > last, span + rg_splat(step), span));
         rg_vec gain = rg_max(t->effective - from, rg_splat(0.0));
         rg_vec rate = rg_select(span > 0.0, gain / rg_max(span, rg_splat(RG_NO_TIME)), rg_splat(0.0));
         rg_vec risen = rise(s, rate);
