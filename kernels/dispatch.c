@@ -17,6 +17,8 @@
     void rg_interface_state_##isa(const rg_interface_state_args *, size_t, size_t);                          \
     void rg_viscosity_##isa(const rg_viscosity_args *, size_t, size_t);                                      \
     void rg_contact_##isa(const rg_contact_args *, size_t, size_t);                                          \
+    void rg_prestress_##isa(const rg_prestress_args *, size_t, size_t);                                      \
+    void rg_prestress_state_##isa(const rg_prestress_state_args *, size_t, size_t);                          \
     static const rg_kernels set_##isa = {label,                                                              \
                                          rg_send_##isa,                                                      \
                                          rg_send_tractions_##isa,                                            \
@@ -29,7 +31,9 @@
                                          rg_kinetic_##isa,                                                   \
                                          rg_interface_state_##isa,                                           \
                                          rg_viscosity_##isa,                                                 \
-                                         rg_contact_##isa}
+                                         rg_contact_##isa,                                                   \
+                                         rg_prestress_##isa,                                                 \
+                                         rg_prestress_state_##isa}
 
 #ifdef RG_X86
 RG_KERNEL_SET(v4, "x86-64-v4");

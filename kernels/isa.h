@@ -19,6 +19,8 @@ void RG_ISA_NAME(rg_bulk_state)(const rg_bulk_state_args *args, size_t begin, si
 void RG_ISA_NAME(rg_kinetic)(const rg_kinetic_args *args, size_t begin, size_t end);
 void RG_ISA_NAME(rg_interface_state)(const rg_interface_state_args *args, size_t begin, size_t end);
 void RG_ISA_NAME(rg_viscosity)(const rg_viscosity_args *args, size_t begin, size_t end);
+void RG_ISA_NAME(rg_prestress)(const rg_prestress_args *args, size_t begin, size_t end);
+void RG_ISA_NAME(rg_prestress_state)(const rg_prestress_state_args *args, size_t begin, size_t end);
 void RG_ISA_NAME(rg_contact)(const rg_contact_args *args, size_t begin, size_t end);
 
 /* One of each for every material. */

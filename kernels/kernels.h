@@ -90,6 +90,13 @@ typedef struct {
     double exponent, most;
 } rg_rise;
 
+/* Stress before any deformation (element/prestress.c), after the bulk: adds to force, traction and
+ * stiffening, or to energy and cauchy of a state. */
+typedef struct {
+    const rg_bulk_args *bulk;
+    const rg_real *stress; /* [block][RG_GAUSS][xx yy zz yz xz xy][lane] (Pa) */
+} rg_prestress_args;
+
 /* 12-node interface. The area vector points from minus to plus, jump [u] = u+ - u-. Force on the minus side
  * is +g, on the plus side -g. */
 typedef struct {
@@ -187,6 +194,11 @@ typedef struct {
                          history */
 } rg_bulk_state_args;
 
+typedef struct {
+    const rg_bulk_state_args *state;
+    const rg_real *stress;
+} rg_prestress_state_args;
+
 /* Internal variables that are output: damage, 0 to 1; regime of the cracks, 1, 2, 3 (0: no stress);
  * equivalent plastic strain. 0 where the material has none. */
 enum { RG_INTERNAL_DAMAGE, RG_INTERNAL_REGIME, RG_INTERNAL_PLASTIC, RG_INTERNAL };
@@ -256,6 +268,8 @@ typedef struct {
     void (*interface_state)(const rg_interface_state_args *args, size_t begin, size_t end);
     void (*viscosity)(const rg_viscosity_args *args, size_t begin, size_t end);
     void (*contact)(const rg_contact_args *args, size_t begin, size_t end);
+    void (*prestress)(const rg_prestress_args *args, size_t begin, size_t end);
+    void (*prestress_state)(const rg_prestress_state_args *args, size_t begin, size_t end);
 } rg_kernels;
 
 /* The opening from which a continuous activation starts is eps = RG_ONSET sigma_c h_s / (beta_s (lambda + 2

@@ -136,6 +136,8 @@ enum { /* values per row, and per block */
        RG_TRACE_ROW = RG_FNODES * 3,
        RG_TILE_FACE_ROW = RG_FCORNERS * 3, /* tractions of one face */
        RG_GHOST_BLOCK = RG_TRACE_ROW * RG_LANES,
+       RG_PRESTRESS = RG_GAUSS * 6, /* per element */
+       RG_PRESTRESS_BLOCK = RG_PRESTRESS * RG_LANES,
 };
 
 /* Nodes of local face f in the order both neighbours share. */

@@ -409,6 +409,10 @@ static void prepare(run *r, double *cost, MPI_Comm comm) {
         rg_solver_start(r->solver);
         r->summary.equilibrium =
             settle ? rg_equilibrium_find(r->solver, r->options->quiet ? NULL : stdout) : (rg_equilibrium){0};
+        if (!settle && r->solver->prestress != NULL) {
+            r->summary.stress_out_of_balance =
+                rg_equilibrium_of_stress(r->solver, r->options->quiet ? NULL : stdout);
+        }
     }
     rg_free(r->summary.estimate.of_material);
     r->summary.estimate = rg_estimate_run(r->solver);
@@ -536,6 +540,9 @@ int rg_run_check(const rg_case *c, MPI_Comm comm) {
     rg_probes *probes = rg_probes_find(s);
     rg_spectrum(s);
     rg_solver_start(s);
+    if (s->prestress != NULL) {
+        rg_equilibrium_of_stress(s, stdout);
+    }
     rg_solver_measure(s);
     rg_estimate estimate = rg_estimate_run(s);
     if (s->rank == 0) {

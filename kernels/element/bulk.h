@@ -19,21 +19,6 @@ RG_INLINE void material_steps(const rg_bulk_args *args, rg_vec H[][3][3], rg_vec
 }
 #endif
 
-/* Area-weighted corner tractions sum_g e_ig P_g (area_f N_f), e_ig = (delta_ig - a)/(b - a). */
-RG_INLINE void store_traction(vec3 q[4][RG_GAUSS], vec3 Q[4], rg_real *traction) {
-    rg_vec row[RG_TRACTION_ROW];
-    for (int f = 0; f < RG_FACES; f++) {
-        for (int i = 0; i < RG_FCORNERS; i++) {
-            for (int c = 0; c < 3; c++) {
-                row[(f * RG_FCORNERS + i) * 3 + c] =
-                    rg_splat(12 / RG_GAUSS_BA) *
-                    (rg_splat(RG_GAUSS_A) * Q[f][c] - q[f][rg_face_node[f][i]][c]);
-            }
-        }
-    }
-    rg_store_rows(traction, RG_TRACTION_ROW, RG_TRACTION_ROW, row);
-}
-
 enum { HISTORY_ROWS = RG_HISTORY == 0 ? 0 : RG_GAUSS * RG_HISTORY + RG_RELEASED };
 
 RG_INLINE rg_real *history_of(const rg_bulk_args *args, size_t block, int lane) {

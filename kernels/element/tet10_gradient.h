@@ -178,6 +178,21 @@ RG_INLINE void store_force(vec3 q[4][RG_GAUSS], vec3 Q[4], rg_real *force, bool 
     }
 }
 
+/* Area-weighted corner tractions sum_g e_ig P_g (area_f N_f), e_ig = (delta_ig - a)/(b - a). */
+RG_INLINE void store_traction(vec3 q[4][RG_GAUSS], vec3 Q[4], rg_real *traction) {
+    rg_vec row[RG_TRACTION_ROW];
+    for (int f = 0; f < RG_FACES; f++) {
+        for (int i = 0; i < RG_FCORNERS; i++) {
+            for (int c = 0; c < 3; c++) {
+                row[(f * RG_FCORNERS + i) * 3 + c] =
+                    rg_splat(12 / RG_GAUSS_BA) *
+                    (rg_splat(RG_GAUSS_A) * Q[f][c] - q[f][rg_face_node[f][i]][c]);
+            }
+        }
+    }
+    rg_store_rows(traction, RG_TRACTION_ROW, RG_TRACTION_ROW, row);
+}
+
 /* q_k(g) and Q_k of a stress at point g with its share of the volume. */
 RG_INLINE void project_stress(const element *e, rg_vec weight, rg_vec P[3][3], int g, vec3 q[4][RG_GAUSS],
                               vec3 Q[4]) {

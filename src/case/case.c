@@ -75,6 +75,22 @@ bool rg_boundaries_meet(const rg_boundary *a, const rg_boundary *b) {
     return !ends_before(a, b) && !ends_before(b, a);
 }
 
+bool rg_initial_has_stress(const rg_initial *is) {
+    bool has = false;
+    for (int k = 0; k < 6; k++) {
+        has = has || is->stress[k] != NULL;
+    }
+    return has;
+}
+
+bool rg_case_has_stress(const rg_case *c) {
+    bool has = rg_initial_has_stress(&c->initial);
+    for (int i = 0; i < c->initial_sets; i++) {
+        has = has || rg_initial_has_stress(&c->initial_set[i].is);
+    }
+    return has;
+}
+
 bool rg_case_opens(const rg_case *c) {
     for (int i = 0; i < c->interface.sets; i++) {
         if (c->interface.set[i].opens_at > 0) {

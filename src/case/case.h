@@ -144,6 +144,7 @@ typedef struct {
 typedef struct {
     rg_expr *displacement[3], *velocity[3]; /* m, m/s; NULL: zero */
     double spin, axis[3], at[3]; /* rad/s about an axis of any length through a point (m): on top */
+    rg_expr *stress[6];          /* before any displacement, xx yy zz yz xz xy (Pa); NULL: zero */
 } rg_initial;
 
 /* Elements with a state of their own at the start: of one of these. */
@@ -370,6 +371,10 @@ bool rg_load_is_inside(const rg_load_input *load);
 
 /* Whether two entries act at the same time. */
 bool rg_boundaries_meet(const rg_boundary *a, const rg_boundary *b);
+
+/* Whether any element has an initial stress. */
+bool rg_initial_has_stress(const rg_initial *is);
+bool rg_case_has_stress(const rg_case *c);
 
 /* Whether faces open at a time. */
 bool rg_case_opens(const rg_case *c);

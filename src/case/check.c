@@ -412,6 +412,7 @@ void rg_case_check(rg_check *ck, const rg_node *root) {
             rg_entry whole = {ck, root, NULL};
             rg_rotation_rule(&whole, "initial.", &ck->c->initial);
             rg_start_rule(&whole);
+            rg_stress_rule(&whole);
         }
     } else if (root->kind != RG_NODE_BAD) {
         char value[64];

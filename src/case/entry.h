@@ -22,5 +22,6 @@ void rg_rotation_rule(const rg_entry *e, const char *prefix, const rg_initial *i
 
 /* What a static start cannot be found for (case/initial.c). */
 void rg_start_rule(const rg_entry *e);
+void rg_stress_rule(const rg_entry *e);
 
 #endif

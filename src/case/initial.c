@@ -63,6 +63,23 @@ static bool any_open(const rg_case *c) {
     return open;
 }
 
+/* Stress of what flows or is damaged would not know of one that is there before. */
+void rg_stress_rule(const rg_entry *e) {
+    const rg_case *c = e->ck->c;
+    for (int i = 0; i <= c->others && rg_case_has_stress(c); i++) {
+        rg_material_model model = rg_case_material(c, i)->model;
+        if (rg_material_history(model) > 0 || model == RG_MATERIAL_ANISOTROPIC) {
+            char *what = rg_text_format("needs elastic isotropic materials, and %s is %s: its limits, or its "
+                                        "energy, would not know of "
+                                        "a stress that is there before",
+                                        rg_case_material_name(c, i), rg_material_word(model));
+            rg_entry_wrong(e, "initial.stress", e->item->at, (rg_subject){0}, what);
+            rg_free(what);
+            return;
+        }
+    }
+}
+
 void rg_start_rule(const rg_entry *e) {
     const rg_case *c = e->ck->c;
     unsigned inside = 0;

@@ -161,6 +161,12 @@ static const char *const fragments_meaning[] = {
     INITIAL(path "velocity.x", "m/s", (at_) + offsetof(rg_initial, velocity[0]), "velocity along x at the start") \
     INITIAL(path "velocity.y", "m/s", (at_) + offsetof(rg_initial, velocity[1]), "along y")                  \
     INITIAL(path "velocity.z", "m/s", (at_) + offsetof(rg_initial, velocity[2]), "along z")                  \
+    INITIAL(path "stress.xx", "Pa", (at_) + offsetof(rg_initial, stress[0]), "stress before anything is displaced, along the axes of reference: it turns and stretches with the element; of elastic isotropic materials") \
+    INITIAL(path "stress.yy", "Pa", (at_) + offsetof(rg_initial, stress[1]), "stress") \
+    INITIAL(path "stress.zz", "Pa", (at_) + offsetof(rg_initial, stress[2]), "stress") \
+    INITIAL(path "stress.yz", "Pa", (at_) + offsetof(rg_initial, stress[3]), "stress") \
+    INITIAL(path "stress.xz", "Pa", (at_) + offsetof(rg_initial, stress[4]), "stress") \
+    INITIAL(path "stress.xy", "Pa", (at_) + offsetof(rg_initial, stress[5]), "stress") \
     {.name = path "rotation.speed", .unit = "rad/s", REAL, ANY, ELSE("0"), .offset = (at_) + offsetof(rg_initial, spin),  \
      MEANS("angular velocity about an axis, of the displaced body, on top of that velocity")},               \
     {.name = path "rotation.axis", REAL3, ANY, ELSE("required with a speed"), .offset = (at_) + offsetof(rg_initial, axis), \

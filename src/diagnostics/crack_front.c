@@ -262,7 +262,7 @@ bool rg_crack_fronts_want(const rg_crack_fronts *r, size_t tile) {
 static void find_block(const rg_solver *s, const rg_workspace *w, const rg_tile *t, block_state *b) {
     rg_bulk_args bulk = rg_tile_bulk(s, t, w, b->block);
     rg_bulk_state_args args = {.bulk = &bulk, .energy = b->energy, .cauchy = b->cauchy};
-    s->kernels->bulk_state(&args, b->block, b->block + 1);
+    rg_tile_bulk_state(s, t, &args, b->block, b->block + 1);
 }
 
 void rg_crack_fronts_watch(rg_crack_fronts *r, const rg_solver *s, size_t tile, const rg_workspace *w) {

@@ -146,7 +146,7 @@ static void stress_at(const rg_solver *s, const rg_workspace *w, size_t slot, co
     size_t block = slot / RG_LANES - t->begin;
     rg_bulk_args bulk = rg_tile_bulk(s, t, w, block);
     rg_bulk_state_args args = {.bulk = &bulk, .cauchy = cauchy};
-    s->kernels->bulk_state(&args, block, block + 1);
+    rg_tile_bulk_state(s, t, &args, block, block + 1);
     for (size_t k = 0; k < 6; k++) {
         out[k] = 0;
         for (size_t g = 0; g < RG_GAUSS; g++) { /* sum_i l_i e_ig, e_ig = (delta_ig - a)/(b - a) */

@@ -144,7 +144,7 @@ static void find_block(const rg_solver *s, const rg_workspace *w, const rg_tile 
                        double *cauchy) {
     rg_bulk_args bulk = rg_tile_bulk(s, t, w, block);
     rg_bulk_state_args args = {.bulk = &bulk, .cauchy = cauchy};
-    s->kernels->bulk_state(&args, block, block + 1);
+    rg_tile_bulk_state(s, t, &args, block, block + 1);
 }
 
 void rg_sensors_watch(rg_sensors *r, const rg_solver *s, size_t tile, const rg_workspace *w) {

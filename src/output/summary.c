@@ -61,6 +61,9 @@ static void write_run(FILE *f, const rg_summary *m, const rg_solver *s, const rg
         rg_json_number(f, "static_residual", m->equilibrium.residual);
         rg_json_integer(f, "static_passes", m->equilibrium.passes);
     }
+    if (s->prestress != NULL) {
+        rg_json_number(f, "stress_out_of_balance", m->stress_out_of_balance);
+    }
     rg_json_integer(f, "steps", s->step);
     rg_json_integer(f, "restarted_from_step", m->first_step);
     rg_json_number(f, "time_end", s->time);

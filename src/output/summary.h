@@ -12,15 +12,16 @@ typedef struct {
     int64_t first_step; /* that this program did: not 0 after a restart */
     int partitions;     /* of the mesh, in this program: 1, and one more each time it was repartitioned */
     double dt_first;    /* s */
-    rg_equilibrium equilibrium; /* of a static start, where this program found it; passes 0: none */
-    double setup_seconds;       /* wall time before the time loop */
-    double loop_seconds;        /* wall time of the time loop without output */
-    double output_seconds;      /* wall time of output within the time loop */
-    int checkpoints;            /* written */
-    double checkpoint_seconds;  /* wall time of that */
-    double checkpoint_median;   /* of one of them, on the last partition that wrote any (s) */
-    double halo_wait_seconds;   /* longest wait for messages on any rank; filled by rg_summary_write */
-    const char *failure;        /* "" where the run reached its end; else why not */
+    rg_equilibrium equilibrium;   /* of a static start, where this program found it; passes 0: none */
+    double stress_out_of_balance; /* of an initial stress (solver/equilibrium.h) */
+    double setup_seconds;         /* wall time before the time loop */
+    double loop_seconds;          /* wall time of the time loop without output */
+    double output_seconds;        /* wall time of output within the time loop */
+    int checkpoints;              /* written */
+    double checkpoint_seconds;    /* wall time of that */
+    double checkpoint_median;     /* of one of them, on the last partition that wrote any (s) */
+    double halo_wait_seconds;     /* longest wait for messages on any rank; filled by rg_summary_write */
+    const char *failure;          /* "" where the run reached its end; else why not */
     double us_per_tet_step,
         first_fracture; /* filled by rg_summary_write; us of core time; s, infinite for none */
     rg_peak unresolved; /* likewise: the face with most of it (J) */

@@ -19,6 +19,10 @@ void rg_restart_register(rg_state *state, rg_restart *keep, rg_solver *s, rg_led
     rg_state_add(state, "next_frame", RG_OF_RUN, RG_STATE_INT64, 1, &keep->frame);
     rg_state_add(state, "good_time", RG_OF_RUN, RG_STATE_DOUBLE, 1, &keep->good_time);
     rg_state_add(state, "core_seconds", RG_OF_RUN, RG_STATE_DOUBLE, 1, &keep->core_seconds);
+    if (s->prestress != NULL) {
+        rg_state_add(state, "stress_out_of_balance", RG_OF_RUN, RG_STATE_DOUBLE, 1,
+                     &summary->stress_out_of_balance);
+    }
     rg_state_add(state, "limiting_state", RG_OF_RUN, RG_STATE_BYTE, RG_LIMITING_WORDS, keep->limiting_state);
 }
 

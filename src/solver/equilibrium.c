@@ -12,6 +12,7 @@
 #include "domain/element.h"
 #include "layout.h"
 #include "solver/coarse.h"
+#include "solver/initial.h"
 #include "solver/step.h"
 
 enum { NEWTON_STEPS = 30, HALVINGS = 10, ITERATIONS = 20000, MODES = 6 };
@@ -314,7 +315,9 @@ rg_equilibrium rg_equilibrium_find(rg_solver *s, FILE *out) {
                "what `boundary` prescribes at t = 0 does not hold the body: it can still move or turn");
     }
     q.coarse = rg_coarse_make(s);
-    double loads = load_norm(&q), scale = loads, residual = find_residual(&q, &scale), last = INFINITY;
+    double stress = s->prestress != NULL ? rg_initial_stress_scale(s) : 0;
+    double loads = fmax(load_norm(&q), stress), scale = loads, residual = find_residual(&q, &scale),
+           last = INFINITY;
     for (int k = 0; k < NEWTON_STEPS && residual > tolerance() * scale; k++) {
         if (residual > 0.5 * last && residual < rounding() * scale) {
             break; /* to rounding */
@@ -334,4 +337,19 @@ rg_equilibrium rg_equilibrium_find(rg_solver *s, FILE *out) {
     end(&q);
     rg_solver_settle(s);
     return found;
+}
+
+double rg_equilibrium_of_stress(rg_solver *s, FILE *out) {
+    newton q = make(s);
+    double loads = 0, scale = rg_initial_stress_scale(s);
+    copy(&q, s->u, q.start);
+    rg_constraints_place(s->constraints, s->u); /* which the first step does */
+    double residual = find_residual(&q, &loads), share = scale > 0 ? residual / scale : 0;
+    if (out != NULL && s->rank == 0) {
+        fprintf(out, "initial stress %.2g of it is not in balance at the start\n", share);
+        fflush(out);
+    }
+    copy(&q, q.start, s->u);
+    end(&q);
+    return share;
 }

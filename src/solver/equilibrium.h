@@ -22,4 +22,9 @@ typedef struct {
  * the run with a message where the body is not held or no equilibrium is found. Collective. */
 rg_equilibrium rg_equilibrium_find(rg_solver *s, FILE *out);
 
+/* Of a body with an initial stress: how much of it nothing balances at the start, loads and supports
+ * included, over its forces on loose elements (solver/initial.h): tells `out` (NULL: nobody) and returns it.
+ * Collective. */
+double rg_equilibrium_of_stress(rg_solver *s, FILE *out);
+
 #endif

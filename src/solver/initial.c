@@ -10,6 +10,7 @@
 #include "base/vector.h"
 #include "case/problem.h"
 #include "domain/element.h"
+#include "quadrature.h"
 
 /* ---- Which values ---- */
 
@@ -130,6 +131,70 @@ static void fill_node(rg_solver *s, int set, rg_expr *const own[6], size_t slot,
     }
 }
 
+/* Value k of the stress of an element at point g. */
+static size_t stress_index(size_t slot, int g, int k) {
+    return slot / RG_LANES * RG_PRESTRESS_BLOCK + (size_t)(g * 6 + k) * RG_LANES + slot % RG_LANES;
+}
+
+static void point_position(const double *corner, int g, double x[3]) {
+    for (int c = 0; c < 3; c++) {
+        x[c] = 0;
+        for (int i = 0; i < 4; i++) {
+            x[c] += (i == g ? RG_GAUSS_B : RG_GAUSS_A) * corner[3 * i + c];
+        }
+    }
+}
+
+/* In order: expressions are not for threads. */
+static void fill_stress(rg_solver *s, const int16_t *set) {
+    static const char *const name[6] = {"xx", "yy", "zz", "yz", "xz", "xy"};
+    rg_first_bad bad = {.which = RG_NOWHERE};
+    for (size_t i = 0; i < s->domain->blocks * RG_LANES * RG_PRESTRESS; i++) {
+        size_t slot = i / RG_PRESTRESS;
+        int g = (int)(i % RG_PRESTRESS) / 6, k = (int)(i % 6);
+        const rg_initial *is = set[slot] < 0 ? &s->input->initial : &s->input->initial_set[set[slot]].is;
+        double x[3], value = 0;
+        if (s->domain->id[slot] >= 0 && is->stress[k] != NULL) {
+            point_position(s->domain->corner + 12 * slot, g, x);
+            value = rg_expr_value(is->stress[k], x, 0);
+            if (!isfinite(value)) {
+                rg_first_bad_note(&bad, 6 * (set[slot] + 1) + k, x, value);
+            }
+        }
+        s->prestress[stress_index(slot, g, k)] = (rg_real)value;
+    }
+    if (rg_first_bad_lowest(&bad, s->comm)) {
+        int number = (int)(bad.which / 6) - 1, k = (int)(bad.which % 6);
+        const rg_initial *is = number < 0 ? &s->input->initial : &s->input->initial_set[number].is;
+        char path[40] = "initial";
+        if (number >= 0) {
+            snprintf(path, sizeof path, "initial.sets[%d]", number);
+        }
+        rg_speak(s->comm);
+        rg_fatal(RG_USAGE, "%s: %s.stress.%s: %s is not finite at (%g, %g, %g)", s->input->path, path,
+                 name[k], rg_expr_text(is->stress[k]), bad.x[0], bad.x[1], bad.x[2]);
+    }
+}
+
+double rg_initial_stress_scale(const rg_solver *s) {
+    const rg_domain *d = s->domain;
+    rg_exact_sum sum = {0};
+    for (size_t slot = 0; slot < d->blocks * RG_LANES; slot++) {
+        double square = 0, volume = d->geom[rg_geom_index(slot, RG_GEOM_VOLUME)];
+        for (int i = 0; i < RG_PRESTRESS && d->id[slot] >= 0; i++) {
+            double value = s->prestress[stress_index(slot, i / 6, i % 6)];
+            square += (i % 6 < 3 ? 0.25 : 0.5) * value * value;
+        }
+        if (d->id[slot] >= 0) {
+            double side = cbrt(volume);
+            rg_exact_add(&sum,
+                         square * side * side * side * side / rg_element_mass(d, s->model->material, slot));
+        }
+    }
+    rg_exact_allreduce(&sum, 1, s->comm);
+    return sqrt(rg_exact_value(&sum));
+}
+
 static void refuse_values(const rg_solver *s, rg_first_bad *bad) {
     if (rg_first_bad_lowest(bad, s->comm)) {
         int set = (int)(bad->which / 6) - 1, k = (int)(bad->which % 3);
@@ -160,6 +225,9 @@ void rg_initial_fill(rg_solver *s) {
             }
         }
         free_values(s->input, own);
+    }
+    if (s->prestress != NULL) {
+        fill_stress(s, set);
     }
     rg_free(set);
     refuse_values(s, &bad);

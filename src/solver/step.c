@@ -131,6 +131,10 @@ static void element_sweep(rg_solver *s, size_t tile, const rg_workspace *w, cons
         end = rg_run_end(s->domain, t, begin);
         bulk.material = *rg_block_ready(s, t, begin);
         s->kernels->bulk(&bulk, begin, end);
+        if (s->prestress != NULL) {
+            rg_prestress_args before = {&bulk, s->prestress + t->begin * RG_PRESTRESS_BLOCK};
+            s->kernels->prestress(&before, begin, end);
+        }
         if (s->heat != NULL && p->constrain) {
             add_viscosity(s, t, &bulk, begin, end);
         }

@@ -47,6 +47,15 @@ rg_bulk_args rg_tile_bulk(const rg_solver *s, const rg_tile *t, const rg_workspa
                           .stiffening = s->stiffening + t->begin * RG_LANES};
 }
 
+void rg_tile_bulk_state(const rg_solver *s, const rg_tile *t, const rg_bulk_state_args *args, size_t begin,
+                        size_t end) {
+    s->kernels->bulk_state(args, begin, end);
+    if (s->prestress != NULL) {
+        rg_prestress_state_args before = {args, s->prestress + t->begin * RG_PRESTRESS_BLOCK};
+        s->kernels->prestress_state(&before, begin, end);
+    }
+}
+
 void rg_tile_state(const rg_solver *s, const rg_tile *t, const rg_workspace *w, double *energy,
                    double *cauchy, double *internal) {
     const size_t points = RG_GAUSS * RG_LANES;
@@ -59,7 +68,7 @@ void rg_tile_state(const rg_solver *s, const rg_tile *t, const rg_workspace *w, 
                                    .cauchy = cauchy == NULL ? NULL : cauchy + begin * points * 6,
                                    .internal =
                                        internal == NULL ? NULL : internal + begin * points * RG_INTERNAL};
-        s->kernels->bulk_state(&args, begin, end);
+        rg_tile_bulk_state(s, t, &args, begin, end);
         if (internal != NULL && rg_material_history(bulk.material.model) == 0) {
             memset(args.internal, 0, (end - begin) * points * RG_INTERNAL * sizeof *internal);
         }

@@ -28,6 +28,10 @@ rg_trace_args rg_tile_traces(const rg_solver *s, const rg_tile *t, const rg_work
  * the step. */
 const rg_material *rg_block_ready(const rg_solver *s, const rg_tile *t, size_t block);
 rg_bulk_args rg_tile_bulk(const rg_solver *s, const rg_tile *t, const rg_workspace *w, size_t block);
+
+/* The state of blocks by such arguments, with the stress that was there before. */
+void rg_tile_bulk_state(const rg_solver *s, const rg_tile *t, const rg_bulk_state_args *args, size_t begin,
+                        size_t end);
 rg_interface_args rg_tile_interfaces(const rg_solver *s, const rg_tile *t, const rg_workspace *w);
 
 /* State of all elements of a tile whose traces have been received: as in rg_bulk_state_args, the first row is

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 import rhegma
 from conftest import CASES, SINGLE, example, launch, rounding
+from conftest import overrides as rhegma_options
 from figures import ROUNDING
 
 LOADS = CASES / "loads.yaml"
@@ -216,3 +217,62 @@ def test_a_foundation_that_is_refused(tmp_path):
     assert "loads[0].foundation: 1 - 2e3*x is negative somewhere\n" in launch("check", case).stderr
     case.write_text(BLOCK)
     assert "load           bed: foundation on 1e-06 m2\n" in launch("check", case).stdout
+
+
+# ---- Stress that is there from the start ----
+
+STRESSED = {**BAR, "initial": {"stress": {"zz": TRACTION}}, "boundary": [{"set": "z-", "component": "z", "velocity": 0}]}
+STORED = TRACTION**2 / (2 * YOUNG) * 5e-5**2 * 2e-3
+
+
+@pytest.mark.parametrize("form", ["variational", "continuous"])
+def test_a_stressed_bar_that_is_held_stays_at_rest(run, figure, form):
+    law = {"law": "none", "form": form}
+    held = run(LOADS, sets={**STRESSED, "loads": [], "interface": law, "boundary": [*STRESSED["boundary"], {"name": "end", "set": "z+", "component": "z", "velocity": 0}]})
+    energy = held.energy
+    figure(f"held bar under initial stress, form {form}: kinetic over stored energy", energy["kinetic"].max() / energy["bulk"][0], bound=rounding(1e-24, 1e-9), why=ROUNDING)
+    figure(f"held bar under initial stress, form {form}: what it stores", energy["bulk"][0], theory=STORED, bound=rounding(1e-14, 1e-5), unit="J", relative=True, why=ROUNDING)
+    assert held.summary["stress_out_of_balance"] < rounding(1e-13, 1e-4)
+    assert held.history["p_szz"] == pytest.approx(TRACTION, rel=1e-5) and held.history["end_force_z"] == pytest.approx(TRACTION * 5e-5**2, rel=1e-5)
+
+
+@pytest.mark.parametrize("form, speed, error", [("variational", 2e-2, 1.2e-6), ("continuous", 5e-2, 4e-5)])
+def test_a_released_end_sends_a_wave(run, figure, form, speed, error):
+    """Behind it the stress is 0 and the velocity -stress/(rho c). A step is what elements resolve worst: it rises over one,
+    and with the lumped mass comes late."""
+    free = run(LOADS, sets={**STRESSED, "loads": [], "interface": {"law": "none", "form": form}, "time": {"end": 3.6e-7, "safety": 0.5}})
+    history, energy = free.history, free.energy
+    arrival = crossing(history["time"], -history["p_vz"], 0.5 * TRACTION / (DENSITY * SPEED))
+    figure(f"released end, form {form}: speed of the wave", 0.8e-3 / arrival, theory=SPEED, bound=speed, unit="m/s", relative=True)
+    late = history["time"] > 1.3 * 0.8e-3 / SPEED
+    figure(f"released end, form {form}: velocity behind it", -history["p_vz"][late].mean(), theory=TRACTION / (DENSITY * SPEED), bound=5e-3, unit="m/s", relative=True)
+    figure(f"released end, form {form}: stress behind it, of that before", history["p_szz"][late].mean() / TRACTION, bound=speed / 4)
+    figure(f"released end, form {form}: energy error", free.summary["energy_error_rel"], bound=error)
+    assert 0.1 < free.summary["stress_out_of_balance"] < 1 and energy["kinetic"][-1] > 0.4 * STORED
+
+
+def test_stress_turns_with_the_body(run, figure):
+    """A free block that spins with a stress that nothing balances: both momenta and the energy stay."""
+    spun = run(LOADS, sets={"loads": [], "boundary": [], "tables": {}, "mesh": {"cells": [2, 2, 2], "size": [1e-3, 1e-3, 1e-3], "jitter": 0.1},
+                            "material": {"model": "neo-hookean", "young": 2e9, "poisson": 0.3, "density": 1200}, "interface": {"law": "none", "penalty": "isotropic"},
+                            "initial": {"stress": {"xx": "2e7*(1 + 500*z)", "yz": 1e7, "zz": -1e7}, "rotation": {"speed": 1e5, "axis": [1, 2, 3], "at": [5e-4, 5e-4, 0]}},
+                            "time": {"end": 2e-5, "safety": 0.5}, "output": {"fields": [], "interval": 5e-7}})
+    energy = spun.energy
+    angular = [energy[f"angular_{axis}"] for axis in "xyz"]
+    figure("spinning block under stress: change of angular momentum, relative", max(np.ptp(a) for a in angular) / max(abs(a).max() for a in angular),
+           bound=rounding(2e-14, 1e-5), why=ROUNDING)
+    figure("spinning block under stress: energy error", spun.summary["energy_error_rel"], bound=3e-4)
+    assert np.ptp(energy["bulk"]) > 0.1 * energy["bulk"][0]
+
+
+@pytest.mark.parametrize("change, message", [
+    ({"material": {"preset": "copper-ofhc"}}, "initial.stress: needs elastic isotropic materials, and material is johnson-cook"),
+    ({"initial": {"stress": {"xy": "1/(z - z)"}}}, "initial.stress.xy: 1/(z - z) is not finite at (")])
+def test_initial_stress_that_is_refused(change, message):
+    done = launch("check", LOADS, *rhegma_options({**STRESSED, "loads": [], **change}))
+    assert done.returncode == 2 and message in done.stderr
+
+
+def test_check_tells_what_balances_a_stress():
+    told = launch("check", LOADS, *rhegma_options({**STRESSED, "loads": []})).stdout
+    assert "initial stress 0.34 of it is not in balance at the start\n" in told
