@@ -117,6 +117,117 @@ static void test_all_that_is_listed(void **state) {
 }
 
 /* The normal of a face, nx, ny, nz. */
+/* Texts of any length: `count` operands, each by `write` from its number. */
+typedef void writer(int k, FILE *out);
+
+static rg_expr *of_many(int count, writer *write, const char *join, const char *around) {
+    char *text = NULL, *message = NULL;
+    size_t size = 0;
+    FILE *out = open_memstream(&text, &size);
+    fprintf(out, "%s", around);
+    for (int k = 0; k < count; k++) {
+        fprintf(out, "%s", k > 0 ? join : "");
+        write(k, out);
+    }
+    fprintf(out, "%s", *around == '(' ? ")\n" : "");
+    fclose(out);
+    assert_true(size > 60000);
+    rg_expr *e = rg_expr_with(text, &tables, &message);
+    if (e == NULL) {
+        print_message("%s\n", message);
+    }
+    assert_non_null(e);
+    assert_string_equal(rg_expr_text(e), text);
+    assert_false(rg_expr_is_number(e));
+    free(text);
+    return e;
+}
+
+static void box(int k, FILE *out) {
+    fprintf(out, "(abs(x - %d) < 0.25 && (y > 0 || z > %d))", 3 * k, k);
+}
+
+static void slab(int k, FILE *out) {
+    fprintf(out, "abs(x - %d) > 0.25", 3 * k);
+}
+
+/* Signs of exponents and operands are no joints. */
+static void term(int k, FILE *out) {
+    fprintf(out, "%d.e+0*nx - 2.5E+1*(y + t) * +%d", k, k);
+}
+
+static void longer(int k, FILE *out) {
+    fprintf(out, "(0 > 1");
+    for (int i = 0; i < 2000; i++) {
+        fprintf(out, " || abs(x - %d) < 0.25", 3 * (2000 * k + i));
+    }
+    fprintf(out, ")");
+}
+
+static double value_at(const rg_expr *e, double x, double y, double z) {
+    return rg_expr_value(e, (const double[3]){x, y, z}, 2);
+}
+
+static void test_any_length(void **state) {
+    (void)state;
+    enum { MANY = 4000 };
+    rg_expr *e = of_many(MANY, box, " || ", "");
+    for (int k = -1; k <= MANY; k++) {
+        bool in = k >= 0 && k < MANY;
+        assert_true(value_at(e, 3 * k + 0.2, 1, 0) == in && value_at(e, 3 * k, -1, k + 0.5) == in);
+        assert_true(value_at(e, 3 * k + 0.3, 1, 0) == 0 && value_at(e, 3 * k, -1, k - 0.5) == 0);
+    }
+    assert_true(rg_expr_uses_position(e) && !rg_expr_uses_time(e) && !rg_expr_uses_normal(e));
+    rg_expr *again = rg_expr_copy(e);
+    assert_true(value_at(again, 3 * (MANY - 1), 1, 0) == 1);
+    rg_expr_free(again);
+    rg_expr_free(e);
+    e = of_many(MANY, slab, "&&", "(");
+    for (int k = -1; k <= MANY; k++) {
+        assert_true(value_at(e, 3 * k + 0.2, 1, 0) == (k < 0 || k == MANY) &&
+                    value_at(e, 3 * k + 0.3, 1, 0) == 1);
+    }
+    rg_expr_free(e);
+    e = of_many(MANY, term, " + ", " ");
+    double sum = MANY * (MANY - 1) / 2.0, normal[3] = {0.5, 0, 0};
+    assert_true(rg_expr_face_value(e, (const double[3]){0, 3, 0}, normal) == sum * (0.5 - 25 * 3));
+    assert_true(rg_expr_value(e, (const double[3]){0, 3, 0}, 2) == sum * (0.5 - 25 * 5));
+    assert_true(rg_expr_uses_position(e) && rg_expr_uses_time(e) && rg_expr_uses_normal(e));
+    rg_expr_free(e);
+    e = of_many(2, longer, "||", ""); /* operands that are taken apart in turn */
+    assert_true(value_at(e, 3 * 3999, 0, 0) == 1 && value_at(e, 3 * 4000, 0, 0) == 0 &&
+                value_at(e, 6, 0, 0) == 1);
+    rg_expr_free(e);
+}
+
+/* What is wrong with a piece is told as of the whole; what cannot be taken apart is. */
+static void test_long_mistakes(void **state) {
+    (void)state;
+    static const struct {
+        const char *first, *middle, *last, *message;
+    } wrong[] = {{"x > 1 || ", "1 || 1", "|| v > 2", "Unexpected token \"v\" found at position"},
+                 {"x > 1 ? 1 : ", "1 +", "2", "an operand is longer than 19999 characters"},
+                 {"max(x, ", "1 + ", "2)", "an operand is longer than 19999 characters"},
+                 {"x < y + ", "1 + ", "2", "an operand is longer than 19999 characters"},
+                 {"1e+", "1 ^", "2", "an operand is longer than 19999 characters"},
+                 {"x || ", "1 || 1", "|| (y", "Missing parenthesis"},
+                 {"1/0 + ", "1 + 1", "+ 2", "not finite"}};
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+        char *text = RG_NEW(char, 25001), *message = NULL;
+        memset(text, ' ', 25000);
+        memcpy(text, wrong[i].first, strlen(wrong[i].first));
+        memcpy(text + 12000, wrong[i].middle, strlen(wrong[i].middle));
+        memcpy(text + 25000 - strlen(wrong[i].last), wrong[i].last, strlen(wrong[i].last));
+        assert_null(rg_expr_new(text, &message));
+        if (strncmp(message, wrong[i].message, strlen(wrong[i].message)) != 0) {
+            print_message("%s: %s\n", wrong[i].first, message);
+        }
+        assert_true(strncmp(message, wrong[i].message, strlen(wrong[i].message)) == 0);
+        rg_free(message);
+        rg_free(text);
+    }
+}
+
 static void test_normal(void **state) {
     (void)state;
     char *message = NULL;
@@ -128,8 +239,8 @@ static void test_normal(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_values),
-        cmocka_unit_test(test_all_that_is_listed),
+        cmocka_unit_test(test_values),     cmocka_unit_test(test_all_that_is_listed),
+        cmocka_unit_test(test_any_length), cmocka_unit_test(test_long_mistakes),
         cmocka_unit_test(test_normal),
     };
     int failed = cmocka_run_group_tests(tests, NULL, NULL);
