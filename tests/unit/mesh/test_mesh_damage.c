@@ -741,26 +741,6 @@ static void test_partitions(void **state) {
     rg_mesh_free(back);
 }
 
-static void add_to_nothing(void) {
-    rg_mesh_file_add_partitions("nowhere.h5", 0, NULL);
-}
-
-static void write_to_nowhere(void) {
-    rg_mesh_file_write("none/out.h5", mesh, 0, NULL);
-}
-
-static void write_to_folder(void) {
-    rg_mesh_file_write("/tmp", mesh, 0, NULL);
-}
-
-static void test_paths(void **state) {
-    (void)state;
-    expect_said(add_to_nothing, RG_USAGE, "rhegma: nowhere.h5: cannot be read: No such file or directory\n");
-    expect_said(write_to_nowhere, RG_FAILURE,
-                "rhegma: none/out.h5: cannot be written: No such file or directory\n");
-    expect_said(write_to_folder, RG_FAILURE, "rhegma: /tmp: cannot be written: not a file\n");
-}
-
 static int set_up(void **state) {
     (void)state;
     int32_t owner[TILES] = {0};
@@ -787,21 +767,13 @@ static int tear_down(void **state) {
 int main(void) {
     H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_header),
-        cmocka_unit_test(test_attributes),
-        cmocka_unit_test(test_element_values),
-        cmocka_unit_test(test_vertex_values),
-        cmocka_unit_test(test_positions),
-        cmocka_unit_test(test_graph_values),
-        cmocka_unit_test(test_partition_values),
-        cmocka_unit_test(test_checksums),
-        cmocka_unit_test(test_rows_checksum),
-        cmocka_unit_test(test_shapes),
-        cmocka_unit_test(test_original_number),
-        cmocka_unit_test(test_partitions),
-        cmocka_unit_test(test_paths),
-        cmocka_unit_test(test_combinations),
-        cmocka_unit_test(test_names),
+        cmocka_unit_test(test_header),           cmocka_unit_test(test_attributes),
+        cmocka_unit_test(test_element_values),   cmocka_unit_test(test_vertex_values),
+        cmocka_unit_test(test_positions),        cmocka_unit_test(test_graph_values),
+        cmocka_unit_test(test_partition_values), cmocka_unit_test(test_checksums),
+        cmocka_unit_test(test_rows_checksum),    cmocka_unit_test(test_shapes),
+        cmocka_unit_test(test_original_number),  cmocka_unit_test(test_partitions),
+        cmocka_unit_test(test_combinations),     cmocka_unit_test(test_names),
         cmocka_unit_test(test_long_name),
     };
     return cmocka_run_group_tests_name("mesh_damage", tests, set_up, tear_down);

@@ -22,6 +22,7 @@
 #include "mesh/file.h"
 #include "mesh/mesh.h"
 #include "support/child.h"
+#include "support/mesh_text.h"
 
 static char path[] = "/tmp/rhegma-mesh-XXXXXX", damaged[sizeof path + 8];
 
@@ -510,6 +511,30 @@ static void test_parts(void **state) {
     rg_mesh_free(m);
 }
 
+static rg_mesh *unwritten;
+
+static void add_to_nothing(void) {
+    rg_mesh_file_add_partitions("nowhere.h5", 0, NULL);
+}
+
+static void write_to_nowhere(void) {
+    rg_mesh_file_write("none/out.h5", unwritten, 0, NULL);
+}
+
+static void write_to_folder(void) {
+    rg_mesh_file_write("/tmp", unwritten, 0, NULL);
+}
+
+static void test_paths(void **state) {
+    (void)state;
+    unwritten = make();
+    expect_said(add_to_nothing, RG_USAGE, "rhegma: nowhere.h5: cannot be read: No such file or directory\n");
+    expect_said(write_to_nowhere, RG_FAILURE,
+                "rhegma: none/out.h5: cannot be written: No such file or directory\n");
+    expect_said(write_to_folder, RG_FAILURE, "rhegma: /tmp: cannot be written: not a file\n");
+    rg_mesh_free(unwritten);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_whole),           cmocka_unit_test(test_overlapping),
@@ -518,7 +543,7 @@ int main(void) {
         cmocka_unit_test(test_truncated),       cmocka_unit_test(test_flipped),
         cmocka_unit_test(test_damage_is_named), cmocka_unit_test(test_same_mesh_same_file),
         cmocka_unit_test(test_large_numbers),   cmocka_unit_test(test_unsound),
-        cmocka_unit_test(test_parts),
+        cmocka_unit_test(test_parts),           cmocka_unit_test(test_paths),
     };
     int failed = cmocka_run_group_tests(tests, write_file, remove_file);
     return failed + (rg_alloc_blocks() > 0); /* all is given back */
