@@ -49,7 +49,7 @@ rg_merged rg_merge(size_t rows, const double *x, double reach, size_t *twin) {
         }
     }
     qsort(p, count, sizeof *p, by_place);
-    for (size_t i = 0; i < count; i++) {
+    for (size_t i = 0; i + 1 < count; i++) {
         for (size_t j = i + 1; j < count && p[j].along - p[i].along <= reach + rounding * fabs(p[j].along);
              j++) {
             double apart = sqrt(rg_vector_distance2(x + 3 * p[i].row, x + 3 * p[j].row));

@@ -51,6 +51,7 @@ typedef struct {
     int faces, pairs, touching;
     body_face *face;
     double fat, energy, *depth_of; /* [face]: beyond the skin (m) */
+    double *pressed;               /* [face]: largest stiffness of pairs that touch (Pa/m) */
     nodal *force;                  /* [element] (N) */
     double *felt;                  /* [element]: sum of the sizes (N) */
     char words[200];
@@ -169,6 +170,8 @@ static void meet(twin *t, int a, int b, rg_contact_pair *pair) {
                  f[0]->is.id / 4, f[1]->is.id / 4, middle[0], middle[1], middle[2]);
     }
     t->energy += energy;
+    t->pressed[a] = fmax(t->pressed[a], pair->stiffness);
+    t->pressed[b] = fmax(t->pressed[b], pair->stiffness);
     feel(t, f[0], force);
     feel(t, f[1], force + 9);
 }
@@ -178,6 +181,7 @@ static twin make_twin(const random_state *r) {
     size_t elements = (size_t)r->mesh->elements;
     list_faces(r, &t);
     t.depth_of = RG_NEW(double, (size_t)t.faces);
+    t.pressed = RG_NEW(double, (size_t)t.faces);
     t.force = RG_NEW(nodal, elements);
     t.felt = RG_NEW(double, elements);
     for (int a = 0; a < t.faces; a++) {
@@ -196,6 +200,7 @@ static twin make_twin(const random_state *r) {
 static void free_twin(twin *t) {
     rg_free(t->face);
     rg_free(t->depth_of);
+    rg_free(t->pressed);
     rg_free(t->force);
     rg_free(t->felt);
 }
@@ -356,6 +361,53 @@ static void check_sums(const random_state *r, const twin *t) {
     report(told && strcmp(words, t->words) == 0, "contact", "the lowest pair is told");
 }
 
+/* What a face adds to the squared frequency of its element by twice kappa: the largest eigenvalue of
+ * Q M^-1 Q' m, m the mass matrix of the corners over the face's mass, by power iteration. */
+static double face_omega2(const random_state *r, const body_face *f, double kappa) {
+    rg_gid e = f->is.id / 4;
+    const int *node = rg_face_node[f->is.id % 4];
+    double x[4][3], normal[3], A[3][3] = {{0}}, v[3] = {1, 2, 4}, largest = 0;
+    mesh_corners(r->mesh, e, x);
+    twice_area(x[node[0]], x[node[1]], x[node[2]], normal);
+    for (int k = 0; k < 9 * RG_FNODES * RG_FNODES; k++) {
+        int i = k % 3, j = k / 3 % 3, a = k / 9 % RG_FNODES, b = k / 9 / RG_FNODES;
+        A[i][j] += f->mean[a][i] * rg_inverse_mass_entry(r->input->mass, node[a], node[b]) * f->mean[b][j];
+    }
+    for (int pass = 0; pass < 200; pass++) {
+        double mv[3], next[3], sum = v[0] + v[1] + v[2];
+        for (int i = 0; i < 3; i++) {
+            mv[i] = (v[i] + sum) / 12;
+        }
+        for (int i = 0; i < 3; i++) {
+            next[i] = rg_reference_dot(A[i], mv);
+        }
+        largest = sqrt(rg_reference_dot(next, next) / rg_reference_dot(v, v));
+        memcpy(v, next, sizeof v);
+    }
+    return kappa * sqrt(rg_reference_dot(normal, normal)) * largest / mesh_mass(r, e);
+}
+
+/* Largest sums over the faces of an element: of those that are pressed, and of all on the surface. */
+static void check_frequencies(const random_state *r, const twin *t) {
+    double most = 0, surface = 0, now = rg_contacts_omega2_now(r->solver->contacts);
+    for (rg_gid e = 0; e < r->mesh->elements; e++) {
+        double pressed = 0, whole = 0;
+        for (int i = 0; i < t->faces; i++) {
+            const body_face *f = &t->face[i];
+            if (f->is.id / 4 == e) {
+                pressed += face_omega2(r, f, t->pressed[i]);
+                whole += f->is.former ? 0 : face_omega2(r, f, 4 * f->is.modulus / f->is.height);
+            }
+        }
+        most = fmax(most, pressed);
+        surface = fmax(surface, whole);
+    }
+    MPI_Allreduce(MPI_IN_PLACE, &now, 1, MPI_DOUBLE, MPI_MAX, MPI_COMM_WORLD);
+    report(near(now, most, 1e-12 * most) && most > 0, "contact", "frequency of what is pressed");
+    report(near(rg_contacts_omega2(r->solver->contacts), surface, 1e-12 * surface), "contact",
+           "frequency if all of the surface were");
+}
+
 /* All is moved along y by a part of what faces may move between two searches. */
 static void check_moved(const random_state *r, const twin *t) {
     const rg_solver *s = r->solver;
@@ -382,6 +434,7 @@ static void check(void) {
     place(&r);
     sides of = {&t, true, true};
     check_sums(&r, &t);
+    check_frequencies(&r, &t);
     check_forces(&r, &t);
     visit(&r, judge_pushed, &of);
     rg_contacts_sink(r.solver->contacts, r.solver->exposed, r.solver->contact_sunk);
