@@ -331,6 +331,27 @@ static void test_properties(void **state) {
     rg_case_free(c);
 }
 
+/* There are fields of what some set says, the last one too, and of nothing else. */
+static void test_fields(void **state) {
+    (void)state;
+    static const struct {
+        const char *sets;
+        bool beta, friction;
+    } known[] = {{"interface.sets=[{where: z < 0, beta: 0}]", true, false},
+                 {"interface.sets=[{where: z < 0, energy: 3}, {where: x > 0, friction: 0.5}]", false, true},
+                 {"interface.sets=[{where: z < 0, friction: 0.5}, {where: x > 0, energy: 3}]", false, true},
+                 {"interface.sets=[{where: z < 0, energy: 3}]", false, false}};
+    for (size_t k = 0; k < sizeof known / sizeof *known; k++) {
+        const char *const set[] = {known[k].sets, "interface.friction=0.25"};
+        rg_case *c = read_case(2, set);
+        rg_solver *s = rg_solver_make(c, MPI_COMM_SELF);
+        assert_true((s->model->beta != NULL) == known[k].beta &&
+                    (s->model->friction != NULL) == known[k].friction);
+        rg_solver_free(s);
+        rg_case_free(c);
+    }
+}
+
 /* An expression is as good as the numbers it gives, also where it is the interface's. */
 static void test_expressions(void **state) {
     (void)state;
@@ -537,6 +558,7 @@ int main(int argc, char **argv) {
         cmocka_unit_test(test_without_softening),
         cmocka_unit_test(test_sets),
         cmocka_unit_test(test_properties),
+        cmocka_unit_test(test_fields),
         cmocka_unit_test(test_named),
         cmocka_unit_test(test_grains),
         cmocka_unit_test(test_expressions),
