@@ -329,7 +329,7 @@ const rg_energy *rg_ledger_take(rg_ledger *l, rg_solver *s) {
     if (!l->begun) {
         *l = (rg_ledger){.begun = true, .start = e->total, .last = *e};
     }
-    l->unresolved = unresolved;
+    l->unresolved = rg_peak_reduce(&unresolved, s->comm); /* a checkpoint holds that of rank 0 */
     for (int m = 0; m < told_materials(s); m++) {
         const double *part = v + PARTS + PART * m;
         l->material[m] = (rg_energy_part){part[PART_KINETIC], part[PART_BULK], part[PART_DISSIPATED]};

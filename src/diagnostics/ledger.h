@@ -53,7 +53,7 @@ typedef struct {
     double change;         /* largest |total - start| so far (J) */
     rg_energy last;
     rg_energy_part material[RG_LEDGER_MATERIALS]; /* if there are no more */
-    rg_peak unresolved; /* of this rank: the face with most of what its points' laws could not take (J) */
+    rg_peak unresolved; /* the face with most of what its points' laws could not take (J) */
 } rg_ledger;
 
 /* The largest change of the total so far over the largest energy so far; infinite where one was no number. */

@@ -122,7 +122,7 @@ void rg_summary_write(rg_summary *m, rg_solver *s, const rg_ledger *l, const rg_
     uint64_t hash = rg_state_hash(s);
     double impulse = s->contacts != NULL ? contact_impulse(s) : 0;
     m->first_fracture = rg_first_fracture(s);
-    m->unresolved = rg_peak_reduce(&l->unresolved, s->comm);
+    m->unresolved = l->unresolved;
     rg_halo *halo[3];
     int halos = rg_solver_halos(s, halo);
     double work = (double)e->elements * (double)(s->step - m->first_step);
