@@ -236,8 +236,8 @@ def test_a_stressed_bar_that_is_held_stays_at_rest(run, figure, form):
     assert held.history["p_szz"] == pytest.approx(TRACTION, rel=1e-5) and held.history["end_force_z"] == pytest.approx(TRACTION * 5e-5**2, rel=1e-5)
 
 
-@pytest.mark.parametrize("form, speed, error", [("variational", 2e-2, 1.2e-6), ("continuous", 5e-2, 4e-5)])
-def test_a_released_end_sends_a_wave(run, figure, form, speed, error):
+@pytest.mark.parametrize("form, speed, velocity, stress, error", [("variational", 2e-2, 6e-4, 1.2e-3, 1e-6), ("continuous", 5e-2, 5e-3, 1.25e-2, 4e-5)])
+def test_a_released_end_sends_a_wave(run, figure, form, speed, velocity, stress, error):
     """Behind it the stress is 0 and the velocity -stress/(rho c). A step is what elements resolve worst: it rises over one,
     and with the lumped mass comes late."""
     free = run(LOADS, sets={**STRESSED, "loads": [], "interface": {"law": "none", "form": form}, "time": {"end": 3.6e-7, "safety": 0.5}})
@@ -245,8 +245,8 @@ def test_a_released_end_sends_a_wave(run, figure, form, speed, error):
     arrival = crossing(history["time"], -history["p_vz"], 0.5 * TRACTION / (DENSITY * SPEED))
     figure(f"released end, form {form}: speed of the wave", 0.8e-3 / arrival, theory=SPEED, bound=speed, unit="m/s", relative=True)
     late = history["time"] > 1.3 * 0.8e-3 / SPEED
-    figure(f"released end, form {form}: velocity behind it", -history["p_vz"][late].mean(), theory=TRACTION / (DENSITY * SPEED), bound=5e-3, unit="m/s", relative=True)
-    figure(f"released end, form {form}: stress behind it, of that before", history["p_szz"][late].mean() / TRACTION, bound=speed / 4)
+    figure(f"released end, form {form}: velocity behind it", -history["p_vz"][late].mean(), theory=TRACTION / (DENSITY * SPEED), bound=velocity, unit="m/s", relative=True)
+    figure(f"released end, form {form}: stress behind it, of that before", history["p_szz"][late].mean() / TRACTION, bound=stress)
     figure(f"released end, form {form}: energy error", free.summary["energy_error_rel"], bound=error)
     assert 0.1 < free.summary["stress_out_of_balance"] < 1 and energy["kinetic"][-1] > 0.4 * STORED
 
