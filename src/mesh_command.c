@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "base/error.h"
+#include "base/files.h"
 #include "base/mem.h"
 #include "case/case.h"
 #include "case/read.h"
@@ -344,12 +345,7 @@ static int from_text(const rg_mesh_arguments *a) {
 
 /* Hands over to the program that has Gmsh, in the folder of this one. */
 static int from_gmsh(int argc, char **argv) {
-    static const char name[] = "rhegma-mesh";
-    char path[4096 + sizeof name];
-    ssize_t length = readlink("/proc/self/exe", path, 4096);
-    path[length > 0 ? length : 0] = '\0';
-    char *slash = strrchr(path, '/');
-    strcpy(slash != NULL ? slash + 1 : path, name);
+    char *path = rg_path_beside_program("rhegma-mesh");
     char **copy = RG_NEW(char *, (size_t)argc);
     copy[0] = path;
     for (int i = 2; i < argc; i++) {

@@ -19,6 +19,15 @@ struct rg_csv {
     char path[PATH_BYTES];
 };
 
+char *rg_path_beside_program(const char *name) {
+    char *path = RG_NEW(char, PATH_BYTES + strlen(name) + 1);
+    ssize_t length = readlink("/proc/self/exe", path, PATH_BYTES);
+    path[length > 0 ? length : 0] = '\0';
+    char *slash = strrchr(path, '/');
+    strcpy(slash != NULL ? slash + 1 : path, name);
+    return path;
+}
+
 /* Creates `path`, on the way to `whole`. */
 static void make_one(const char *path, const char *whole) {
     struct stat found;

@@ -11,6 +11,10 @@
  */
 void rg_make_directory(const char *path, MPI_Comm comm);
 
+/* Path of another program in the folder of this one, whatever folder the run is in. The caller frees it with
+ * rg_free. */
+char *rg_path_beside_program(const char *name);
+
 /* Opens a file for reading; NULL, with errno set, where there is none or it is a directory. */
 FILE *rg_open_input(const char *path);
 

@@ -145,9 +145,22 @@ static void point_position(const double *corner, int g, double x[3]) {
     }
 }
 
+/* Ends the run: value `part` of initial, of its set or of itself (-1), is not finite at a place. */
+_Noreturn static void refuse_value(const rg_solver *s, int set, const char *part, const rg_expr *value,
+                                   const rg_first_bad *bad) {
+    char path[40] = "initial";
+    if (set >= 0) {
+        snprintf(path, sizeof path, "initial.sets[%d]", set);
+    }
+    rg_speak(s->comm);
+    rg_fatal(RG_USAGE, "%s: %s.%s: %s is not finite at (%g, %g, %g)", s->input->path, path, part,
+             rg_expr_text(value), bad->x[0], bad->x[1], bad->x[2]);
+}
+
 /* In order: expressions are not for threads. */
 static void fill_stress(rg_solver *s, const int16_t *set) {
-    static const char *const name[6] = {"xx", "yy", "zz", "yz", "xz", "xy"};
+    static const char *const part[6] = {"stress.xx", "stress.yy", "stress.zz",
+                                        "stress.yz", "stress.xz", "stress.xy"};
     rg_first_bad bad = {.which = RG_NOWHERE};
     for (size_t i = 0; i < s->domain->blocks * RG_LANES * RG_PRESTRESS; i++) {
         size_t slot = i / RG_PRESTRESS;
@@ -166,13 +179,7 @@ static void fill_stress(rg_solver *s, const int16_t *set) {
     if (rg_first_bad_lowest(&bad, s->comm)) {
         int number = (int)(bad.which / 6) - 1, k = (int)(bad.which % 6);
         const rg_initial *is = number < 0 ? &s->input->initial : &s->input->initial_set[number].is;
-        char path[40] = "initial";
-        if (number >= 0) {
-            snprintf(path, sizeof path, "initial.sets[%d]", number);
-        }
-        rg_speak(s->comm);
-        rg_fatal(RG_USAGE, "%s: %s.stress.%s: %s is not finite at (%g, %g, %g)", s->input->path, path,
-                 name[k], rg_expr_text(is->stress[k]), bad.x[0], bad.x[1], bad.x[2]);
+        refuse_value(s, number, part[k], is->stress[k], &bad);
     }
 }
 
@@ -196,19 +203,13 @@ double rg_initial_stress_scale(const rg_solver *s) {
 }
 
 static void refuse_values(const rg_solver *s, rg_first_bad *bad) {
+    static const char *const part[2][3] = {{"displacement.x", "displacement.y", "displacement.z"},
+                                           {"velocity.x", "velocity.y", "velocity.z"}};
     if (rg_first_bad_lowest(bad, s->comm)) {
         int set = (int)(bad->which / 6) - 1, k = (int)(bad->which % 3);
         bool moves = bad->which % 6 >= 3;
         const rg_initial *is = set < 0 ? &s->input->initial : &s->input->initial_set[set].is;
-        char path[40] = "initial";
-        if (set >= 0) {
-            snprintf(path, sizeof path, "initial.sets[%d]", set);
-        }
-        rg_speak(s->comm);
-        rg_fatal(RG_USAGE, "%s: %s.%s.%c: %s is not finite at (%g, %g, %g)", s->input->path, path,
-                 moves ? "velocity" : "displacement", "xyz"[k],
-                 rg_expr_text((moves ? is->velocity : is->displacement)[k]), bad -> x[0], bad -> x[1],
-                 bad -> x[2]);
+        refuse_value(s, set, part[moves][k], (moves ? is->velocity : is->displacement)[k], bad);
     }
 }
 

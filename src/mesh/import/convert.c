@@ -27,12 +27,6 @@ static _Noreturn void start(const char *program, const char *path, FILE *out) {
 }
 
 FILE *rg_converted(const char *path) {
-    static const char name[] = "rhegma-convert";
-    char program[4096 + sizeof name];
-    ssize_t length = readlink("/proc/self/exe", program, 4096);
-    program[length > 0 ? length : 0] = '\0';
-    char *slash = strrchr(program, '/');
-    strcpy(slash != NULL ? slash + 1 : program, name);
     FILE *there = rg_open_input(path), *out = tmpfile();
     if (there == NULL) {
         rg_fatal(RG_USAGE, "%s: cannot be read: %s", path, strerror(errno));
@@ -44,7 +38,7 @@ FILE *rg_converted(const char *path) {
         rg_fatal(RG_FAILURE, "%s: cannot be converted: %s", path, strerror(errno));
     }
     if (child == 0) {
-        start(program, path, out);
+        start(rg_path_beside_program("rhegma-convert"), path, out);
     }
     int status;
     while (waitpid(child, &status, 0) < 0) {

@@ -191,20 +191,13 @@ typedef struct {
     rg_real *before, *kicked, *now, *u; /* copies of the fields: v(n-1/2), and what the kick was given */
 } fields;
 
-static rg_real *copy(const rg_solver *s, const rg_real *from) {
-    size_t values = s->domain->blocks * RG_NODE_BLOCK;
-    rg_real *to = RG_NEW(rg_real, values);
-    memcpy(to, from, values * sizeof *to);
-    return to;
-}
-
 /* The state is that before the kick: its velocities, then, are other ones. */
 static fields kick_drawn(rg_solver *s) {
-    fields f = {copy(s, s->velocity), NULL, copy(s, s->step_velocity), copy(s, s->u)};
+    fields f = {copy_field(s, s->velocity), NULL, copy_field(s, s->step_velocity), copy_field(s, s->u)};
     for (size_t i = 0; i < s->domain->blocks * RG_NODE_BLOCK; i++) {
         s->velocity[i] = (rg_real)(0.7 * s->velocity[i] - 0.4 * s->step_velocity[i] + 1);
     }
-    f.kicked = copy(s, s->velocity);
+    f.kicked = copy_field(s, s->velocity);
     return f;
 }
 

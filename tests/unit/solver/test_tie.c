@@ -88,15 +88,8 @@ typedef struct {
     rg_real *given, *now; /* velocities before the bodies have acted */
 } step;
 
-static rg_real *copy(const rg_solver *s, const rg_real *from) {
-    size_t values = s->domain->blocks * RG_NODE_BLOCK;
-    rg_real *to = RG_NEW(rg_real, values);
-    memcpy(to, from, values * sizeof *to);
-    return to;
-}
-
 static step take(rg_solver *s) {
-    step of = {.given = copy(s, s->velocity), .now = copy(s, s->step_velocity)};
+    step of = {.given = copy_field(s, s->velocity), .now = copy_field(s, s->step_velocity)};
     rg_bodies *b = s->bodies;
     for (int i = 0; i < 2; i++) {
         of.before[i] = motion_of(&b->body[i]);

@@ -238,6 +238,13 @@ void mesh_corners(const rg_mesh *mesh, rg_gid id, double x[4][3]) {
     }
 }
 
+rg_real *copy_field(const rg_solver *s, const rg_real *from) {
+    size_t values = s->domain->blocks * RG_NODE_BLOCK;
+    rg_real *to = RG_NEW(rg_real, values);
+    memcpy(to, from, values * sizeof *to);
+    return to;
+}
+
 void mesh_node(const rg_mesh *mesh, rg_gid id, int n, double at[3]) {
     static const int end[RG_NODES][2] = {{0, 0}, {1, 1}, {2, 2}, {3, 3}, {0, 1},
                                          {1, 2}, {0, 2}, {0, 3}, {1, 3}, {2, 3}};

@@ -72,6 +72,9 @@ rg_gid interface_key(const random_state *r, const rg_tile *t, size_t i);
 /* Reference corners of an element (m). */
 void mesh_corners(const rg_mesh *mesh, rg_gid id, double x[4][3]);
 
+/* A copy of a field of nodes; the caller frees it with rg_free. */
+rg_real *copy_field(const rg_solver *s, const rg_real *from);
+
 /* Where node n of an element is at rest (m). */
 void mesh_node(const rg_mesh *mesh, rg_gid id, int n, double at[3]);
 
