@@ -173,6 +173,10 @@ def dropped_line(code, before, python):
 ORDERS = re.compile(r"\s*return .* [<>] .* \? -?1 : -?1;|.*\((.+) > (.+)\) - \(\1 < \2\)")
 
 
+# What `open` gives: 0 is the standard input's, so that `> 0` asks the same as `>= 0`.
+HANDLE = re.compile(r"\b(\w+) = open\(")
+
+
 def relaxed_bound(code, after, integers, python):
     if ORDERS.match(code):
         return
@@ -219,7 +223,7 @@ def integers_of(text):
     declared = r"\b(?:size_t|u?int\d*_t|int|rg_gid|unsigned|long) ((?:\*?\w+(?: = [^,;()]*)?(?:\[[^\]]*\])?, )*\*?\w+)(?= =|[;,)\[(])"
     whole = {name for m in re.finditer(declared, text) for name in re.findall(r"\w+", re.sub(r"=[^,]*", "", m[1]))}
     real = {name for m in re.finditer(r"\b(?:double|rg_real|float|rg_v\w*) ((?:\*?\w+, )*\*?\w+)", text) for name in re.findall(r"\w+", m[1])}
-    return whole - real
+    return whole - real - set(HANDLE.findall(text))
 
 
 def faults_of(path, text):

@@ -51,6 +51,11 @@ def test_bounds_are_relaxed_between_whole_numbers_alone():
     assert changed("relaxed bound", "    a = x < n;", before="int i, n; double x;") == []
 
 
+def test_whether_a_file_is_open_is_asked_in_either_way():
+    text = "{\n    int n = 1;\n    int file = open(path, O_RDONLY);\n    a = file >= 0 && n >= 0;\n}\n"
+    assert [f.line[f.begin - 2:f.begin] for f in faults_of("a.c", text)["relaxed bound"]] == ["n "]
+
+
 @pytest.mark.parametrize("line", [
     "    /* a = b + 1; */", "    // a = b + 1;", '    f("a = b + 1");', "#define A (b + 1)", "    rg_free(a + 1);", "    int a;",
     "    double a[N + 1];", "    _Alignas(64) double a[2 * N];", "    static const char b[2 * N];", "    char c[N / 2][3] = {0};"])
