@@ -63,6 +63,7 @@ enum {
     RG_POINTS = 6,                        /* quadrature points of an interface */
     RG_GAUSS = 4,                         /* quadrature points of a tetrahedron */
     RG_TILE = 256,                        /* elements of a tile of a large mesh: some 0.4 MB of fields */
+    RG_MOST_TILE = 1024,                  /* what may be asked for in its place */
 };
 
 enum { /* element geometry: grad l_k of barycentric coordinates k = 0, 1, 2 (1/m), volume (m^3) */

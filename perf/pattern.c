@@ -216,7 +216,7 @@ int main(int argc, char **argv) {
         return RG_USAGE;
     }
     rg_mesh *mesh = make_mesh(&b);
-    rg_tile_graph *g = rg_tile_graph_make(mesh, rg_tile_elements(b.elements));
+    rg_tile_graph *g = rg_tile_graph_make(mesh, rg_mesh_tile(mesh));
     rg_mesh_free(mesh);
     for (int i = 5; i < argc; i++) {
         write_pattern(g, atoi(argv[i]), argv[1]);

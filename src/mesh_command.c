@@ -38,6 +38,7 @@ static const char usage[] =
     "         --size D        elements of a geometry: their size, a number or an expression in x, y, z (in\n"
     "                         the unit of IN); --curvature N: N elements at least around a full turn\n"
     "         --improve       makes flat elements less flat\n"
+    "         --tile N        256 (without it), 512 or 1024 elements are a tile: see mesh.tile of a case\n"
     "       rhegma mesh CASE.yaml -o OUT.h5 [--set a.b=value]   a mesh file from the mesh of a case\n"
     "       rhegma mesh --info MESH.h5 [--case CASE.yaml]   what a mesh file holds; its time steps with the\n"
     "                                               fastest material of a case, else for waves of 1 m/s\n"
@@ -106,6 +107,17 @@ static rg_expr *read_size(const char *text) {
     return size;
 }
 
+static int read_tile(const char *text) {
+    for (int tile = RG_TILE; tile <= RG_MOST_TILE; tile *= 2) {
+        char word[16];
+        snprintf(word, sizeof word, "%d", tile);
+        if (strcmp(text, word) == 0) {
+            return tile;
+        }
+    }
+    complain("--tile is one of 256, 512 and 1024, not", text);
+}
+
 static void read_option(rg_mesh_arguments *a, const char *option, const char *value) {
     if (value == NULL) {
         complain("missing value after", option);
@@ -124,6 +136,8 @@ static void read_option(rg_mesh_arguments *a, const char *option, const char *va
         a->size = read_size(value);
     } else if (strcmp(option, "--curvature") == 0) {
         a->curvature = read_number(option, value);
+    } else if (strcmp(option, "--tile") == 0) {
+        a->tile = read_tile(value);
     } else if (strcmp(option, "--partition") == 0) {
         a->partition = value;
     } else if (strcmp(option, "--case") == 0) {
@@ -159,6 +173,7 @@ static bool is_text(const char *path) {
 /* An option that says something of an import; NULL: none is given. */
 static const char *import_option(const rg_mesh_arguments *a) {
     return a->improve             ? "--improve"
+           : a->tile > 0          ? "--tile"
            : a->how.split         ? "--split"
            : a->how.thickness > 0 ? "--extrude"
            : a->how.merge > 0     ? "--merge"
@@ -313,6 +328,7 @@ void rg_mesh_finish(rg_mesh *mesh, const rg_mesh_arguments *a) {
         improve(mesh);
         rg_mesh_check(mesh, a->input);
     }
+    mesh->tile = rg_tile_elements(mesh->elements, a->tile > 0 ? a->tile : RG_TILE);
     rg_mesh_file_write(a->output, mesh, 0, NULL);
     tell(mesh, a->output);
     printf(", %d surface sets, %d volume sets\n", mesh->surface.count, mesh->volume.count);

@@ -16,6 +16,7 @@ typedef struct {
     double curvature;     /* --curvature; 0: none */
     bool info;
     bool improve;          /* --improve */
+    int tile;              /* --tile; 0: RG_TILE */
     const char *partition; /* --partition: numbers of ranks, separated by commas */
     int overrides;
     const char **override; /* --set */

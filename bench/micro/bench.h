@@ -19,6 +19,7 @@ typedef struct {
     int threads;        /* up to this many */
     int rounds;         /* of the measurement of efficiency; 0 for the table of kernels */
     int repeats;
+    int tile; /* elements of one, in the whole step */
 } bench_options;
 
 /* Seconds per call, the slowest rank's, of each repeat. */

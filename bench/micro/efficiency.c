@@ -96,7 +96,7 @@ static void sleep_until_all_are_here(void) {
 static void make_solvers(efficiency *e, const int cells[3]) {
     bool first = e->b->rank == 0;
     for (int f = 0; f < FORMS; f++) {
-        e->input[f] = bench_spall_case(cells, forms[f]);
+        e->input[f] = bench_spall_case(cells, e->b->options.tile, forms[f]);
         if (first) {
             place_threads(e, e->cores);
             e->alone[f] = rg_solver_make(e->input[f], MPI_COMM_SELF);

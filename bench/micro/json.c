@@ -126,8 +126,8 @@ static void put_row(const bench *b, const bench_row *r, FILE *out) {
 }
 
 static void put_all(const bench *b, char (*affinity)[BENCH_TEXT], FILE *out) {
-    fprintf(out, "{\n  \"program\": \"rhegma-bench\", \"quick\": %s, \"validated\": %s,\n",
-            b->options.quick ? "true" : "false", b->failed ? "false" : "true");
+    fprintf(out, "{\n  \"program\": \"rhegma-bench\", \"quick\": %s, \"tile\": %d, \"validated\": %s,\n",
+            b->options.quick ? "true" : "false", b->options.tile, b->failed ? "false" : "true");
     bench_put_build(out);
     bench_put_machine(b, affinity, out);
     put_roofs(b, out);

@@ -20,6 +20,7 @@ static const char usage[] =
     "  --kernel NAME   only kernels with NAME in their name (step for the whole step)\n"
     "  --threads N     1, 2, 4, ... and N threads per rank (default: what OMP_NUM_THREADS allows)\n"
     "  --repeats R     samples per row, 3 to 100 (default 21; 5 if quick)\n"
+    "  --tile N        of the whole step: 256 (default), 512 or 1024 elements to a tile\n"
     "  --efficiency N  instead: what the ranks' cores gain over one core, in N rounds (3 to 100); see "
     "bench/studies/efficiency\n"
     "  --cost          instead: operations and bytes of the cost model (perf/README.md)\n"
@@ -75,6 +76,10 @@ static int parse_value(bench *b, const char *option, const char *value) {
         return parse_count(value, 3, BENCH_SAMPLES, &o->rounds)
                    ? RG_OK
                    : complain(b, "--efficiency: a number from 3 to 100 is needed, not", value);
+    } else if (strcmp(option, "--tile") == 0) {
+        return parse_count(value, 256, 1024, &o->tile) && (o->tile & (o->tile - 1)) == 0
+                   ? RG_OK
+                   : complain(b, "--tile: 256, 512 or 1024 is needed, not", value);
     } else if (strcmp(option, "--threads") == 0) {
         return parse_count(value, 1, MOST_THREADS, &o->threads)
                    ? RG_OK
@@ -93,7 +98,8 @@ static int parse(bench *b, int argc, char **argv) {
         if (strcmp(a, "--quick") == 0) {
             b->options.quick = true;
         } else if (strcmp(a, "--json") == 0 || strcmp(a, "--kernel") == 0 || strcmp(a, "--threads") == 0 ||
-                   strcmp(a, "--repeats") == 0 || strcmp(a, "--efficiency") == 0) {
+                   strcmp(a, "--repeats") == 0 || strcmp(a, "--tile") == 0 ||
+                   strcmp(a, "--efficiency") == 0) {
             if (parse_value(b, a, i + 1 < argc ? argv[i + 1] : NULL) != RG_OK) {
                 return RG_USAGE;
             }
@@ -101,6 +107,9 @@ static int parse(bench *b, int argc, char **argv) {
         } else {
             return complain(b, "unknown option", a);
         }
+    }
+    if (b->options.tile == 0) {
+        b->options.tile = 256;
     }
     if (b->options.threads == 0) {
         b->options.threads = omp_get_max_threads();

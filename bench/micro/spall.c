@@ -24,6 +24,7 @@ static const char case_text[] =
     "  size: [0.4e-3, 0.4e-3, 4e-3]\n"
     "  origin: [-0.2e-3, -0.2e-3, -2e-3]\n"
     "  jitter: 0.1\n"
+    "  tile: %d\n"
     "material: {model: neo-hookean, young: 260e9, poisson: 0.21, density: 3690}\n"
     "interface: {form: %s, beta_s: 4, law: linear, strength: 400e6, energy: 34, beta: 1}\n"
     "boundary:\n"
@@ -36,14 +37,14 @@ static const char case_text[] =
     "time: {end: 1e-6}\n"
     "output: {interval: 1e-8}\n";
 
-rg_case *bench_spall_case(const int cells[3], const char *form) {
+rg_case *bench_spall_case(const int cells[3], int tile, const char *form) {
     char path[] = "/tmp/rhegma-bench-XXXXXX";
     int file = mkstemp(path);
     FILE *out = file < 0 ? NULL : fdopen(file, "w");
     if (out == NULL) {
         rg_fatal(RG_FAILURE, "%s: cannot be written", path);
     }
-    fprintf(out, case_text, cells[0], cells[1], cells[2], form);
+    fprintf(out, case_text, cells[0], cells[1], cells[2], tile, form);
     fclose(out);
     rg_case *c = rg_case_read(path, 0, NULL, stderr);
     unlink(path);

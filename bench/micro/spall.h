@@ -5,8 +5,9 @@
 #include "case/read.h"
 #include "solver/solver.h"
 
-/* The case on cells[0] x cells[1] x cells[2] cubes, with interface.form `form`. Free with rg_case_free. */
-rg_case *bench_spall_case(const int cells[3], const char *form);
+/* The case on cells[0] x cells[1] x cells[2] cubes in tiles of `tile` elements, with interface.form `form`.
+ * Free with rg_case_free. */
+rg_case *bench_spall_case(const int cells[3], int tile, const char *form);
 
 /* Back to the start: random small motion, `percent` of the faces broken, forces by the kernels `set`.
  * Collective. */

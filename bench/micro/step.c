@@ -102,7 +102,7 @@ static void run_mesh(bench *b, const int cells[3], int threads) {
         if (s == NULL || strcmp(steps[k].form, steps[k - 1].form) != 0) {
             rg_solver_free(s);
             rg_case_free(c);
-            c = bench_spall_case(cells, steps[k].form);
+            c = bench_spall_case(cells, b->options.tile, steps[k].form);
             s = rg_solver_make(c, MPI_COMM_WORLD);
             rg_solver_start(s);
         }

@@ -262,6 +262,7 @@ typedef struct {
         double size[3], origin[3];
         double jitter; /* fraction of the smallest cell edge */
         int64_t seed;
+        int tile;         /* elements of one: RG_TILE << tile */
         char *file;       /* a mesh file (mesh/file.h), as an absolute path; NULL: built-in box */
         rg_expr *weight;  /* cost of an element at x, y, z over that of others; NULL: all the same */
         double rebalance; /* most over mean work of ranks from which the mesh is repartitioned; 0: never */

@@ -104,6 +104,7 @@ static const char *const contact_models[] = {"interfaces", "general", NULL};
 static const char *const contact_models_meaning[] = {
     "both sides of a crack, as interface.contact says; fragments pass through each other",
     "those, and faces of the surface and of cracks that have separated, of one part or several: with interface.contact potential"};
+static const char *const tiles[] = {"256", "512", "1024", NULL}; /* RG_TILE, doubled each time */
 static const char *const precisions[] = {"double", "single", NULL};
 static const char *const keeps[] = {"energy", "opening", NULL};
 static const char *const keeps_meaning[] = {
@@ -199,6 +200,9 @@ static const rg_key case_keys[] = {
     {.name = "mesh.jitter", REAL, FROM_TO(0, 0.3), DEFAULT(0), BOX, CASE(mesh.jitter),
      MEANS("moves interior vertices at random, by up to this fraction of the smallest cell edge")},
     {.name = "mesh.seed", INTEGER, FROM(0), DEFAULT(1), BOX, CASE(mesh.seed), MEANS("of the jitter")},
+    {.name = "mesh.tile", CHOICE(tiles), DEFAULT(0), BOX, CASE(mesh.tile),
+     MEANS("elements of a tile, what a rank owns and a thread sweeps at a time; with 1024 a step of a large mesh is "
+           "faster, and fewer ranks can share it; small meshes have smaller ones; results differ in rounding")},
     {.name = "mesh.weight", .type = RG_KEY_EXPR, ELSE("1"), .no_time = true, MAY_CHANGE, CASE(mesh.weight),
      MEANS("cost of an element at its centroid over that of others, for the partition, > 0; results do not depend on it")},
     {.name = "mesh.rebalance", REAL, FROM(0), DEFAULT(0), MAY_CHANGE, CASE(mesh.rebalance),

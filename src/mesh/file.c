@@ -300,7 +300,7 @@ static void read_header(rg_mesh_file *f) {
     h->elements = read_count(f, "elements", 1, most);
     h->vertices = read_count(f, "vertices", 4, most);
     h->interfaces = read_count(f, "interfaces", 0, 2 * h->elements);
-    h->tile_elements = read_count(f, "tile_elements", 1, RG_TILE);
+    h->tile_elements = read_count(f, "tile_elements", 1, RG_MOST_TILE);
     int64_t tiles = (h->elements + h->tile_elements - 1) / h->tile_elements;
     h->tiles = read_count(f, "tiles", tiles, tiles);
     if (!read_attribute(f, "box", H5T_NATIVE_DOUBLE, 6, h->box)) {
@@ -735,6 +735,7 @@ static rg_mesh *adopt(rg_mesh_slab *slab, double *x, rg_mesh_header *h) {
     rg_mesh *mesh = RG_NEW(rg_mesh, 1);
     *mesh = (rg_mesh){.vertices = h->vertices,
                       .elements = slab->elements,
+                      .tile = (int)h->tile_elements,
                       .x = x,
                       .corner = slab->corner,
                       .neighbour = slab->neighbour,

@@ -170,7 +170,7 @@ static void put_header(const target *w, const rg_mesh *mesh) {
                   {"vertices", mesh->vertices},
                   {"elements", mesh->elements},
                   {"interfaces", sides / 2},
-                  {"tile_elements", rg_tile_elements(mesh->elements)},
+                  {"tile_elements", rg_mesh_tile(mesh)},
                   {"tiles", w->tiles},
                   {"surface_sets", mesh->surface.count},
                   {"volume_sets", mesh->volume.count},
@@ -224,7 +224,7 @@ static int64_t tile_vertices(const target *w, const rg_mesh *mesh, int64_t t, in
 }
 
 static void find_vertices(target *w, const rg_mesh *mesh) {
-    int64_t list[4 * RG_TILE];
+    int64_t list[4 * RG_MOST_TILE];
     size_t room = 0;
     w->vertex_start = RG_NEW(int64_t, (size_t)w->tiles + 1);
     for (int64_t t = 0; t < w->tiles; t++) {
@@ -248,7 +248,7 @@ static void put_vertices(const target *w, const rg_mesh *mesh) {
 }
 
 static void put_graph(const target *w, const rg_mesh *mesh) {
-    rg_tile_graph *g = rg_tile_graph_make(mesh, rg_tile_elements(mesh->elements));
+    rg_tile_graph *g = rg_tile_graph_make(mesh, rg_mesh_tile(mesh));
     put_whole(w, &rg_rows_tile_start, g->start, g->tiles + 1);
     put_whole(w, &rg_rows_tile_neighbour, g->neighbour, g->start[g->tiles]);
     put_whole(w, &rg_rows_tile_faces, g->faces, g->start[g->tiles]);
@@ -369,7 +369,7 @@ static int64_t version_of(const rg_mesh *mesh) {
 
 void rg_mesh_file_write(const char *path, const rg_mesh *mesh, int partitions,
                         const rg_tile_partition *partition) {
-    int tile = rg_tile_elements(mesh->elements);
+    int tile = rg_mesh_tile(mesh);
     target w = {.path = path, .version = version_of(mesh), .tiles = (mesh->elements + tile - 1) / tile};
     w.element_start = RG_NEW(int64_t, (size_t)w.tiles + 1);
     for (int64_t t = 0; t <= w.tiles; t++) {

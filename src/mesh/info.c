@@ -235,7 +235,7 @@ static void print_parts(const rg_mesh *mesh, FILE *out) {
 
 static void print_counts(const rg_mesh *mesh, const struct totals *t, FILE *out) {
     double box[2][3];
-    rg_gid sides = 0, tile = rg_tile_elements(mesh->elements);
+    rg_gid sides = 0, tile = rg_mesh_tile(mesh);
     rg_mesh_box_around(mesh, box);
     for (rg_gid slot = 0; slot < 4 * mesh->elements; slot++) {
         sides += mesh->neighbour[slot] >= 0;

@@ -17,6 +17,7 @@ typedef int32_t rg_lid; /* number local to a rank */
  * one. */
 typedef struct {
     rg_gid vertices, elements;
+    int tile;          /* elements of a tile; 0: not chosen, so that rg_mesh_tile tells */
     double *x;         /* [vertices][3] m */
     rg_gid *corner;    /* [elements][4], ascending within an element (see kernels/layout.h) */
     rg_gid *neighbour; /* [elements][4]: element across local face f (opposite corner f); -1 on the surface */
@@ -53,8 +54,12 @@ void rg_mesh_sort(rg_mesh *mesh);
 /* Mean extent of the elements along each axis (m); `box` is that around the mesh. */
 void rg_mesh_mean_extent(const rg_mesh *mesh, const double box[2][3], double extent[3]);
 
-/* Elements of a tile in a mesh of so many: RG_TILE, fewer in a small mesh, so that there are tiles enough. */
-int rg_tile_elements(rg_gid elements);
+/* Elements of a tile in a mesh of so many: `most` (RG_TILE, or what is asked for, a multiple of 16 up to
+ * RG_MOST_TILE), fewer in a small mesh, so that there are tiles enough. */
+int rg_tile_elements(rg_gid elements, int most);
+
+/* Elements of a tile of this mesh. */
+int rg_mesh_tile(const rg_mesh *mesh);
 
 /* Fills `neighbour` and `face` from `corner`. Ends the run, naming them, if three elements share a face. */
 void rg_mesh_connect(rg_mesh *mesh);

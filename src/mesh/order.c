@@ -125,10 +125,14 @@ void rg_mesh_sort(rg_mesh *mesh) {
     rg_free(order);
 }
 
-int rg_tile_elements(rg_gid elements) {
+int rg_tile_elements(rg_gid elements, int most) {
     rg_gid tile = elements / FEWEST_TILES;
-    if (tile >= RG_TILE) {
-        return RG_TILE;
+    if (tile >= most) {
+        return most;
     }
     return (int)(tile >= WHOLE ? tile / WHOLE * WHOLE : tile > 0 ? tile : 1);
+}
+
+int rg_mesh_tile(const rg_mesh *mesh) {
+    return mesh->tile > 0 ? mesh->tile : rg_tile_elements(mesh->elements, RG_TILE);
 }

@@ -46,7 +46,9 @@ rg_mesh *rg_mesh_of_case(const rg_case *c) {
         check_sets(c);
         return rg_mesh_file_read(c->mesh.file);
     }
-    return rg_mesh_box(c->mesh.cells, c->mesh.origin, c->mesh.size, c->mesh.jitter, c->mesh.seed);
+    rg_mesh *mesh = rg_mesh_box(c->mesh.cells, c->mesh.origin, c->mesh.size, c->mesh.jitter, c->mesh.seed);
+    mesh->tile = rg_tile_elements(mesh->elements, RG_TILE << c->mesh.tile);
+    return mesh;
 }
 
 static rg_part *part_of_file(const rg_case *c, double *cost, bool known, int rank, MPI_Comm comm) {
@@ -65,7 +67,7 @@ static rg_part *part_of_box(const rg_case *c, double *cost, bool known, int rank
     int tile = 0;
     if (rank == 0) {
         mesh = rg_mesh_of_case(c);
-        tile = rg_tile_elements(mesh->elements);
+        tile = rg_mesh_tile(mesh);
         if (!known && c->mesh.weight != NULL) {
             cost = rg_tile_weights_of_mesh(c, mesh, tile);
         }

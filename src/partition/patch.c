@@ -248,7 +248,7 @@ static void renumber(const rg_part *patch, rg_element *e) {
 
 /* The elements lie in the order of the curve; so do their new numbers. */
 static void make_tiles(rg_part *patch) {
-    patch->tile = rg_tile_elements(patch->total);
+    patch->tile = rg_tile_elements(patch->total, RG_TILE);
     patch->tiles = (rg_lid)((patch->total + patch->tile - 1) / patch->tile);
     patch->tile_id = RG_NEW(rg_gid, (size_t)patch->tiles);
     for (rg_lid t = 0; t < patch->tiles; t++) {

@@ -43,7 +43,7 @@ static const rg_rows partition = {"partition_2", RG_ROWS_INT32, 1};
 static void write_good(const char *path, const int64_t cells[3]) {
     static const double origin[3] = {0, 0, 0}, size[3] = {1, 2, 3};
     rg_mesh *mesh = rg_mesh_box(cells, origin, size, 0, 1);
-    int64_t tile = rg_tile_elements(mesh->elements), tiles = (mesh->elements + tile - 1) / tile;
+    int64_t tile = rg_mesh_tile(mesh), tiles = (mesh->elements + tile - 1) / tile;
     int32_t *owner = RG_NEW(int32_t, (size_t)tiles);
     for (int64_t t = 0; t < tiles; t++) {
         owner[t] = t >= tiles / 2;

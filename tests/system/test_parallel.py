@@ -78,6 +78,24 @@ def test_fragments_are_the_same_on_many_ranks(run, ranks):
     assert_same_bits(one, other)
 
 
+def test_larger_tiles(run, tmp_path):
+    """The same bits on any layout and from a mesh file; those of the usual tiles but for rounding."""
+    sets = {"mesh.cells": [15, 15, 13], "mesh.tile": "512", "time.end": 2e-9, "output.interval": 1e-9,
+            "output.probes": PROBES[:1]}
+    usual = run(CASES / "fragments.yaml", sets={**sets, "mesh.tile": "256"})
+    one = run(CASES / "fragments.yaml", sets=sets)
+    for ranks, threads in [(1, 2), (2, 1)]:
+        assert_same_bits(one, run(CASES / "fragments.yaml", ranks=ranks, threads=threads, sets=sets))
+    mesh = tmp_path / "mesh.h5"
+    words = [word for key in ("mesh.cells", "mesh.tile") for word in ("--set", f"{key}={sets[key]}")]
+    assert launch("mesh", CASES / "fragments.yaml", "-o", mesh, *words).returncode == 0
+    assert "17550 in 65 tiles" in launch("mesh", "--info", mesh).stdout
+    from_file = run(CASES / "fragments.yaml", sets={**sets, "mesh": {"file": str(mesh)}}).summary
+    assert from_file["state_hash"] == one.summary["state_hash"]
+    assert one.summary["state_hash"] != usual.summary["state_hash"] and one.summary["failed_area_m2"] == 0
+    assert one.energy["kinetic"][-1] == pytest.approx(usual.energy["kinetic"][-1], rel=1e-13)
+
+
 # ---- Where the time goes ----
 
 

@@ -44,7 +44,7 @@ static void test_defaults(void **state) {
     (void)state;
     write_bytes(base, strlen(base));
     rg_case *c = read_good(path, 0, NULL);
-    assert_true(c->mesh.jitter == 0 && c->mesh.seed == 1 && c->mesh.file == NULL);
+    assert_true(c->mesh.jitter == 0 && c->mesh.seed == 1 && c->mesh.tile == 0 && c->mesh.file == NULL);
     assert_true(c->interface.form == RG_FORM_VARIATIONAL && c->interface.penalty == RG_PENALTY_ELASTIC);
     assert_true(c->defaults == 1 && c->interface.beta_s == 2 && c->interface.beta == 1);
     assert_true(c->interface.activation == RG_ACTIVATION_CONSERVING);

@@ -21,6 +21,7 @@ static const char defaults[] =
     "  origin: [0, 0, 0] # m\n"
     "  jitter: 0\n"
     "  seed: 1\n"
+    "  tile: 256\n"
     "  rebalance: 0\n"
     "material:\n"
     "  model: neo-hookean\n"
@@ -77,6 +78,7 @@ static const char *const all[] = {
     "mesh.origin=[-1, 0.5, 8]",
     "mesh.jitter=0.25",
     "mesh.seed=77",
+    "mesh.tile=512",
     "mesh.weight='1 + x'",
     "mesh.rebalance=1.5",
     "material.name=first",
@@ -196,6 +198,7 @@ static void test_everything(void **state) {
                 "  origin: [-1, 0.5, 8] # m\n"
                 "  jitter: 0.25\n"
                 "  seed: 77\n"
+                "  tile: 512\n"
                 "  weight: \"1 + x\"\n"
                 "  rebalance: 1.5\n"
                 "material:\n"
@@ -472,6 +475,7 @@ static void test_fixed_values(void **state) {
                               "mesh.origin: [0, 0, 0]\n"
                               "mesh.jitter: 0\n"
                               "mesh.seed: 1\n"
+                              "mesh.tile: 256\n"
                               "material.model: neo-hookean\n"
                               "material.young: 2048\n"
                               "material.poisson: 0.125\n"

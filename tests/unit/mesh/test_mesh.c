@@ -405,7 +405,7 @@ static void test_sort(void **state) {
     rg_mesh_free(m);
 }
 
-/* At least 64 tiles where the elements suffice, of whole blocks if that is possible, RG_TILE at most. */
+/* At least 64 tiles where the elements suffice, of whole blocks if that is possible, at most as asked for. */
 static void test_tile_elements(void **state) {
     (void)state;
     static const struct {
@@ -419,10 +419,14 @@ static void test_tile_elements(void **state) {
                  {16383, 240},     {16384, RG_TILE},
                  {16385, RG_TILE}, {INT64_C(1) << 40, RG_TILE}};
     for (size_t k = 0; k < sizeof known / sizeof known[0]; k++) {
-        assert_int_equal(rg_tile_elements(known[k].elements), known[k].tile);
+        assert_int_equal(rg_tile_elements(known[k].elements, RG_TILE), known[k].tile);
     }
+    assert_int_equal(rg_tile_elements(64 * RG_MOST_TILE - 1, RG_MOST_TILE), RG_MOST_TILE - 16);
+    assert_int_equal(rg_tile_elements(64 * RG_MOST_TILE, RG_MOST_TILE), RG_MOST_TILE);
+    assert_int_equal(rg_mesh_tile(&(rg_mesh){.elements = INT64_C(1) << 40}), RG_TILE);
+    assert_int_equal(rg_mesh_tile(&(rg_mesh){.elements = INT64_C(1) << 40, .tile = 512}), 512);
     for (rg_gid elements = 1; elements < 40000; elements++) {
-        int tile = rg_tile_elements(elements);
+        int tile = rg_tile_elements(elements, RG_TILE);
         rg_gid tiles = (elements + tile - 1) / tile;
         assert_true(tile >= 1 && tile <= RG_TILE && (tile < 16 || tile % 16 == 0));
         assert_true(tiles >= 64 || tiles == elements);

@@ -258,7 +258,7 @@ static void write_counts(FILE *out, const rg_mesh *m, const char *parts) {
         low[k % 3] = fmin(low[k % 3], m->x[k]);
         high[k % 3] = fmax(high[k % 3], m->x[k]);
     }
-    int tile = rg_tile_elements(m->elements);
+    int tile = rg_mesh_tile(m);
     fprintf(out, "elements       %d in %d tiles, %d vertices, 0 interfaces, %d surface faces\n",
             (int)m->elements, (int)(m->elements + tile - 1) / tile, (int)m->vertices, 4 * (int)m->elements);
     fprintf(out, "box            %g .. %g, %g .. %g, %g .. %g m; volume %.9g m3\n", low[0], high[0], low[1],

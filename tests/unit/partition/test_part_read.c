@@ -221,7 +221,7 @@ static void check_case(const struct box *b, const rg_mesh *mesh, int tile) {
 
 static void check_box(const struct box *b) {
     rg_mesh *mesh = make_mesh(b);
-    int tile = rg_tile_elements(mesh->elements);
+    int tile = rg_mesh_tile(mesh);
     if (rank == 0) {
         rg_mesh_file_write(path, mesh, 0, NULL);
     }

@@ -88,7 +88,7 @@ static rg_part *make_part(const rg_case *c, const struct box *b, MPI_Comm comm) 
         double s = mesh->x[k] / b->size[k % 3];
         mesh->x[k] *= 1 + b->grading * s;
     }
-    rg_part *part = rg_part_distribute(mesh, mesh == NULL ? 0 : rg_tile_elements(mesh->elements), comm);
+    rg_part *part = rg_part_distribute(mesh, mesh == NULL ? 0 : rg_mesh_tile(mesh), comm);
     rg_mesh_free(mesh);
     rg_materials_assign(c, part, comm);
     return part;
@@ -212,7 +212,7 @@ static bool well_chosen(const rg_part *patch, const rg_part *part, const rg_mesh
     n > RG_PATCH_MOST ? choose(&c) : (void)memset(c.in, 1, n);
     bool good =
         patch == NULL || (memcmp(patch->box, part->box, sizeof patch->box) == 0 &&
-                          patch->tile == rg_tile_elements(patch->total) && patch->total == patch->elements);
+                          patch->tile == rg_tile_elements(patch->total, RG_TILE) && patch->total == patch->elements);
     rg_gid at = 0, sides = 0;
     for (rg_gid e = 0; patch != NULL && e < mesh->elements; e++) {
         if (c.in[e]) {
@@ -239,7 +239,7 @@ static bool well_chosen(const rg_part *patch, const rg_part *part, const rg_mesh
 static bool well_connected(const rg_part *patch, const rg_mesh *mesh) {
     bool good = (rg_gid)patch->tiles * patch->tile >= patch->total &&
                 (rg_gid)(patch->tiles - 1) * patch->tile < patch->total && patch->boundary == 0 &&
-                patch->total == patch->elements && patch->tile == rg_tile_elements(patch->total);
+                patch->total == patch->elements && patch->tile == rg_tile_elements(patch->total, RG_TILE);
     rg_gid sides = 0;
     for (rg_lid t = 0; t < patch->tiles; t++) {
         good = good && patch->tile_id[t] == t;
