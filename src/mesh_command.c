@@ -14,6 +14,7 @@
 #include "base/mem.h"
 #include "case/case.h"
 #include "case/read.h"
+#include "mesh/apart.h"
 #include "mesh/check.h"
 #include "mesh/file.h"
 #include "mesh/import/convert.h"
@@ -31,6 +32,8 @@ static const char usage[] =
     "         --unit U        lengths of IN are in m, cm, mm, um, nm, in or ft; or\n"
     "         --scale S       S: m per unit of IN; STEP and IGES say their own unit\n"
     "         --merge D       nodes as near as D (in the unit of IN) to one another become one\n"
+    "         --apart         parts that share no node stay apart where they touch: contact acts between "
+    "them\n"
     "         --extrude T[,N] a flat mesh of triangles becomes a plate of thickness T (in the unit of IN), "
     "in\n"
     "                         N layers; its edges are faces then, and there are sets bottom and top\n"
@@ -176,6 +179,7 @@ static const char *import_option(const rg_mesh_arguments *a) {
            : a->tile > 0          ? "--tile"
            : a->how.split         ? "--split"
            : a->how.thickness > 0 ? "--extrude"
+           : a->apart             ? "--apart"
            : a->how.merge > 0     ? "--merge"
            : a->unit != NULL      ? "--unit"
            : a->how.scale > 0     ? "--scale"
@@ -225,6 +229,8 @@ rg_mesh_arguments rg_mesh_arguments_read(int argc, char **argv, int first) {
             a.info = true;
         } else if (strcmp(argv[i], "--improve") == 0) {
             a.improve = true;
+        } else if (strcmp(argv[i], "--apart") == 0) {
+            a.apart = true;
         } else if (strcmp(argv[i], "--split") == 0) {
             a.how.split = true;
         } else if (argv[i][0] == '-') {
@@ -245,6 +251,8 @@ rg_mesh_arguments rg_mesh_arguments_read(int argc, char **argv, int first) {
 
 /* ---- making ---- */
 
+enum { MOST_TOLD = 8 };
+
 static void tell_parts(const rg_mesh *mesh, const char *input) {
     int32_t *part = RG_NEW(int32_t, (size_t)mesh->elements), parts = rg_mesh_parts(mesh, part);
     rg_gid *first = RG_NEW(rg_gid, (size_t)parts), *size = RG_NEW(rg_gid, (size_t)parts);
@@ -255,13 +263,40 @@ static void tell_parts(const rg_mesh *mesh, const char *input) {
     if (parts > 1) {
         rg_warn("%s: the mesh has %d parts that share no face", input, parts);
     }
-    for (int32_t p = 0; parts > 1 && p < parts && p < 8; p++) {
+    for (int32_t p = 0; parts > 1 && p < parts && p < MOST_TOLD; p++) {
         rg_warn("%s: part %d: %" PRId64 " elements, one of them %" PRId64, input, p + 1, size[p],
                 rg_mesh_original(mesh, first[p]));
     }
     rg_free(first);
     rg_free(size);
     rg_free(part);
+}
+
+/* Parts that are kept apart are none for a mesh of one. */
+static void keep_apart(rg_mesh *mesh, const char *input) {
+    int32_t parts = rg_mesh_keep_apart(mesh);
+    if (parts == 1) {
+        rg_warn("%s: --apart: all elements hang together by their nodes: there is one part", input);
+    }
+}
+
+static void tell_touches(const rg_mesh *mesh, const char *input) {
+    size_t count;
+    rg_touch *touch = rg_mesh_touches(mesh, &count);
+    if (mesh->part != NULL && count == 0) {
+        printf("%s: no two parts touch\n", input);
+    }
+    for (size_t i = 0; i < count && i < MOST_TOLD; i++) {
+        const rg_touch *t = &touch[i];
+        printf("%s: parts %d and %d touch: %" PRId64 " and %" PRId64
+               " faces on %.4g m2 around (%.4g, %.4g, %.4g) m, with gaps of %.2g to %.2g m\n",
+               input, t->part[0] + 1, t->part[1] + 1, t->faces[0], t->faces[1], t->area, t->place[0],
+               t->place[1], t->place[2], t->gap[0], t->gap[1]);
+    }
+    if (count > MOST_TOLD) {
+        printf("%s: %zu more pairs of parts touch\n", input, count - MOST_TOLD);
+    }
+    rg_free(touch);
 }
 
 /* A unit forgotten shows in the size. */
@@ -321,13 +356,17 @@ void rg_mesh_finish(rg_mesh *mesh, const rg_mesh_arguments *a) {
     rg_mesh_check_elements(mesh, a->input);
     rg_mesh_sort(mesh);
     rg_mesh_connect(mesh);
+    a->apart ? keep_apart(mesh, a->input) : (void)0;
     rg_mesh_check(mesh, a->input);
+    rg_mesh_check_overlaps(mesh, a->input);
     tell_parts(mesh, a->input);
     judge_size(mesh, a->input);
     if (a->improve) {
         improve(mesh);
+        a->apart ? (void)rg_mesh_keep_apart(mesh) : (void)0;
         rg_mesh_check(mesh, a->input);
     }
+    tell_touches(mesh, a->input);
     mesh->tile = rg_tile_elements(mesh->elements, a->tile > 0 ? a->tile : RG_TILE);
     rg_mesh_file_write(a->output, mesh, 0, NULL);
     tell(mesh, a->output);

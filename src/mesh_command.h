@@ -17,6 +17,7 @@ typedef struct {
     bool info;
     bool improve;          /* --improve */
     int tile;              /* --tile; 0: RG_TILE */
+    bool apart;            /* --apart */
     const char *partition; /* --partition: numbers of ranks, separated by commas */
     int overrides;
     const char **override; /* --set */

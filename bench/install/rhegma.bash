@@ -17,7 +17,7 @@ _rhegma() {
     esac
     case $command in
     run) options+=" --restart --overwrite --walltime" ;;
-    mesh) options="-o --unit --scale --merge --extrude --split --size --curvature --improve --tile --set --info --case --partition --help" ;;
+    mesh) options="-o --unit --scale --merge --apart --extrude --split --size --curvature --improve --tile --set --info --case --partition --help" ;;
     keys) options="--markdown --schema --help" ;;
     export) options="-o --time --crack --help" ;;
     verify | materials) options="--help" ;;

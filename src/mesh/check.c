@@ -9,6 +9,7 @@
 #include "base/mem.h"
 #include "base/tet.h"
 #include "layout.h"
+#include "mesh/apart.h"
 
 /* Relative bounds. */
 static const double least_volume = 1e-12, same_place = 1e-9;
@@ -104,6 +105,11 @@ static void check_neighbour(const rg_mesh *mesh, rg_input_errors *input_errors, 
                             "set: elements %" PRId64 " and %" PRId64
                             " have the face between them in different sets",
                             rg_mesh_original(mesh, e), rg_mesh_original(mesh, other));
+    } else if (e < other && mesh->part != NULL && mesh->part[e] != mesh->part[other]) {
+        rg_input_errors_add(input_errors, e, 1 + f,
+                            "part: elements %" PRId64 " and %" PRId64
+                            " are neighbours, but in parts that are kept apart",
+                            rg_mesh_original(mesh, e), rg_mesh_original(mesh, other));
     }
 }
 
@@ -140,18 +146,24 @@ static rg_gid element_of(const rg_mesh *mesh, rg_gid vertex) {
     return rg_mesh_original(mesh, i / 4);
 }
 
+const char *rg_mesh_open_words(bool apart) {
+    return apart
+               ? "the mesh is open there, inside one of its parts; --merge D joins nodes that coincide"
+               : "the mesh is open there; rhegma mesh joins nodes that coincide by --merge D, or keeps parts "
+                 "apart by --apart";
+}
+
 /* twin[v]: the lowest vertex at the place of v, below v; -1 if there is none. */
 static void check_twins(const rg_mesh *mesh, const rg_gid *twin, rg_input_errors *input_errors) {
     for (rg_gid v = 0; v < mesh->vertices; v++) {
         char *words = twin[v] >= 0 ? rg_input_errors_place(input_errors, v, 0) : NULL;
         if (words != NULL) {
             const double *x = mesh->x + 3 * v;
-            snprintf(
-                words, RG_INPUT_ERROR_WORDS,
-                "elements %" PRId64 " and %" PRId64
-                " have different vertices at the same place (%.9g, %.9g, %.9g) m: the mesh is open there; "
-                "merge its duplicate nodes (rhegma mesh --merge)",
-                element_of(mesh, twin[v]), element_of(mesh, v), x[0], x[1], x[2]);
+            snprintf(words, RG_INPUT_ERROR_WORDS,
+                     "elements %" PRId64 " and %" PRId64
+                     " have different vertices at the same place (%.9g, %.9g, %.9g) m: %s",
+                     element_of(mesh, twin[v]), element_of(mesh, v), x[0], x[1], x[2],
+                     rg_mesh_open_words(mesh->part != NULL));
         }
     }
 }
@@ -163,6 +175,7 @@ static void check_places(const rg_mesh *mesh, rg_input_errors *input_errors) {
     double box[2][3];
     rg_mesh_box_around(mesh, box);
     double reach = same_place * distance(box[0], box[1]);
+    int32_t *part = rg_mesh_vertex_parts(mesh);
     for (rg_gid v = 0; v < mesh->vertices; v++) {
         const double *x = mesh->x + 3 * v;
         p[v] = (struct projected){line[0] * x[0] + line[1] * x[1] + line[2] * x[2], v};
@@ -172,12 +185,14 @@ static void check_places(const rg_mesh *mesh, rg_input_errors *input_errors) {
     for (rg_gid i = 0; i < mesh->vertices; i++) {
         for (rg_gid j = i + 1; j < mesh->vertices && p[j].along - p[i].along <= reach; j++) {
             rg_gid v = p[i].vertex, w = p[j].vertex, low = v < w ? v : w, high = v < w ? w : v;
-            if (distance(mesh->x + 3 * v, mesh->x + 3 * w) <= reach && (twin[high] < 0 || low < twin[high])) {
+            if (distance(mesh->x + 3 * v, mesh->x + 3 * w) <= reach && (twin[high] < 0 || low < twin[high]) &&
+                (part == NULL || part[v] == part[w])) {
                 twin[high] = low;
             }
         }
     }
     check_twins(mesh, twin, input_errors);
+    rg_free(part);
     rg_free(twin);
     rg_free(p);
 }
@@ -191,8 +206,9 @@ static void check_hanging(const rg_mesh *mesh, rg_input_errors *input_errors) {
             snprintf(words, RG_INPUT_ERROR_WORDS,
                      "a vertex of element %" PRId64
                      " at (%.9g, %.9g, %.9g) m lies on a face of element %" PRId64
-                     " without being its corner (a hanging node): the mesh is open there",
-                     element_of(mesh, v), x[0], x[1], x[2], rg_mesh_original(mesh, face[v] / 4));
+                     " without being its corner (a hanging node): %s",
+                     element_of(mesh, v), x[0], x[1], x[2], rg_mesh_original(mesh, face[v] / 4),
+                     rg_mesh_open_words(mesh->part != NULL));
         }
     }
     rg_free(face);

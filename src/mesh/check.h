@@ -12,10 +12,12 @@
  *   - a position that is not finite, or a vertex that no element uses,
  *   - an element whose corners are not ascending, or without volume (below 1e-12 of its longest edge cubed),
  *   - neighbours that do not agree on their common face,
- *   - two vertices at the same place (within 1e-9 of the mesh's size): such a mesh is open where it looks
- *     closed,
- *   - a hanging node: a vertex on a surface face (within 1e-6 of its longest edge) that is none of its
- *     corners.
+ *   - neighbours in different ones of the parts that are kept apart,
+ *   - two vertices of one part at the same place (within 1e-9 of the mesh's size): such a mesh is open where
+ *     it looks closed,
+ *   - a hanging node: a vertex on a surface face of the same part (within 1e-6 of its longest edge) that is
+ *     none of its corners.
+ * A mesh whose parts are not kept apart is one part.
  * Orientation is free: corners are sorted, and volumes are taken without sign. */
 void rg_mesh_check(const rg_mesh *mesh, const char *name);
 
@@ -40,8 +42,11 @@ double rg_mesh_longest_edge(const rg_mesh *mesh, rg_gid e);
  */
 int32_t rg_mesh_parts(const rg_mesh *mesh, int32_t *part);
 
-/* [vertices]: the first surface face, 4 * element + face, on which a vertex lies without being its corner; -1
- * where there is none. The caller frees it with rg_free. */
+/* What is wrong where the mesh is open, and what to do about it. */
+const char *rg_mesh_open_words(bool apart);
+
+/* [vertices]: the first surface face of the same part, 4 * element + face, on which a vertex lies without
+ * being its corner; -1 where there is none. The caller frees it with rg_free. */
 rg_gid *rg_mesh_hanging(const rg_mesh *mesh);
 
 #endif

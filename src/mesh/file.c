@@ -27,16 +27,17 @@ struct rg_mesh_file {
 enum { WHY = RG_H5_REASON + 80 };
 
 /* Datasets with rows for each tile, in the order in which the input errors of an element are told. */
-enum { CORNER, NEIGHBOUR, FACE, SET, REGION, ORIGINAL, VERTEX_START, VERTEX, X, PARTS };
-static const rg_rows *const part[PARTS] = {[CORNER] = &rg_rows_corner,
-                                           [NEIGHBOUR] = &rg_rows_neighbour,
-                                           [FACE] = &rg_rows_face,
-                                           [SET] = &rg_rows_set,
-                                           [REGION] = &rg_rows_region,
-                                           [ORIGINAL] = &rg_rows_original,
-                                           [VERTEX] = &rg_rows_vertex,
-                                           [X] = &rg_rows_x,
-                                           [VERTEX_START] = &rg_rows_vertex_start};
+enum { CORNER, NEIGHBOUR, FACE, SET, REGION, PART, ORIGINAL, VERTEX_START, VERTEX, X, DATASETS };
+static const rg_rows *const dataset_of[DATASETS] = {[CORNER] = &rg_rows_corner,
+                                                    [NEIGHBOUR] = &rg_rows_neighbour,
+                                                    [FACE] = &rg_rows_face,
+                                                    [SET] = &rg_rows_set,
+                                                    [REGION] = &rg_rows_region,
+                                                    [PART] = &rg_rows_part,
+                                                    [ORIGINAL] = &rg_rows_original,
+                                                    [VERTEX] = &rg_rows_vertex,
+                                                    [X] = &rg_rows_x,
+                                                    [VERTEX_START] = &rg_rows_vertex_start};
 
 enum { MOST_SETS = 1 << 24 };                /* and rows of their combinations */
 static const rg_gid most = INT64_C(1) << 40; /* elements or vertices: what a sane header says */
@@ -283,13 +284,16 @@ static void check_datasets(const rg_mesh_file *f) {
     if (f->head.vertices > vertices) { /* before anybody makes room for so many */
         refuse(f, "vertices", "%" PRId64 ", but the tiles list %" PRId64, f->head.vertices, vertices);
     }
-    for (int k = 0; k < PARTS; k++) {
+    for (int k = 0; k < DATASETS; k++) {
         char name[80];
+        if (k == PART && f->head.parts == 0) {
+            continue;
+        }
         int64_t rows = k == VERTEX_START       ? f->head.tiles + 1
                        : k == VERTEX || k == X ? vertices
                                                : f->head.elements;
-        snprintf(name, sizeof name, "checksum/%s", part[k]->name);
-        expect_rows(f, part[k], rows);
+        snprintf(name, sizeof name, "checksum/%s", dataset_of[k]->name);
+        expect_rows(f, dataset_of[k], rows);
         expect_rows(f, &(rg_rows){name, RG_ROWS_INT64, 1}, k == VERTEX_START ? 1 : f->head.tiles);
     }
 }
@@ -311,6 +315,10 @@ static void read_header(rg_mesh_file *f) {
     if (version > 1) {
         read_combinations(f, &rg_rows_surface_combinations, &h->surface);
         read_combinations(f, &rg_rows_volume_combinations, &h->volume);
+    }
+    if (version > 3) {
+        int64_t all = h->elements < INT32_MAX ? h->elements : INT32_MAX;
+        h->parts = (int32_t)read_count(f, "parts", 1, all);
     }
     check_datasets(f);
 }
@@ -397,13 +405,13 @@ static void complain(reading *r, rg_gid element, int k, const char *format, ...)
     va_end(args);
     r->good = false;
     if (r->input_errors != NULL) {
-        rg_input_errors_add(r->input_errors, element, k, "%s: %s", part[k]->name, what);
+        rg_input_errors_add(r->input_errors, element, k, "%s: %s", dataset_of[k]->name, what);
     }
 }
 
 static void *take_part(reading *r, int k, const stretch *s) {
     char why[WHY];
-    void *data = take(r->file, part[k], s, why);
+    void *data = take(r->file, dataset_of[k], s, why);
     if (data == NULL) {
         complain(r, r->slab->first, k, "%s", why);
     }
@@ -415,7 +423,7 @@ static int64_t *take_vertex_start(reading *r, int64_t rows) {
     const stretch *s = &r->elements;
     int64_t tiles = s->end - s->begin, *start = RG_NEW(int64_t, (size_t)tiles + 1);
     char why[WHY];
-    bool there = read_dataset(r->file->file, part[VERTEX_START]->name, H5T_NATIVE_INT64, 1,
+    bool there = read_dataset(r->file->file, dataset_of[VERTEX_START]->name, H5T_NATIVE_INT64, 1,
                               r->file->head.tiles + 1, s->begin, s->end + 1, start);
     if (!there) {
         unreadable(r->file, why);
@@ -443,6 +451,7 @@ static void take_all(reading *r, int64_t rows) {
     slab->face = take_part(r, FACE, s);
     slab->set = take_part(r, SET, s);
     slab->region = take_part(r, REGION, s);
+    slab->part = r->file->head.parts > 0 ? take_part(r, PART, s) : NULL;
     slab->original = take_part(r, ORIGINAL, s);
     r->vertices = (stretch){rows, s->blocks, s->begin, s->end, start};
     if (placed) {
@@ -463,6 +472,19 @@ static void check_vertices(reading *r) {
             complain(r, r->slab->first, VERTEX,
                      "value %" PRId64 " of tile %" PRId64 " is not between 0 and %" PRId64,
                      r->slab->vertex[i], s->begin, r->file->head.vertices - 1);
+        }
+    }
+}
+
+static void check_parts(reading *r) {
+    const rg_mesh_slab *slab = r->slab;
+    int32_t parts = r->file->head.parts;
+    for (rg_gid e = 0; e < slab->elements && slab->part != NULL; e++) {
+        if (slab->part[e] < 0 || slab->part[e] >= parts) {
+            complain(r, slab->first + e, PART,
+                     "value %" PRId32 " of element %" PRId64 " is not between 0 and %" PRId32, slab->part[e],
+                     slab->original[e], parts - 1);
+            return;
         }
     }
 }
@@ -512,6 +534,7 @@ static void check_values(reading *r) {
     check_faces(r);
     check_groups(r, SET, slab->set, faces, 4, &h->surface);
     check_groups(r, REGION, slab->region, slab->elements, 1, &h->volume);
+    check_parts(r);
     for (rg_gid slot = 0; slot < faces && r->good; slot++) {
         if ((slab->neighbour[slot] < 0) != (slab->face[slot] < 0)) {
             complain(r, slab->first + slot / 4, FACE,
@@ -559,7 +582,7 @@ static void check_shapes(reading *r) {
         if (!rg_tet_sound(x[0], slab->corner + 4 * e, slab->original[e], what)) {
             r->good = false;
             if (r->input_errors != NULL) {
-                rg_input_errors_add(r->input_errors, slab->first + e, PARTS, "%s", what);
+                rg_input_errors_add(r->input_errors, slab->first + e, DATASETS, "%s", what);
             }
         }
     }
@@ -622,8 +645,8 @@ void rg_mesh_slab_free(rg_mesh_slab *slab) {
     if (slab == NULL) {
         return;
     }
-    void *blocks[] = {slab->vertex, slab->x,   slab->corner, slab->at,      slab->neighbour,
-                      slab->face,   slab->set, slab->region, slab->original};
+    void *blocks[] = {slab->vertex, slab->x,   slab->corner, slab->at,   slab->neighbour,
+                      slab->face,   slab->set, slab->region, slab->part, slab->original};
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) {
         rg_free(blocks[i]);
     }
@@ -744,6 +767,7 @@ static rg_mesh *adopt(rg_mesh_slab *slab, double *x, rg_mesh_header *h) {
                       .surface = h->surface,
                       .original = slab->original,
                       .region = slab->region,
+                      .part = slab->part,
                       .volume = h->volume};
     h->surface = h->volume = (rg_sets){.count = 0};
     rg_free(slab->vertex);

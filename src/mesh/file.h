@@ -4,7 +4,7 @@
  * centroids; a tile is the run of `tile_elements` (256; fewer in a small mesh) consecutive numbers.
  * Integers are signed and as wide as their values need, numbers are 64-bit floats, lengths are in m.
  *
- *   attributes      format = "rhegma mesh", version = 1, 2 or 3, program
+ *   attributes      format = "rhegma mesh", version = 1 to 4, program
  *                   vertices, elements, interfaces (interior faces), tile_elements, tiles, surface_sets,
  *                   volume_sets (how many there are); box [2][3]: lower and upper corner
  *   surface_sets    [surface_sets] names, at most 255 bytes each, in 64 bytes where those are enough; not
@@ -15,6 +15,11 @@
  *   attributes      surface_combinations, volume_combinations: rows of the next two, which are not there if 0
  *   surface_combinations  [rows][2] number of a combination, from 0 on, and one of the sets that it is of,
  * both volume_combinations   ascending (mesh/sets.h)
+ *
+ * and only from version 4 on, which is for parts that are kept apart although they touch (mesh/apart.h),
+ *
+ *   attribute       parts: how many there are
+ *   part            [elements] which one an element is of
  *
  *   corner          [elements][4] vertices, ascending; face f of an element is the one opposite corner f
  *   neighbour       [elements][4] element across face f; -1 on the surface
@@ -58,13 +63,14 @@
 #include "mesh/tile_graph.h"
 
 /* A file is of the lowest version that has what it holds, so that older programs read it if they can. */
-enum { RG_MESH_VERSION = 3 };
+enum { RG_MESH_VERSION = 4 };
 
 typedef struct {
     rg_gid vertices, elements, interfaces;
     int64_t tile_elements, tiles;
     double box[2][3]; /* m */
     rg_sets surface, volume;
+    int32_t parts; /* that are kept apart; 0: none are */
 } rg_mesh_header;
 
 typedef struct {
@@ -84,6 +90,7 @@ typedef struct {
     rg_gid *neighbour; /* [elements][4], and so on as in rg_mesh */
     int8_t *face;
     int32_t *set, *region;
+    int32_t *part; /* NULL: no parts are kept apart */
     rg_gid *original;
 } rg_mesh_slab;
 

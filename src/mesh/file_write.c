@@ -12,6 +12,7 @@
 #include "base/h5_reason.h"
 #include "base/mem.h"
 #include "layout.h"
+#include "mesh/apart.h"
 #include "mesh/file.h"
 #include "mesh/rows.h"
 
@@ -43,7 +44,8 @@ static void require(const target *w, bool ok, const char *what) {
 static hid_t stored_type(const rg_rows *r, hid_t type, const void *data, int64_t count) {
     const int64_t *value = data;
     const int32_t *group = data;
-    bool narrow = r->type == RG_ROWS_INT64, byte = r == &rg_rows_set || r == &rg_rows_region;
+    bool narrow = r->type == RG_ROWS_INT64,
+         byte = r == &rg_rows_set || r == &rg_rows_region || r == &rg_rows_part;
     for (int64_t i = 0; i < count * r->columns && narrow; i++) {
         narrow = value[i] >= INT32_MIN && value[i] <= INT32_MAX;
     }
@@ -175,8 +177,10 @@ static void put_header(const target *w, const rg_mesh *mesh) {
                   {"surface_sets", mesh->surface.count},
                   {"volume_sets", mesh->volume.count},
                   {"surface_combinations", combined_rows(&mesh->surface)},
-                  {"volume_combinations", combined_rows(&mesh->volume)}};
-    for (size_t i = 0; i < sizeof counts / sizeof *counts - (w->version == 1 ? 2 : 0); i++) {
+                  {"volume_combinations", combined_rows(&mesh->volume)},
+                  {"parts", rg_mesh_apart(mesh)}};
+    size_t known = sizeof counts / sizeof *counts - (w->version == 1 ? 3 : w->version < 4 ? 1 : 0);
+    for (size_t i = 0; i < known; i++) {
         put_attribute(w, counts[i].name, H5T_NATIVE_INT64, 1, &counts[i].value);
     }
     put_attribute(w, "box", H5T_NATIVE_DOUBLE, 6, box);
@@ -201,6 +205,9 @@ static void put_elements(const target *w, const rg_mesh *mesh) {
     }
     put(w, &rg_rows_region, region, w->tiles, w->element_start);
     put(w, &rg_rows_original, original, w->tiles, w->element_start);
+    if (mesh->part != NULL) {
+        put(w, &rg_rows_part, mesh->part, w->tiles, w->element_start);
+    }
     rg_free(region);
     rg_free(original);
 }
@@ -359,6 +366,9 @@ void rg_mesh_file_add_partitions(const char *path, int partitions, const rg_tile
 }
 
 static int64_t version_of(const rg_mesh *mesh) {
+    if (mesh->part != NULL) {
+        return 4;
+    }
     for (rg_gid slot = 0; slot < 4 * mesh->elements; slot++) {
         if (mesh->neighbour[slot] >= 0 && mesh->set[slot] >= 0) {
             return 3;

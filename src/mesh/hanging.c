@@ -6,6 +6,7 @@
 #include "base/mem.h"
 #include "base/vector.h"
 #include "layout.h"
+#include "mesh/apart.h"
 #include "mesh/check.h"
 
 static const double near_face = 1e-6; /* of its longest edge */
@@ -21,6 +22,7 @@ struct grid {
     int64_t cells[3];
     struct kept *kept; /* surface vertices by cell */
     rg_gid count;
+    int32_t *part; /* of each vertex; NULL: all are of one */
 };
 
 struct triangle {
@@ -88,7 +90,7 @@ static void lay_cells(struct grid *g, const rg_mesh *mesh) {
 }
 
 static struct grid make_grid(const rg_mesh *mesh) {
-    struct grid g = {.kept = RG_NEW(struct kept, (size_t)mesh->vertices)};
+    struct grid g = {.kept = RG_NEW(struct kept, (size_t)mesh->vertices), .part = rg_mesh_vertex_parts(mesh)};
     int8_t *seen = RG_NEW(int8_t, (size_t)mesh->vertices);
     lay_cells(&g, mesh);
     for (rg_gid slot = 0; slot < 4 * mesh->elements; slot++) {
@@ -154,7 +156,8 @@ static void search(const struct grid *g, const rg_mesh *mesh, rg_gid slot, rg_gi
             for (rg_gid i = first_in(g, row + low[0]); i < g->count && g->kept[i].cell <= row + high[0];
                  i++) {
                 rg_gid v = g->kept[i].vertex;
-                if (of[v] < 0 && !is_corner(&t, v) && touches(&t, mesh->x + 3 * v)) {
+                bool together = g->part == NULL || g->part[v] == g->part[t.vertex[0]];
+                if (of[v] < 0 && together && !is_corner(&t, v) && touches(&t, mesh->x + 3 * v)) {
                     of[v] = slot;
                 }
             }
@@ -174,5 +177,6 @@ rg_gid *rg_mesh_hanging(const rg_mesh *mesh) {
         }
     }
     rg_free(g.kept);
+    rg_free(g.part);
     return of;
 }

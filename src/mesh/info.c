@@ -224,7 +224,8 @@ static void print_parts(const rg_mesh *mesh, FILE *out) {
     for (rg_gid e = 0; e < mesh->elements; e++) {
         size[part[e]]++;
     }
-    fprintf(out, "parts          %d that share no face:", parts);
+    fprintf(out, "parts          %d that share no face%s:", parts,
+            mesh->part != NULL ? ", kept apart where they share no node" : "");
     for (int32_t p = 0; p < parts && p < 8; p++) {
         fprintf(out, " %" PRId64, size[p]);
     }

@@ -123,6 +123,7 @@ void rg_mesh_free(rg_mesh *mesh) {
     rg_sets_free(&mesh->volume);
     rg_free(mesh->original);
     rg_free(mesh->region);
+    rg_free(mesh->part);
     rg_free(mesh->inner);
     rg_free(mesh->line);
     rg_free(mesh->x);

@@ -27,6 +27,7 @@ typedef struct {
     rg_gid *original; /* [elements]: numbers that the elements had in the input; NULL: as here */
     int32_t *region;  /* [elements]: group among `volume`; -1 for none; NULL: none at all */
     rg_sets volume;   /* named sets of elements */
+    int32_t *part; /* [elements]: parts that are kept apart although they touch (mesh/apart.h); NULL: none */
     rg_gid *inner; /* [inners][3]: vertices, ascending, of faces inside that the input has: an import only */
     size_t inners;
     rg_gid *line; /* [lines][2]: vertices, ascending, of edges that the input names: an import only */
@@ -80,6 +81,7 @@ typedef struct {
     int8_t face[4];         /* the neighbour's local face; -1 on the surface */
     int32_t set[4];         /* group of surface sets, -1 for none */
     int32_t region;         /* group of volume sets, -1 for none */
+    int32_t part;           /* of those that are kept apart; 0 where none are */
     uint16_t material;      /* which of the case's, once rg_materials_assign has run; until then 0 */
     uint16_t beside[4];     /* the neighbour's; its own on the surface */
     uint8_t across; /* bits of faces beyond which it is of other volume sets or another material, likewise */
@@ -101,6 +103,7 @@ typedef struct {
     rg_gid interfaces; /* interior faces of the whole mesh */
     double box[2][3];  /* lower and upper corner of the whole mesh (m) */
     int tile;          /* elements of a tile; the last one of the mesh may have fewer */
+    int32_t parts;     /* of the whole mesh that are kept apart; 0: none are */
     rg_lid tiles;      /* own tiles */
     rg_lid boundary;   /* of these, how many share a face with another rank; they come first */
     rg_gid *tile_id;   /* [tiles]: global number of the tile */

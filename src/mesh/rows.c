@@ -14,6 +14,7 @@ const rg_rows rg_rows_face = {"face", RG_ROWS_INT8, 4};
 const rg_rows rg_rows_set = {"set", RG_ROWS_INT32, 4};
 const rg_rows rg_rows_region = {"region", RG_ROWS_INT32, 1};
 const rg_rows rg_rows_original = {"original", RG_ROWS_INT64, 1};
+const rg_rows rg_rows_part = {"part", RG_ROWS_INT32, 1};
 const rg_rows rg_rows_vertex_start = {"vertex_start", RG_ROWS_INT64, 1};
 const rg_rows rg_rows_vertex = {"vertex", RG_ROWS_INT64, 1};
 const rg_rows rg_rows_x = {"x", RG_ROWS_DOUBLE, 3};

@@ -49,7 +49,7 @@ uint64_t rg_rows_checksum(const rg_rows *r, const void *data, int64_t count);
 extern const rg_rows rg_rows_surface_sets, rg_rows_volume_sets, rg_rows_surface_combinations,
     rg_rows_volume_combinations;
 extern const rg_rows rg_rows_corner, rg_rows_neighbour, rg_rows_face, rg_rows_set, rg_rows_region,
-    rg_rows_original;
+    rg_rows_original, rg_rows_part;
 extern const rg_rows rg_rows_vertex_start, rg_rows_vertex, rg_rows_x;
 extern const rg_rows rg_rows_tile_start, rg_rows_tile_neighbour, rg_rows_tile_faces;
 

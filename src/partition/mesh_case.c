@@ -51,6 +51,16 @@ rg_mesh *rg_mesh_of_case(const rg_case *c) {
     return mesh;
 }
 
+/* Parts that are kept apart are so for contact to act between them. */
+static void tell_apart(const rg_case *c, const rg_part *part) {
+    if (part->parts > 0 && c->contact.model != RG_CONTACT_GENERAL) {
+        rg_warn(
+            "%s: mesh.file: %s: its %d parts are kept apart (rhegma mesh --apart) and do not see each other "
+            "without contact.model: general: they go through each other",
+            c->path, c->mesh.file, part->parts);
+    }
+}
+
 static rg_part *part_of_file(const rg_case *c, double *cost, bool known, int rank, MPI_Comm comm) {
     if (rank == 0) {
         check_sets(c);
@@ -59,7 +69,11 @@ static rg_part *part_of_file(const rg_case *c, double *cost, bool known, int ran
     if (!known && c->mesh.weight != NULL) {
         cost = rg_tile_weights_of_file(c, comm);
     }
-    return rg_part_read(c->mesh.file, cost, comm);
+    rg_part *part = rg_part_read(c->mesh.file, cost, comm);
+    if (rank == 0 && !known) {
+        tell_apart(c, part);
+    }
+    return part;
 }
 
 static rg_part *part_of_box(const rg_case *c, double *cost, bool known, int rank, MPI_Comm comm) {

@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/mem.h"
 #include "base/tet.h"
+#include "mesh/apart.h"
 #include "partition/distribution.h"
 
 /* What rank 0 packs from. */
@@ -54,6 +55,7 @@ static void pack_element(const struct source *s, rg_gid e, rg_element *out) {
         out->set[f] = s->mesh->set[4 * e + f];
     }
     out->region = s->mesh->region != NULL ? s->mesh->region[e] : -1;
+    out->part = s->mesh->part != NULL ? s->mesh->part[e] : 0;
 }
 
 /* Packs tile t to `out`; returns its number of elements. */
@@ -154,11 +156,13 @@ rg_part *rg_part_distribute_weighted(const rg_mesh *mesh, int tile, double *weig
     rg_distribution *distribution = NULL;
     if (rank == 0) {
         own->interfaces = count_interfaces(mesh);
+        own->parts = rg_mesh_apart(mesh);
         rg_mesh_box_around(mesh, own->box);
         distribution = distribute_mesh(mesh, tile, weight, ranks);
     }
     rg_distribution_share(distribution, own, comm);
     MPI_Bcast(&own->interfaces, 1, MPI_INT64_T, 0, comm);
+    MPI_Bcast(&own->parts, 1, MPI_INT32_T, 0, comm);
     MPI_Bcast(own->box, 6, MPI_DOUBLE, 0, comm);
     own->surface = share_sets(rank == 0 ? &mesh->surface : NULL, rank, comm);
     own->volume = share_sets(rank == 0 ? &mesh->volume : NULL, rank, comm);

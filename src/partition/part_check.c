@@ -14,7 +14,8 @@
 /* An element with faces on the surface. */
 typedef struct {
     rg_gid id;
-    int64_t open; /* bit f: face f is on the surface */
+    int32_t open; /* bit f: face f is on the surface */
+    int32_t part;
     double x[4][3];
 } outer;
 
@@ -32,9 +33,9 @@ static uint64_t position_key(const double x[3]) {
     return h;
 }
 
-/* Follows from the positions of the corners alone, in any order. */
-static uint64_t face_key(const double x[4][3], int f) {
-    uint64_t sum = 0;
+/* Follows from the positions of the corners alone, in any order, and from the part. */
+static uint64_t face_key(const double x[4][3], int f, int32_t part) {
+    uint64_t sum = part > 0 ? rg_hash(0, (uint64_t)part) : 0;
     for (int k = 0; k < 3; k++) {
         sum += position_key(x[rg_face_node[f][k]]);
     }
@@ -48,7 +49,7 @@ static outer *list_outer(const rg_part *part, int *count) {
     *count = 0;
     for (rg_lid i = 0; i < part->elements; i++) {
         const rg_element *e = &part->element[i];
-        outer o = {.id = e->id};
+        outer o = {.id = e->id, .part = e->part};
         for (int f = 0; f < 4; f++) {
             o.open |= e->neighbour[f] < 0 ? 1 << f : 0;
         }
@@ -106,7 +107,7 @@ static face *list_faces(const outer *list, int count, int64_t *faces) {
     for (int i = 0; i < count; i++) {
         for (int f = 0; f < 4; f++) {
             if (list[i].open >> f & 1) {
-                all[(*faces)++] = (face){face_key(list[i].x, f), list[i].id};
+                all[(*faces)++] = (face){face_key(list[i].x, f, list[i].part), list[i].id};
             }
         }
     }
@@ -142,8 +143,9 @@ static void check_pairs(const face *all, int64_t faces, const rg_mesh_file *file
         if (words != NULL) {
             snprintf(words, RG_INPUT_ERROR_WORDS,
                      "elements %" PRId64 " and %" PRId64
-                     " have a face at the same place, but are not neighbours: the mesh is open there",
-                     rg_mesh_file_original(file, e[0]), rg_mesh_file_original(file, e[1]));
+                     " have a face at the same place, but are not neighbours: %s",
+                     rg_mesh_file_original(file, e[0]), rg_mesh_file_original(file, e[1]),
+                     rg_mesh_open_words(rg_mesh_file_header(file)->parts > 0));
         }
     }
     rg_free(found);
@@ -153,27 +155,31 @@ static void check_pairs(const face *all, int64_t faces, const rg_mesh_file *file
 
 typedef struct {
     double x[3];
-    int64_t slot;
+    int64_t part, slot;
 } place;
 
 static int by_bits(const void *a, const void *b) {
     const place *p = a, *q = b;
-    return memcmp(p->x, q->x, sizeof p->x);
+    int order = memcmp(p->x, q->x, sizeof p->x);
+    return order != 0 ? order : (p->part > q->part) - (p->part < q->part);
 }
 
 /* The elements at the surface as a mesh of their own, of which only the surface means anything. */
-static rg_mesh *surface_mesh(const outer *list, int count) {
+static rg_mesh *surface_mesh(const outer *list, int count, bool apart) {
     size_t slots = 4 * (size_t)count;
     rg_mesh *m = RG_NEW(rg_mesh, 1);
     *m = (rg_mesh){.elements = count,
                    .x = RG_NEW(double, 3 * slots),
                    .corner = RG_NEW(rg_gid, slots),
                    .neighbour = RG_NEW(rg_gid, slots),
+                   .part = apart ? RG_NEW(int32_t, (size_t)count) : NULL,
                    .original = RG_NEW(rg_gid, (size_t)count)};
     place *at = RG_NEW(place, slots);
     for (size_t s = 0; s < slots; s++) {
         memcpy(at[s].x, list[s / 4].x[s % 4], sizeof at[s].x);
+        at[s].part = list[s / 4].part;
         at[s].slot = (int64_t)s;
+        apart ? m->part[s / 4] = list[s / 4].part : 0;
         m->neighbour[s] = list[s / 4].open >> s % 4 & 1 ? -1 : 0;
         m->original[s / 4] = list[s / 4].id;
     }
@@ -190,7 +196,7 @@ static rg_mesh *surface_mesh(const outer *list, int count) {
 
 static void check_surface(const outer *list, int count, const rg_mesh_file *file,
                           rg_input_errors *input_errors) {
-    rg_mesh *surface = surface_mesh(list, count);
+    rg_mesh *surface = surface_mesh(list, count, rg_mesh_file_header(file)->parts > 0);
     rg_input_errors found = {.name = input_errors->name};
     rg_mesh_check_surface(surface, &found);
     for (rg_gid e = 0; e < surface->elements && found.count > 0; e++) { /* now that they are needed */
@@ -223,7 +229,7 @@ static int64_t find(const face *all, int64_t faces, uint64_t key) {
 static int64_t third(const rg_part *part, const face *all, int64_t faces, int64_t slot) {
     const rg_element *e = &part->element[slot / 4];
     int f = (int)(slot % 4);
-    return e->neighbour[f] > e->id ? find(all, faces, face_key(e->x, f)) : -1;
+    return e->neighbour[f] > e->id ? find(all, faces, face_key(e->x, f, e->part)) : -1;
 }
 
 /* Looks for the surface's faces among the own ones between elements. */

@@ -6,7 +6,8 @@
 #include "mesh/mesh.h"
 
 /* Ends the run (RG_USAGE) with messages (base/input_errors.h) that begin with `name` and name the elements by
- * their numbers in the input, which `file` has, if on the surface of the mesh
+ * their numbers in the input, which `file` has, if on the surface of the mesh, or of a part of it that is
+ * kept apart,
  *   - two faces are at the same place, without their elements being neighbours,
  *   - a face is at the place of one between two elements: three share it,
  * or, where that is well,

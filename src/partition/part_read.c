@@ -86,6 +86,7 @@ static void share_owners(reader *r, const rg_distribution *distribution) {
 static void take_header(reader *r) {
     const rg_mesh_header *h = r->head;
     r->own->interfaces = h->interfaces;
+    r->own->parts = h->parts;
     memcpy(r->own->box, h->box, sizeof h->box);
     r->own->surface = rg_sets_copy(&h->surface);
     r->own->volume = rg_sets_copy(&h->volume);
@@ -96,6 +97,7 @@ static void take_header(reader *r) {
 static void unpack(const reader *r, const rg_mesh_slab *s, rg_gid i, rg_element *e) {
     e->id = s->first + i;
     e->region = s->region[i];
+    e->part = s->part != NULL ? s->part[i] : 0;
     for (int f = 0; f < 4; f++) {
         rg_gid other = s->neighbour[4 * i + f];
         memcpy(e->x[f], s->x + 3 * s->at[4 * i + f], sizeof e->x[f]);
@@ -143,7 +145,8 @@ typedef struct {
     int64_t side, other;
     uint64_t place; /* of the face */
     double volume;  /* of the element */
-    int64_t set;    /* group of the face */
+    int32_t set;    /* group of the face */
+    int32_t part;   /* of the element */
 } claim;
 
 /* Where face f is, its corners in their order. */
@@ -156,14 +159,15 @@ static uint64_t place_of(const rg_element *e, int f) {
 }
 
 static claim claim_of(const rg_element *e, int f) {
-    return (claim){4 * e->id + f, 4 * e->neighbour[f] + e->face[f], place_of(e, f), e->volume, e->set[f]};
+    return (claim){4 * e->id + f, 4 * e->neighbour[f] + e->face[f], place_of(e, f), e->volume, e->set[f],
+                   e->part};
 }
 
 /* Takes a claim upon face c->other of own element e, if e says the same of that face. */
 static bool accept(rg_element *e, const claim *c) {
     int f = (int)(c->other % 4);
     bool same = c->side != c->other && e->neighbour[f] == c->side / 4 && e->face[f] == c->side % 4 &&
-                place_of(e, f) == c->place && e->set[f] == c->set;
+                place_of(e, f) == c->place && e->set[f] == c->set && e->part == c->part;
     if (same) {
         e->other_volume[f] = c->volume;
     }

@@ -17,7 +17,7 @@
 #include "mesh/info.h"
 #include "mesh/rows.h"
 
-enum { MESHES = 2, FIELDS = 14, ATTRIBUTES = 8, CHANGE = 5, MOST_CHANGES = 16, IMAGE = 1 << 20 };
+enum { MESHES = 3, FIELDS = 15, ATTRIBUTES = 9, CHANGE = 5, MOST_CHANGES = 16, IMAGE = 1 << 20 };
 
 typedef struct {
     const rg_rows *rows;
@@ -34,13 +34,15 @@ typedef struct {
 } base;
 
 static base bases[MESHES];
-static const char *const attribute[ATTRIBUTES] = {"version",       "vertices", "elements",     "interfaces",
-                                                  "tile_elements", "tiles",    "surface_sets", "volume_sets"};
+static const char *const attribute[ATTRIBUTES] = {"version",      "vertices",      "elements",
+                                                  "interfaces",   "tile_elements", "tiles",
+                                                  "surface_sets", "volume_sets",   "parts"};
 static const rg_rows partition = {"partition_2", RG_ROWS_INT32, 1};
 
 /* ---- the good files ---- */
 
-static void write_good(const char *path, const int64_t cells[3]) {
+/* `apart`: as a mesh with a part that is kept apart. */
+static void write_good(const char *path, const int64_t cells[3], bool apart) {
     static const double origin[3] = {0, 0, 0}, size[3] = {1, 2, 3};
     rg_mesh *mesh = rg_mesh_box(cells, origin, size, 0, 1);
     int64_t tile = rg_mesh_tile(mesh), tiles = (mesh->elements + tile - 1) / tile;
@@ -50,6 +52,7 @@ static void write_good(const char *path, const int64_t cells[3]) {
     }
     mesh->region = RG_NEW(int32_t, (size_t)mesh->elements);
     rg_sets_add(&mesh->volume, "all");
+    mesh->part = apart ? RG_NEW(int32_t, (size_t)mesh->elements) : NULL;
     rg_mesh_file_write(path, mesh, 1, &(rg_tile_partition){2, owner});
     rg_mesh_free(mesh);
     rg_free(owner);
@@ -89,7 +92,8 @@ static int64_t *make_starts(const rg_mesh_header *h, const rg_rows *r, const int
                             int64_t rows, int64_t *blocks) {
     bool by_vertex = r == &rg_rows_vertex || r == &rg_rows_x;
     bool by_element = r == &rg_rows_corner || r == &rg_rows_neighbour || r == &rg_rows_face ||
-                      r == &rg_rows_set || r == &rg_rows_region || r == &rg_rows_original;
+                      r == &rg_rows_set || r == &rg_rows_region || r == &rg_rows_original ||
+                      r == &rg_rows_part;
     *blocks = by_vertex || by_element ? h->tiles : 1;
     int64_t *start = calloc((size_t)*blocks + 1, sizeof *start);
     for (int64_t t = 0; t <= *blocks; t++) {
@@ -101,20 +105,11 @@ static int64_t *make_starts(const rg_mesh_header *h, const rg_rows *r, const int
 }
 
 static void find_fields(base *b, const char *path) {
-    static const rg_rows *const all[FIELDS] = {&rg_rows_surface_sets,
-                                               &rg_rows_volume_sets,
-                                               &rg_rows_corner,
-                                               &rg_rows_neighbour,
-                                               &rg_rows_face,
-                                               &rg_rows_set,
-                                               &rg_rows_region,
-                                               &rg_rows_original,
-                                               &rg_rows_vertex_start,
-                                               &rg_rows_vertex,
-                                               &rg_rows_x,
-                                               &rg_rows_tile_start,
-                                               &rg_rows_tile_neighbour,
-                                               &partition};
+    static const rg_rows *const all[FIELDS] = {
+        &rg_rows_surface_sets,   &rg_rows_volume_sets, &rg_rows_corner, &rg_rows_neighbour,
+        &rg_rows_face,           &rg_rows_set,         &rg_rows_region, &rg_rows_original,
+        &rg_rows_vertex_start,   &rg_rows_vertex,      &rg_rows_x,      &rg_rows_tile_start,
+        &rg_rows_tile_neighbour, &partition,           &rg_rows_part};
     rg_mesh_file *f = rg_mesh_file_open(path);
     const rg_mesh_header *h = rg_mesh_file_header(f);
     hid_t file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
@@ -122,7 +117,7 @@ static void find_fields(base *b, const char *path) {
     hid_t starts = H5Dopen2(file, "vertex_start", H5P_DEFAULT);
     H5Dread(starts, H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, vertex_start);
     H5Dclose(starts);
-    for (b->fields = 0; b->fields < FIELDS; b->fields++) {
+    for (b->fields = 0; b->fields < FIELDS - (h->parts == 0); b->fields++) {
         field *p = &b->field[b->fields];
         char sums[80];
         size_t width;
@@ -158,12 +153,12 @@ static void repair_sums(uint8_t *image, const field *p) {
     uint8_t *values = calloc((size_t)p->values, per_value);
     for (int64_t i = 0; i < p->values; i++) {
         const uint8_t *from = image + p->at + (size_t)i * p->width;
-        int32_t narrow;
-        int64_t wide;
-        memcpy(&narrow, from, sizeof narrow < p->width ? sizeof narrow : p->width);
-        wide = narrow;
-        memcpy(values + (size_t)i * per_value, p->width == 4 && per_value == 8 ? (void *)&wide : (void *)from,
-               per_value);
+        int64_t wide = 0; /* little-endian, its sign to be extended */
+        memcpy(&wide, from, p->width < sizeof wide ? p->width : sizeof wide);
+        int unused = 64 - 8 * (int)(p->width < sizeof wide ? p->width : sizeof wide);
+        wide = (int64_t)((uint64_t)wide << unused) >> unused;
+        memcpy(values + (size_t)i * per_value,
+               p->width < per_value ? (const void *)&wide : (const void *)from, per_value);
     }
     for (int64_t b = 0; b < p->blocks; b++) {
         uint64_t sum = rg_rows_checksum(p->rows, values + (size_t)p->block_start[b] * bytes,
@@ -175,7 +170,7 @@ static void repair_sums(uint8_t *image, const field *p) {
 
 static void change_value(const base *b, uint8_t *image, const uint8_t *c) {
     size_t where = (size_t)c[2] + 256 * (size_t)c[3];
-    const field *p = &b->field[c[1] % FIELDS];
+    const field *p = &b->field[c[1] % b->fields];
     if (c[0] == 2 || c[0] == 3) {
         set_value(image, p, (int64_t)where % p->values, c[4]);
         repair_sums(image, p);
@@ -197,7 +192,7 @@ static void change_file(const base *b, hid_t file, const uint8_t *c) {
     if (c[0] == 4 || c[0] == 5) {
         rg_fuzz_change_attribute(file, attribute[c[1] % ATTRIBUTES], rg_fuzz_integer(c[4]), c[0] == 5);
     } else if (c[0] == 6) {
-        rg_fuzz_change_shape(file, b->field[c[1] % FIELDS].rows->name,
+        rg_fuzz_change_shape(file, b->field[c[1] % b->fields].rows->name,
                              where == 65535 ? rg_fuzz_integer(c[1]) : where, c[4]);
     }
 }
@@ -263,11 +258,11 @@ static void make_file(const base *b, const uint8_t *data, size_t size) {
 }
 
 static void make_bases(const uint8_t *data, size_t size) {
-    static const int64_t cells[MESHES][3] = {{2, 1, 1}, {3, 3, 3}};
+    static const int64_t cells[MESHES][3] = {{2, 1, 1}, {3, 3, 3}, {2, 1, 1}};
     (void)data;
     (void)size;
     for (int m = 0; m < MESHES; m++) {
-        write_good(rg_fuzz_scratch(), cells[m]);
+        write_good(rg_fuzz_scratch(), cells[m], m == 2);
         load(&bases[m]);
         find_fields(&bases[m], rg_fuzz_scratch());
     }
@@ -284,7 +279,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
         return 0;
     }
     rg_fuzz_h5_begin();
-    make_file(&bases[data[0] % 8 == 1], data, size); /* the larger one now and then: it is slow */
+    int which = data[0] % 8 < MESHES ? data[0] % 8 : 0; /* the larger one now and then: it is slow */
+    make_file(&bases[which], data, size);
     bool accepted = rg_fuzz_run(body, data, size);
     rg_fuzz_require(accepted || size >= 2 + CHANGE, "the good file is read");
     rg_fuzz_h5_close();

@@ -180,11 +180,11 @@ static void test_header(void **state) {
         const char *said;
     } cases[] = {
         {"version", 1, ""},
-        {"version", 0, "version: 0, but this program reads versions 1 to 3\n"},
+        {"version", 0, "version: 0, but this program reads versions 1 to 4\n"},
         {"version", 2,
          "surface_combinations: cannot be read: can't locate attribute in name index; the file is "
          "damaged or not a mesh file\n"},
-        {"version", 4, "version: 4, but this program reads versions 1 to 3\n"},
+        {"version", 5, "version: 5, but this program reads versions 1 to 4\n"},
         {"version", -1, "version: -1 is not between 0 and 9223372036854775807\n"},
         {"elements", 0, "elements: 0 is not between 1 and 1099511627776\n"},
         {"elements", 1099511627777, "elements: 1099511627777 is not between 1 and 1099511627776\n"},

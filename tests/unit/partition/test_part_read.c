@@ -8,6 +8,7 @@
 
 #include "base/mem.h"
 #include "case/expr.h"
+#include "mesh/check.h"
 #include "mesh/file.h"
 #include "layout.h"
 #include "mesh/mesh.h"
@@ -15,6 +16,10 @@
 #include "partition/tile_weight.h"
 #include "support/fatal.h"
 #include "support/tap.h"
+
+void rg_warn(const char *format, ...) {
+    (void)format;
+}
 
 static int ranks;
 static char path[] = "/tmp/rhegma-part-XXXXXX";
@@ -28,7 +33,7 @@ static const struct box {
     {"bar", {3, 3, 30}, {-0.2e-3, -0.2e-3, -2e-3}, {0.4e-3, 0.4e-3, 4e-3}, 0.12},
     {"block", {24, 22, 27}, {1, 2, 3}, {1.6, 1.2, 2.0}, 0.1}, /* more tiles than are read at once */
 };
-enum { BOXES = sizeof boxes / sizeof boxes[0], CHECKS = 12, REFUSALS = 3, FAULTY = 2 };
+enum { BOXES = sizeof boxes / sizeof boxes[0], CHECKS = 12, REFUSALS = 3, FAULTY = 6 };
 
 static bool same_counts(const rg_part *a, const rg_part *b) {
     bool good = a->total == b->total && a->interfaces == b->interfaces && a->tile == b->tile &&
@@ -358,9 +363,8 @@ static int list_lines(const rg_mesh *m, line *list) {
             list[lines].key[0] = s / 4;
             list[lines].key[1] = next;
             snprintf(list[lines].words, sizeof list->words,
-                     "elements %d and %d have a face at the same place, but are not neighbours: the mesh is "
-                     "open there",
-                     (int)m->original[s / 4], (int)m->original[next]);
+                     "elements %d and %d have a face at the same place, but are not neighbours: %s",
+                     (int)m->original[s / 4], (int)m->original[next], rg_mesh_open_words(false));
             lines += !told;
         }
     }
@@ -438,6 +442,27 @@ static bool faulty_told(bool alone) {
     return good;
 }
 
+/* Of the same elements those that are parts of their own may be where others are; as many ranks as there are
+ * read them. */
+static bool parts_taken(bool alone, bool apart) {
+    bool good = true;
+    for (rg_gid twice = 0; twice < 12 && (apart || ranks == 1); twice++) {
+        if (rank == 0) {
+            rg_mesh *m = make_faulty(twice, alone);
+            m->part = RG_NEW(int32_t, (size_t)m->elements);
+            m->part[twice] = apart && alone;
+            m->part[m->elements - 1] = apart ? 1 + alone : 0;
+            rg_mesh_file_write(path, m, 0, NULL);
+            rg_mesh_free(m);
+        }
+        MPI_Barrier(MPI_COMM_WORLD);
+        bool ended = reading_ends();
+        good = good && ended != apart && (apart || !alone || strstr(said, rg_mesh_open_words(true)) != NULL);
+        MPI_Barrier(MPI_COMM_WORLD);
+    }
+    return good;
+}
+
 int main(int argc, char **argv) {
     MPI_Init(&argc, &argv);
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);
@@ -453,6 +478,10 @@ int main(int argc, char **argv) {
     check_boundary();
     report(faulty_told(true), "faulty", "elements that do not know of each other");
     report(faulty_told(false), "faulty", "three elements at a face");
+    for (int k = 0; k < 4; k++) {
+        report(parts_taken(k % 2, k / 2), "faulty",
+               k < 2 ? "inside one part" : "in parts that are kept apart");
+    }
     if (rank == 0) {
         unlink(path);
     }
