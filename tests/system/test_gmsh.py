@@ -195,6 +195,13 @@ def test_what_is_in_no_physical_volume(tmp_path):
     assert ": 2 elements are in no physical volume and left out" in said
 
 
+def test_groups_of_points_are_told(tmp_path):
+    points = [(n, 15, n, n, (1,)) for n in range(1, 7)]
+    said = ": physical groups of points name no faces: {} are left out: 'tip', '2'{}; a probe takes a place"
+    for count, more in ((2, ""), (6, ", '3', '4', '5', ...")):
+        assert said.format(count, more) in convert(tmp_path, points[:count] + SOLIDS, [(0, 1, "tip")])[3]
+
+
 def test_second_order(tmp_path):
     ends = [(1, 2), (2, 3), (3, 1), (4, 1), (4, 3), (4, 2)]  # in Gmsh's order
     points = POINTS | {10 + k: tuple((p + q) / 2 for p, q in zip(POINTS[a], POINTS[b])) for k, (a, b) in enumerate(ends)}

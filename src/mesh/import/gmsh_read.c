@@ -265,6 +265,21 @@ static void read_edges(rg_import *m, bool flat) {
     rg_gmsh_sets_free(&edges);
 }
 
+/* Points are no faces. Some geometries have one group for each of thousands: the first few are named. */
+static void tell_points(const char *path) {
+    rg_gmsh_sets points = rg_gmsh_sets_read(path, 0);
+    char names[400] = "";
+    for (int32_t s = 0; points.named && s < points.sets.count && s < 5; s++) {
+        size_t used = strlen(names);
+        snprintf(names + used, sizeof names - used, "%s'%s'", s > 0 ? ", " : "", points.sets.name[s]);
+    }
+    if (points.named) {
+        rg_warn("%s: physical groups of points name no faces: %d are left out: %s%s; a probe takes a place",
+                path, points.sets.count, names, points.sets.count > 5 ? ", ..." : "");
+    }
+    rg_gmsh_sets_free(&points);
+}
+
 static void take_names(rg_sets *to, const rg_sets *from) {
     for (int32_t s = 0; s < from->count; s++) {
         rg_sets_add(to, from->name[s]);
@@ -287,6 +302,7 @@ rg_mesh *rg_gmsh_read(const char *path, const rg_import_how *how, const rg_gmsh_
     rg_gmsh_each(path, &volumes, take_elements, &t);
     rg_gmsh_each(path, &surfaces, take_faces, &f);
     read_edges(&m, flat);
+    tell_points(path);
     if (t.left_out > 0) {
         rg_warn("%s: %" PRId64 " elements are in no physical volume and left out", path, t.left_out);
     }
