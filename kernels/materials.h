@@ -48,6 +48,17 @@ enum {
     RG_JH_HISTORY = 10,
 };
 
+/* History of a point of material/drucker_prager.h. Zero is the virgin material. */
+enum {
+    RG_DP_STRAIN = 0, /* accumulated equivalent plastic strain */
+    RG_DP_VOLUME = 1, /* plastic part of log J */
+    RG_DP_RISE = 2,   /* of the cap's pressure (Pa) */
+    RG_DP_MEAN = 3,   /* mean of tau after a step that flowed (Pa); 0: it did not */
+    RG_DP_MISES = 4,  /* its von Mises part (Pa), likewise */
+    RG_DP_FLOW = 5,   /* as RG_J2_FLOW, of the part of Fp that keeps the volume */
+    RG_DP_HISTORY = 11,
+};
+
 /* History of a point of material/viscoelastic.h, tensors xx yy zz yz xz xy. Zero is the virgin material. */
 enum {
     RG_VE_ELEMENTS = 3, /* Maxwell's */
@@ -81,6 +92,9 @@ enum {
     X(johnson_holmquist, JOHNSON_HOLMQUIST, "johnson-holmquist-2",                                           \
       "a ceramic or glass that is crushed, under high pressure too", RG_JH_HISTORY,                          \
       RG_TAKES_YOUNG | RG_HAS_DAMAGE | RG_HAS_PLASTIC)                                                       \
+    X(drucker_prager, DRUCKER_PRAGER, "drucker-prager",                                                      \
+      "rock, soil or concrete: strength by pressure, with a cap and a tension cut-off", RG_DP_HISTORY,       \
+      RG_TAKES_YOUNG | RG_HAS_PLASTIC)                                                                       \
     X(viscoelastic, VISCOELASTIC, "viscoelastic",                                                            \
       "a polymer that relaxes: neo-Hookean in the long run, beside three Maxwell elements", RG_VE_HISTORY,   \
       RG_TAKES_YOUNG)
@@ -168,6 +182,23 @@ typedef enum {
     X(BULK_3, "bulk_3", "Pa", RG_ANY_SIGN, RG_MATERIAL_BIT_JOHNSON_HOLMQUIST, "K3 of it")                    \
     X(BULKING, "bulking", NULL, RG_FROM_0, RG_MATERIAL_BIT_JOHNSON_HOLMQUIST,                                \
       "beta: share of the elastic energy lost by damage that raises the pressure, at most 1")                \
+    X(COHESION, "cohesion", "Pa", RG_NEEDED, RG_MATERIAL_BIT_DRUCKER_PRAGER,                                 \
+      "c: with friction_angle, of the Mohr-Coulomb solid that is as strong under compression")               \
+    X(FRICTION_ANGLE, "friction_angle", "degrees", RG_FROM_0, RG_MATERIAL_BIT_DRUCKER_PRAGER,                \
+      "phi, below 90: how strength grows with pressure")                                                     \
+    X(DILATION_ANGLE, "dilation_angle", "degrees", RG_FROM_0, RG_MATERIAL_BIT_DRUCKER_PRAGER,                \
+      "psi, at most friction_angle: how volume grows with flow")                                             \
+    X(TENSION_CUTOFF, "tension_cutoff", "Pa", RG_FROM_0, RG_MATERIAL_BIT_DRUCKER_PRAGER,                     \
+      "T: largest mean stress; 0, and beyond the apex of the cone: that of the apex")                        \
+    X(CAP_PRESSURE, "cap_pressure", "Pa", RG_FROM_0, RG_MATERIAL_BIT_DRUCKER_PRAGER,                         \
+      "pressure from all sides at which pores begin to collapse; 0: no cap")                                 \
+    X(CAP_RATIO, "cap_ratio", NULL, RG_FROM_0, RG_MATERIAL_BIT_DRUCKER_PRAGER,                               \
+      "R: half axis of the cap along the pressure over that along von Mises' stress; goes with "             \
+      "cap_pressure")                                                                                        \
+    X(COMPACTION, "compaction", NULL, RG_FROM_0, RG_MATERIAL_BIT_DRUCKER_PRAGER,                             \
+      "volume (as -log J) that pores lose in the end, below 1; goes with cap_pressure")                      \
+    X(COMPACTION_PRESSURE, "compaction_pressure", "Pa", RG_FROM_0, RG_MATERIAL_BIT_DRUCKER_PRAGER,           \
+      "by which pressure has to rise beyond cap_pressure till 1/e of that is left; goes with cap_pressure")  \
     X(SHEAR_FRACTION_1, "shear_fraction_1", NULL, RG_FROM_0, RG_MATERIAL_BIT_VISCOELASTIC,                   \
       "share of the shear modulus that relaxes in relaxation_time_1; young and poisson are those before")    \
     X(SHEAR_FRACTION_2, "shear_fraction_2", NULL, RG_FROM_0, RG_MATERIAL_BIT_VISCOELASTIC,                   \
@@ -197,6 +228,13 @@ typedef struct {
     double stiffest, softest;
 } rg_anisotropic;
 
+/* The cone of material/drucker_prager.h: q = strength + slope p, volume grows by `dilation` times the
+ * equivalent plastic strain; `excess`: by so much the symmetric part of its tangent may exceed the elastic
+ * one, since flow is not along the normal. */
+typedef struct {
+    double strength, slope, dilation, excess;
+} rg_dp_cone;
+
 /* A material as a kernel takes it. */
 typedef struct {
     double lambda, mu; /* Lame constants of the undeformed, undamaged solid (Pa); of an anisotropic one the
@@ -208,6 +246,10 @@ typedef struct {
         rg_de_material deshpande_evans;
         rg_anisotropic anisotropic;
         double parameter[RG_PARAMETERS]; /* of all others */
+        struct {
+            double given[RG_PARAMETERS]; /* the same */
+            rg_dp_cone cone;             /* of these, by rg_material_prepare */
+        } drucker_prager;
     } of;
 } rg_material;
 

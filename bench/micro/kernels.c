@@ -24,6 +24,7 @@ typedef struct {
 #define J2        RG_MATERIAL_J2
 #define COOK      RG_MATERIAL_JOHNSON_COOK
 #define CRUSHED   RG_MATERIAL_JOHNSON_HOLMQUIST
+#define ROCK      RG_MATERIAL_DRUCKER_PRAGER
 #define RELAXING  RG_MATERIAL_VISCOELASTIC
 
 static const kernel_case cases[] = {
@@ -67,6 +68,16 @@ static const kernel_case cases[] = {
      RG_COST_BULK,
      0,
      {.gradient = RG_GRADIENT_LIFTED, .model = CRUSHED, .advance = true, .flowing = 1},
+     BENCH_FLOWING},
+    {"Drucker-Prager elastic",
+     RG_COST_BULK,
+     0,
+     {.gradient = RG_GRADIENT_LIFTED, .model = ROCK, .advance = true},
+     BENCH_QUIET},
+    {"Drucker-Prager flowing",
+     RG_COST_BULK,
+     0,
+     {.gradient = RG_GRADIENT_LIFTED, .model = ROCK, .advance = true, .flowing = 1},
      BENCH_FLOWING},
     {"viscoelastic",
      RG_COST_BULK,

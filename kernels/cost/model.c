@@ -1,6 +1,7 @@
 #include "cost/model.h"
 
 #include "cost/ceramic.h"
+#include "cost/drucker_prager.h"
 #include "cost/j2.h"
 #include "cost/johnson_cook.h"
 #include "cost/johnson_holmquist.h"
@@ -130,6 +131,8 @@ static double point_flops(const rg_cost_variant *v) {
         return rg_johnson_cook_flops(v) + FMA + released;
     case RG_MATERIAL_JOHNSON_HOLMQUIST:
         return rg_johnson_holmquist_flops(v) + FMA + released;
+    case RG_MATERIAL_DRUCKER_PRAGER:
+        return rg_drucker_prager_flops(v) + FMA + released;
     case RG_MATERIAL_VISCOELASTIC:
         return viscoelastic_flops() + released;
     default:
@@ -156,6 +159,8 @@ static double state_flops(const rg_cost_variant *v) {
         return rg_johnson_cook_state_flops(v) + FMA + (v->cauchy ? 3 + CAUCHY : 0);
     case RG_MATERIAL_JOHNSON_HOLMQUIST:
         return rg_johnson_holmquist_state_flops(v) + FMA + (v->cauchy ? 3 + CAUCHY : 0);
+    case RG_MATERIAL_DRUCKER_PRAGER:
+        return rg_drucker_prager_state_flops(v) + FMA + (v->cauchy ? 3 + CAUCHY : 0);
     case RG_MATERIAL_VISCOELASTIC:
         return VOLUME_CHANGE + ENERGY + VE_ENERGY +
                (v->cauchy ? STRESS + 6 * RG_VE_ELEMENTS + VE_PIOLA + CAUCHY : 0);
@@ -263,11 +268,19 @@ typedef struct {
 } traffic;
 
 /* Values of a history that serve to go on alone: the plastic strain; the heat of Johnson and Cook's metal;
- * the last strain of Johnson and Holmquist's ceramic. */
+ * the last strain of Johnson and Holmquist's ceramic; cap and last stress of Drucker and Prager's solid. */
 static int only_advancing(rg_material_model model) {
-    return model == RG_MATERIAL_JOHNSON_COOK || model == RG_MATERIAL_JOHNSON_HOLMQUIST ? 2
-           : model == RG_MATERIAL_VISCOELASTIC                                         ? 0
-                                                                                       : 1;
+    switch (model) {
+    case RG_MATERIAL_VISCOELASTIC:
+        return 0;
+    case RG_MATERIAL_JOHNSON_COOK:
+    case RG_MATERIAL_JOHNSON_HOLMQUIST:
+        return 2;
+    case RG_MATERIAL_DRUCKER_PRAGER:
+        return 4;
+    default:
+        return 1;
+    }
 }
 
 static traffic bulk_traffic(const rg_cost_variant *v, double out) {

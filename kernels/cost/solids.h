@@ -4,7 +4,8 @@
 
 #include "materials.h"
 
-/* OFHC copper's curve at the level of alumina, silicon carbide, and three relaxation times. */
+/* OFHC copper's curve at the level of alumina, silicon carbide, a rock without a cap, and three relaxation
+ * times. */
 static const double rg_cost_parameters[RG_PARAMETERS] = {
     [RG_PARAMETER_YIELD_STRESS] = 1e9,
     [RG_PARAMETER_HARDENING] = 2e9,
@@ -30,6 +31,9 @@ static const double rg_cost_parameters[RG_PARAMETERS] = {
     [RG_PARAMETER_FAILURE_POWER] = 0.48,
     [RG_PARAMETER_BULK_2] = 361e9,
     [RG_PARAMETER_BULKING] = 1,
+    [RG_PARAMETER_COHESION] = 1e9,
+    [RG_PARAMETER_FRICTION_ANGLE] = 3,
+    [RG_PARAMETER_DILATION_ANGLE] = 1,
     [RG_PARAMETER_SHEAR_FRACTION_1] = 0.2,
     [RG_PARAMETER_SHEAR_FRACTION_2] = 0.15,
     [RG_PARAMETER_SHEAR_FRACTION_3] = 0.1,

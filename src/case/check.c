@@ -108,7 +108,7 @@ static const rg_node *parent_of(const rg_node *top, const char *name) {
 static bool missing(const scan *s, const rg_key *key, const char *path) {
     const rg_node *parent = parent_of(s->top, key->name);
     if (parent != NULL) {
-        char allowed[160];
+        char allowed[512];
         rg_subject subject = {.key = path, .allowed = rg_key_allowed(key, allowed, sizeof allowed)};
         rg_problem_add(s->ck->problems, parent->at, &subject, "missing");
     }
@@ -203,7 +203,7 @@ static const char *why_unused(const scan *s, const rg_key *key, char *text, size
         snprintf(text, size, "not used, because interface.%s", rg_why_unused(key->group, s->ck->c));
         return text;
     }
-    char words[160];
+    char words[256];
     const rg_material_check *m = &s->ck->material;
     rg_models_words(key, words, sizeof words);
     snprintf(text, size, "not used, because %smodel is %s; it belongs to %s", m->path,
@@ -212,7 +212,7 @@ static const char *why_unused(const scan *s, const rg_key *key, char *text, size
 }
 
 static bool refuse_unused(const scan *s, const rg_key *key, const rg_node *node, const char *path) {
-    char value[64], why[256];
+    char value[64], why[400];
     rg_subject subject = {.key = path, .value = rg_node_line(node, value, sizeof value)};
     rg_problem_add(s->ck->problems, node->key_at, &subject, "%s", why_unused(s, key, why, sizeof why));
     return false;

@@ -111,7 +111,7 @@ const char *rg_key_allowed(const rg_key *key, char *text, size_t size) {
     text[0] = '\0';
     type_words(key, text, size);
     if (key->as != NULL) {
-        char models[160];
+        char models[256];
         rg_models_words(&(rg_key){.models = key->as_models}, models, sizeof models);
         rg_text_add(text, size, "; of %s ", models);
         type_words(key->as, text, size);

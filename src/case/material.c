@@ -1,4 +1,5 @@
 /* Rules of the case file that the materials make. */
+#include <math.h>
 #include <stdarg.h>
 #include <string.h>
 
@@ -55,13 +56,25 @@ static const char *const parameter_key[] = {RG_MATERIAL_PARAMETERS(PARAMETER_KEY
 static const int pairs[][2] = {
     {RG_PARAMETER_SOFTENING_POWER, RG_PARAMETER_MELTING_TEMPERATURE},
     {RG_PARAMETER_HEAT_FRACTION, RG_PARAMETER_HEAT_CAPACITY},
+    {RG_PARAMETER_CAP_PRESSURE, RG_PARAMETER_CAP_RATIO},
+    {RG_PARAMETER_CAP_PRESSURE, RG_PARAMETER_COMPACTION},
+    {RG_PARAMETER_CAP_PRESSURE, RG_PARAMETER_COMPACTION_PRESSURE},
 };
 /* The first one is below the second one. */
 static const int orders[][2] = {
     {RG_PARAMETER_ROOM_TEMPERATURE, RG_PARAMETER_MELTING_TEMPERATURE},
     {RG_PARAMETER_HUGONIOT_PRESSURE, RG_PARAMETER_HUGONIOT_LIMIT},
 };
-static const int shares[] = {RG_PARAMETER_HEAT_FRACTION, RG_PARAMETER_BULKING}; /* at most 1 */
+/* At most so much. */
+static const struct {
+    int parameter;
+    double most;
+} limits[] = {
+    {RG_PARAMETER_HEAT_FRACTION, 1},
+    {RG_PARAMETER_BULKING, 1},
+    {RG_PARAMETER_FRICTION_ANGLE, 89},
+    {RG_PARAMETER_COMPACTION, 0.99},
+};
 
 /* A share that relaxes needs a time, and all of them leave something. */
 static void check_relaxation(rg_check *ck, int first_share) {
@@ -110,6 +123,30 @@ static void check_order(rg_check *ck, const int order[2]) {
     }
 }
 
+/* Flow spends no less than it takes, and the cap begins under pressure: pb > R k. */
+static void check_cone(rg_check *ck) {
+    const rg_material_check *m = &ck->material;
+    const double *given = m->of->parameter;
+    const rg_node *dilation = m->given[RG_PARAMETER_DILATION_ANGLE],
+                  *cap = m->given[RG_PARAMETER_CAP_PRESSURE];
+    double angle = given[RG_PARAMETER_FRICTION_ANGLE] * 0.017453292519943295769;
+    double least =
+        given[RG_PARAMETER_CAP_RATIO] * 6 * given[RG_PARAMETER_COHESION] * cos(angle) / (3 - sin(angle));
+    if (m->bad[RG_PARAMETER_FRICTION_ANGLE]) {
+        return;
+    }
+    if (dilation != NULL && given[RG_PARAMETER_DILATION_ANGLE] > given[RG_PARAMETER_FRICTION_ANGLE]) {
+        wrong(ck, dilation->at, parameter_key[RG_PARAMETER_DILATION_ANGLE], dilation->text,
+              "above %sfriction_angle, %g", m->path, given[RG_PARAMETER_FRICTION_ANGLE]);
+    }
+    if (cap != NULL && given[RG_PARAMETER_CAP_PRESSURE] > 0 && given[RG_PARAMETER_CAP_PRESSURE] <= least) {
+        wrong(ck, cap->at, parameter_key[RG_PARAMETER_CAP_PRESSURE], cap->text,
+              "the cap would begin under tension: not above cap_ratio times the strength without pressure, "
+              "%g Pa",
+              least);
+    }
+}
+
 void rg_parameters_rule(rg_check *ck) {
     const rg_material_check *m = &ck->material;
     for (size_t k = 0; k < sizeof pairs / sizeof *pairs; k++) {
@@ -120,12 +157,14 @@ void rg_parameters_rule(rg_check *ck) {
     }
     check_relaxation(ck, RG_PARAMETER_SHEAR_FRACTION_1);
     check_relaxation(ck, RG_PARAMETER_BULK_FRACTION_1);
-    for (size_t k = 0; k < sizeof shares / sizeof *shares; k++) {
-        const rg_node *node = m->given[shares[k]];
-        if (node != NULL && m->of->parameter[shares[k]] > 1) {
-            wrong(ck, node->at, parameter_key[shares[k]], node->text, "more than 1");
+    for (size_t k = 0; k < sizeof limits / sizeof *limits; k++) {
+        int at = limits[k].parameter;
+        if (m->given[at] != NULL && m->of->parameter[at] > limits[k].most) {
+            wrong(ck, m->given[at]->at, parameter_key[at], m->given[at]->text, "more than %g",
+                  limits[k].most);
         }
     }
+    check_cone(ck);
 }
 
 void rg_flaw_rule(rg_check *ck) {

@@ -98,6 +98,15 @@ const rg_preset rg_preset_list[RG_PRESETS] = {
      "softening_power: 1.09, melting_temperature: 1356, room_temperature: 294, heat_capacity: 383, "
      "heat_fraction: 0.9}",
      1.2e9, 20e3, COOK "; strength and energy of cracks: of the order of its spall", DUCTILE},
+    {"berea-sandstone", "Berea sandstone with pores that collapse",
+     "{model: drucker-prager, young: 19.3e9, poisson: 0.2, density: 2100, cohesion: 18.5e6, friction_angle: "
+     "37, "
+     "dilation_angle: 10, cap_pressure: 390e6, cap_ratio: 0.5, compaction: 0.15, compaction_pressure: 300e6}",
+     5e6, 6.4,
+     "T.-f. Wong, C. David & W. Zhu, J. Geophys. Res. 102 (1997) 3009, from memory: 21 % pores, 390 MPa to "
+     "crush "
+     "grains; cone by 74 MPa in compression; cracks: of the order of such sandstones",
+     "dry; order of magnitude of the cap: its ratio and hardening are not of the source"},
     {"pmma-viscoelastic", "polymethyl methacrylate that relaxes",
      "{model: viscoelastic, young: 6e9, poisson: 0.33, density: 1190, shear_fraction_1: 0.15, "
      "shear_fraction_2: "
@@ -129,7 +138,7 @@ const char *rg_preset_nearest(const char *name) {
 /* ---- in a case ---- */
 
 static void complain(rg_check *ck, const rg_node *node, const char *path) {
-    char allowed[400] = "", value[64], *key = rg_text_format("%spreset", path);
+    char allowed[600] = "", value[64], *key = rg_text_format("%spreset", path);
     for (int i = 0; i < RG_PRESETS; i++) {
         rg_text_add(allowed, sizeof allowed, "%s%s", i > 0 ? ", " : "", rg_preset_list[i].name);
     }

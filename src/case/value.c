@@ -13,7 +13,7 @@
 
 void rg_value_wrong(rg_check *ck, const rg_key *key, const rg_node *node, const char *path,
                     const char *nearest, const char *what) {
-    char value[64], allowed[160];
+    char value[64], allowed[512];
     if (node->kind == RG_NODE_BAD) {
         return;
     }

@@ -135,7 +135,9 @@ VARIANTS = {  # test_checkpoint.c has more, on one rank
 if not SINGLE:  # solids whose history grows, heats and relaxes; copper flows at the rate of the last step
     VARIANTS["flowing"] = {"interface.strength": 60e6, "material": {"preset": "copper-ofhc", "yield_stress": 120e6, "density": 3000},
                            "materials": [{"name": "glass", "where": "z > 5e-4", "preset": "float-glass-jh2", "density": 3000, "intact_strength": 0.05},
-                                         {"name": "polymer", "where": "z < -5e-4", "preset": "pmma-viscoelastic", "young": 124e9, "density": 3000}]}
+                                         {"name": "polymer", "where": "z < -5e-4", "preset": "pmma-viscoelastic", "young": 124e9, "density": 3000},
+                                         {"name": "rock", "where": "z > 0 && z < 5e-4", "preset": "berea-sandstone", "young": 124e9, "density": 3000,
+                                          "cohesion": 100e6, "cap_pressure": 150e6, "cap_ratio": 0.3}]}
 
 
 @pytest.mark.parametrize("variant", VARIANTS)

@@ -24,7 +24,9 @@ SOLIDS = {
                 "materials": [{"name": "glass", "where": "z > 2.2e-3", "preset": "float-glass-jh2", "density": 3000,
                                "intact_strength": 0.05},
                               {"name": "polymer", "where": "z < 1e-3", "preset": "pmma-viscoelastic", "young": 124e9,
-                               "density": 3000}]},
+                               "density": 3000},
+                              {"name": "rock", "where": "z > 1.7e-3 && z < 2.2e-3", "preset": "berea-sandstone", "young": 124e9,
+                               "density": 3000, "cohesion": 100e6, "cap_pressure": 150e6, "cap_ratio": 0.3}]},
 }
 EACH = [pytest.param(name, marks=[double_only] if name in ("metal", "flowing") else []) for name in SOLIDS]
 SHORT = {"mesh.cells": [2, 2, 20], "mesh.jitter": 0.1, "time.end": 0.35e-6, "initial.velocity.z": "-40*cos(pi*z/4e-3)",
@@ -193,3 +195,24 @@ def test_output_does_not_flow(run):
     seldom = run(PLASTIC, sets={**sets, "output.interval": 2e-7})
     assert often.summary["plastic_J"] > 0
     assert often.summary["state_hash"] == seldom.summary["state_hash"]
+
+
+# ---- Rock ----
+
+
+@double_only
+@pytest.mark.parametrize("across", [0, 40])
+def test_triaxial_compression(run, figure, across, tmp_path):
+    """The example, without pressure across up to 64.5 us, where it has flowed for 20 us, two periods in which it breathes by 5 %;
+    theory is Mohr and Coulomb's."""
+    case = tmp_path / "triaxial.yaml"
+    case.write_text(example("triaxial.yaml").read_text().replace("40e6*min", f"{across}e6*min"))
+    done = run(case, sets={"time.end": 120e-6 if across else 64.5e-6, "output.fields": []})
+    history, phi, cohesion = done.history, np.radians(37), 18.5
+    flows = history["time"] > (100e-6 if across else 43.5e-6)
+    theory = (2 * cohesion * np.cos(phi) + (1 + np.sin(phi)) * across) / (1 - np.sin(phi))
+    figure(f"sandstone, {across} MPa across: axial stress", -1e-6 * history["middle_szz"][flows].mean(), theory=theory,
+           bound=8e-4 if across else 4e-3, unit="MPa", relative=True)
+    assert abs(history["middle_sxx"][flows].mean() + across * 1e6) < 0.1e6
+    figure(f"sandstone, {across} MPa across: energy error", done.summary["energy_error_rel"], bound=4e-6)
+    assert done.summary["plastic_J"] > 0.05

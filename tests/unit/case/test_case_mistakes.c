@@ -508,6 +508,21 @@ static void test_laws_of_flow(void **state) {
     expect_messages(3, crushed,
                     ":5:11: material.hugoniot_limit: 5.95e9: not above material.hugoniot_pressure, 6e+09\n"
                     "--set material.bulking=2: material.bulking: 2: more than 1\n");
+    write_changed(elastic, "material:\n  preset: berea-sandstone\n");
+    static const char *const rock[] = {"material.dilation_angle=40", "material.compaction=1",
+                                       "material.cap_pressure=18e6"};
+    expect_messages(
+        3, rock,
+        "--set material.compaction=1: material.compaction: 1: more than 0.99\n"
+        "--set material.dilation_angle=40: material.dilation_angle: 40: above material.friction_angle, 37\n"
+        "--set material.cap_pressure=18e6: material.cap_pressure: 18e6: the cap would begin under tension: "
+        "not above cap_ratio times the strength without pressure, 1.84824e+07 Pa\n");
+    static const char *const bare[] = {"material.cap_pressure=0", "material.friction_angle=90"};
+    expect_messages(2, bare,
+                    ":5:11: material.cap_ratio: not used without material.cap_pressure\n"
+                    ":5:11: material.compaction: not used without material.cap_pressure\n"
+                    ":5:11: material.compaction_pressure: not used without material.cap_pressure\n"
+                    "--set material.friction_angle=90: material.friction_angle: 90: more than 89\n");
     write_changed(elastic, "material:\n  preset: pmma-viscoelastic\n");
     static const char *const relaxed[] = {"material.shear_fraction_3=0.8", "material.bulk_fraction_1=0.1",
                                           "material.relaxation_time_1=0"};

@@ -50,7 +50,7 @@ static void test_refused(void **state) {
 #define NAMES                                                                                                \
     "allowed: alumina-seagraves, alumina-ad995, silicon-carbide, boron-carbide, soda-lime-glass, pmma, "     \
     "granite, concrete, maraging-steel, alumina-jh2, boron-carbide-jh2, silicon-carbide-jh2, "               \
-    "float-glass-jh2, steel-4340, copper-ofhc, pmma-viscoelastic"
+    "float-glass-jh2, steel-4340, copper-ofhc, berea-sandstone, pmma-viscoelastic"
     write_bytes(of_name, strlen(of_name));
     static const char *const near[] = {"material.preset=pma"};
     expect_messages(1, near,
@@ -127,6 +127,7 @@ static void test_cracks(void **state) {
                  {"float-glass-jh2", 6e7, 7.4},
                  {"steel-4340", 2.4e9, 2e4},
                  {"copper-ofhc", 1.2e9, 2e4},
+                 {"berea-sandstone", 5e6, 6.4},
                  {"pmma-viscoelastic", 1.296e8, 352.3}};
     assert_int_equal(sizeof known / sizeof *known, RG_PRESETS);
     for (int i = 0; i < RG_PRESETS; i++) {

@@ -247,6 +247,7 @@ static void free_call(call *c) {
 #define J2        RG_MATERIAL_J2
 #define COOK      RG_MATERIAL_JOHNSON_COOK
 #define CRUSHED   RG_MATERIAL_JOHNSON_HOLMQUIST
+#define ROCK      RG_MATERIAL_DRUCKER_PRAGER
 #define RELAXING  RG_MATERIAL_VISCOELASTIC
 
 /* Every kernel with every flag. */
@@ -327,6 +328,14 @@ static const struct {
      {.gradient = RG_GRADIENT_LIFTED, .model = CRUSHED},
      {2.3, 3.0}},
     {"Johnson-Holmquist state, stress", RG_COST_BULK_STATE, {.model = CRUSHED, .cauchy = true}, {-1.2, -0.3}},
+    {"Drucker-Prager at rest", RG_COST_BULK, {.gradient = RG_GRADIENT_LIFTED, .model = ROCK}, {-1, 1}},
+    {"Drucker-Prager elastic", RG_COST_BULK, {.model = ROCK, .advance = true}, {-1, 1}},
+    {"Drucker-Prager flowing", RG_COST_BULK, {.model = ROCK, .advance = true, .flowing = 1}, {-1, 2}},
+    {"Drucker-Prager state, energy",
+     RG_COST_BULK_STATE,
+     {.gradient = RG_GRADIENT_LIFTED, .model = ROCK},
+     {2, 4}},
+    {"Drucker-Prager state, stress", RG_COST_BULK_STATE, {.model = ROCK, .cauchy = true}, {-1, 1}},
     {"viscoelastic at rest", RG_COST_BULK, {.gradient = RG_GRADIENT_LIFTED, .model = RELAXING}, {3.0, 5.6}},
     {"viscoelastic", RG_COST_BULK, {.model = RELAXING, .advance = true}, {-0.6, 1.5}},
     {"viscoelastic state, energy",
