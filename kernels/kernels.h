@@ -230,7 +230,18 @@ typedef struct {
     double parting;   /* 0; else an area (m^2): they lie behind each other, as parts of one solid, and touch
                          once their common corners have come apart by its root */
     double common[2][3]; /* mean of the corners that they have in common: weights of those of A, of B */
+    double shear;        /* of the spring that friction is while it holds (Pa/m); at most kappa */
+    double friction[2];  /* Coulomb's coefficient until it slides, while it does */
 } rg_contact_pair;
+
+/* What friction remembers of a pair that presses (contact/friction.h). */
+enum {
+    RG_GRIP_ANCHOR,                          /* [A, B][2]: barycentric coordinates of the spring's ends */
+    RG_GRIP_STRETCH = RG_GRIP_ANCHOR + 4,    /* [2] in the frame of A's first edge (m) */
+    RG_GRIP_STIFFNESS = RG_GRIP_STRETCH + 2, /* (N/m); 0: the pair does not press, and nothing else counts */
+    RG_GRIP_SLIDES,
+    RG_GRIP
+};
 
 typedef struct {
     const double *corner; /* [face][3][3] (m) */
@@ -241,6 +252,8 @@ typedef struct {
     double *energy; /* out: [pair] (J); 0: they do not touch, and their forces are not written */
     double *depth;  /* out: [pair] largest depth where they are over each other; 0: they are not, or nowhere
                        less deep than the limit, or have no share (m) */
+    double *grip;   /* in and out: [pair][RG_GRIP]; NULL: no friction. Its spring is part of `energy` */
+    double *heat;   /* out, with friction: [pair] what it took in the step that led here (J) */
 } rg_contact_args;
 
 /* The box of a face, out of its corners. */

@@ -1,4 +1,5 @@
 /* Contact of faces, a vector of pairs at a time. */
+#include "contact/friction.h"
 #include "contact/pair.h"
 #include "isa.h"
 
@@ -39,7 +40,11 @@ static void meet(const rg_contact_args *args, const size_t pair[], int count) {
     if (wide_any(presses)) {
         integral sum = integrate(&m.over);
         energy = pair_forces(&m, &sum, &h, force);
-        energy = wide_where(presses & (wide_mask)(energy > 0), energy);
+        presses &= (wide_mask)(energy > 0);
+        if (args->grip != NULL) {
+            energy += add_friction(args, pair, count, &m, &sum, &h, presses, force);
+        }
+        energy = wide_where(presses, energy);
     }
     for (int l = 0; l < count; l++) {
         args->depth[pair[l]] = depth[l];
@@ -118,12 +123,25 @@ static void sift(const rg_contact_args *args, const size_t pair[], int count, qu
     }
 }
 
+/* What was pressed and is not any more loses its spring. */
+static void let_go(const rg_contact_args *args, size_t i) {
+    double *k = &args->grip[RG_GRIP * i + RG_GRIP_STIFFNESS];
+    const double *e = args->grip + RG_GRIP * i + RG_GRIP_STRETCH;
+    if (args->energy[i] == 0 && *k > 0) {
+        args->heat[i] = 0.5 * *k * (e[0] * e[0] + e[1] * e[1]);
+        *k = 0;
+    }
+}
+
 void RG_ISA_NAME(rg_contact)(const rg_contact_args *args, size_t begin, size_t end) {
     size_t near[WIDE];
     queue q = {.count = 0};
     int count = 0;
     for (size_t i = begin; i < end; i++) {
         args->energy[i] = args->depth[i] = 0;
+        if (args->grip != NULL) {
+            args->heat[i] = 0;
+        }
         near[count] = i;
         count += are_near(args, &args->pair[i]);
         if (count == WIDE) {
@@ -136,5 +154,8 @@ void RG_ISA_NAME(rg_contact)(const rg_contact_args *args, size_t begin, size_t e
     }
     if (q.count > 0) {
         meet_some(args, &q, q.count);
+    }
+    for (size_t i = begin; args->grip != NULL && i < end; i++) {
+        let_go(args, i);
     }
 }

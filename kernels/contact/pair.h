@@ -29,6 +29,7 @@ typedef struct {
     wide corner[2][3][3];
     wide stiffness, skin, reach; /* skin: with what they have sunk; reach: d_m */
     wide fading, parting, common[2][3];
+    wide shear, friction[2];
     wide across[2][3]; /* (x1 - x0) x (x2 - x0) */
     wide length[2];
     wide normal[2][3]; /* nA, -nB */
@@ -53,7 +54,9 @@ RG_INLINE void load_pair(meeting *m, const rg_contact_args *args, size_t i, int 
             m->common[k][j][lane] = p->common[k][corner_of[k][j]];
         }
         sunk = args->sunk[p->face[k]] > sunk ? args->sunk[p->face[k]] : sunk;
+        m->friction[k][lane] = p->friction[k];
     }
+    m->shear[lane] = p->shear;
     m->stiffness[lane] = p->stiffness;
     m->skin[lane] = p->skin + sunk;
     m->reach[lane] = p->limit - (p->skin + sunk);

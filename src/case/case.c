@@ -100,6 +100,10 @@ bool rg_case_opens(const rg_case *c) {
     return false;
 }
 
+bool rg_case_rubs(const rg_case *c) {
+    return c->contact.model == RG_CONTACT_GENERAL && c->contact.static_friction > 0;
+}
+
 bool rg_face_set_is_any(const rg_face_set *set) {
     return set->names == 1 && strcmp(set->between[0], "any") == 0;
 }

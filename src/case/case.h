@@ -297,6 +297,7 @@ typedef struct {
     struct {
         rg_contact_model model;
         double penalty; /* stiffness times h/(lambda + 2 mu), h the height of an element over its face */
+        double friction, static_friction; /* coefficients while faces slide, until they do */
     } contact;
     rg_mass mass;
     struct {
@@ -379,6 +380,9 @@ bool rg_case_has_stress(const rg_case *c);
 
 /* Whether faces open at a time. */
 bool rg_case_opens(const rg_case *c);
+
+/* Whether fragments rub where they meet. */
+bool rg_case_rubs(const rg_case *c);
 
 /* Whether a set selects the faces between any two volume sets or materials. */
 bool rg_face_set_is_any(const rg_face_set *set);

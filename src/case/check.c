@@ -356,6 +356,8 @@ static void learn(rg_check *ck, const rg_key *key, const rg_node *node, bool goo
         if (general && node != NULL && good) {
             rg_contact_model_rule(ck, node);
         }
+    } else if (key->offset == offsetof(rg_case, contact.static_friction) && node != NULL && good) {
+        rg_static_friction_rule(ck, node);
     } else if (key->offset == offsetof(rg_case, mass) && good && ck->form) {
         rg_mass_rule(ck, node);
     } else if (key->offset == offsetof(rg_case, interface.weibull.modulus)) {

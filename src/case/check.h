@@ -104,6 +104,7 @@ void rg_shear_rule(rg_check *ck, const rg_node *node);
 void rg_criterion_rule(rg_check *ck, const rg_node *node);
 
 /* Friction acts on faces that slide, which contact `flux` does not let them. */
+void rg_static_friction_rule(rg_check *ck, const rg_node *node);
 void rg_contact_model_rule(rg_check *ck, const rg_node *node);
 void rg_friction_rule(rg_check *ck, const rg_node *node);
 

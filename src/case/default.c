@@ -32,3 +32,11 @@ double rg_default_safety(const rg_case *c) {
     bool near = c->interface.law == RG_LAW_NONE || c->interface.activation == RG_ACTIVATION_CONSERVING;
     return conserves(c) && near ? 0.875 : 0.5;
 }
+
+double rg_default_contact_friction(const rg_case *c) {
+    return c->interface.friction;
+}
+
+double rg_default_static_friction(const rg_case *c) {
+    return c->contact.friction;
+}

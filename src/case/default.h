@@ -19,11 +19,15 @@ enum { RG_DEFAULTS = 1 /* the newest set */ };
 #define RG_DEFAULT_WORDS_contact "potential where beta_s is 2 by default, else penalty (defaults 0: penalty)"
 #define RG_DEFAULT_WORDS_safety                                                                              \
     "0.875 of form variational with activation conserving or law none, else 0.5 (defaults 0: 0.5)"
+#define RG_DEFAULT_WORDS_contact_friction "interface.friction"
+#define RG_DEFAULT_WORDS_static_friction  "contact.friction"
 
 double rg_default_beta_s(const rg_case *c);
 double rg_default_activation(const rg_case *c);
 double rg_default_onset(const rg_case *c);
 double rg_default_contact(const rg_case *c);
 double rg_default_safety(const rg_case *c);
+double rg_default_contact_friction(const rg_case *c);
+double rg_default_static_friction(const rg_case *c);
 
 #endif

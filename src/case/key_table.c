@@ -276,6 +276,10 @@ static const rg_key case_keys[] = {
      MEANS("which faces meet each other")},
     {.name = "contact.penalty", REAL, ABOVE(0), DEFAULT(4), GROUP(CONTACT), CASE(contact.penalty),
      MEANS("stiffness, in moduli over the height of an element over its face")},
+    {.name = "contact.friction", REAL, FROM(0), DEFAULT_OF(contact_friction), GROUP(CONTACT), CASE(contact.friction),
+     MEANS("Coulomb's coefficient of faces that slide on each other; their heat is `friction` in energy.csv")},
+    {.name = "contact.static_friction", REAL, FROM(0), DEFAULT_OF(static_friction), GROUP(CONTACT),
+     CASE(contact.static_friction), MEANS("until they slide; not less than `friction`")},
 
     {.name = "viscosity.linear", REAL, FROM(0), DEFAULT(0), CASE(viscosity.linear),
      MEANS("b1 of the bulk viscosity rho h (b1 c (-div v) + b2^2 h (div v)^2), against ringing behind shocks, as 0.06")},

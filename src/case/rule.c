@@ -208,6 +208,15 @@ void rg_contact_model_rule(rg_check *ck, const rg_node *node) {
     }
 }
 
+void rg_static_friction_rule(rg_check *ck, const rg_node *node) {
+    if (ck->c->contact.static_friction < ck->c->contact.friction) {
+        rg_subject subject = {
+            .key = "contact.static_friction", .value = node->text, .allowed = "number >= contact.friction"};
+        rg_problem_add(ck->problems, node->at, &subject,
+                       "faces at rest hold at least as well as sliding ones");
+    }
+}
+
 void rg_friction_rule(rg_check *ck, const rg_node *node) {
     if (ck->c->interface.friction > 0 && ck->c->interface.contact == RG_CONTACT_FLUX) {
         rg_subject subject = {

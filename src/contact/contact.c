@@ -68,6 +68,10 @@ struct rg_contacts {
     rg_contact_pair *pair;
     touch *touch;
     double *force, *energy, *depth; /* of the pairs */
+    bool rubs;
+    double friction[2];  /* Coulomb's coefficient until a pair slides, while it does */
+    double *grip, *heat; /* of the pairs: what friction remembers, and took; NULL without it */
+    rg_grips kept;       /* from before the search */
 };
 
 /* ---- Elements ---- */
@@ -135,6 +139,9 @@ rg_contacts *rg_contacts_make(const rg_case *input, const rg_domain *d, const rg
     }
     rg_contacts *c = RG_NEW(rg_contacts, 1);
     *c = (rg_contacts){.domain = d, .material = m, .comm = comm, .penalty = input->contact.penalty};
+    c->rubs = rg_case_rubs(input);
+    c->friction[0] = input->contact.static_friction;
+    c->friction[1] = input->contact.friction;
     MPI_Comm_rank(comm, &c->rank);
     make_element(c, input->mass);
     c->omega2 = largest_omega2(c);
@@ -223,14 +230,54 @@ static void set_corners(const rg_contacts *c, size_t i) {
     c->sunk[i] = c->row[VALUES * i + ROW];
 }
 
+/* The numbers of a pair's faces, the lower one first. */
+static void faces_of(const rg_contacts *c, size_t pair, rg_gid id[2]) {
+    for (int k = 0; k < 2; k++) {
+        id[k] = c->id[c->pair[pair].face[k]];
+    }
+}
+
+/* What friction remembers now. */
+static rg_grips list_grips(const rg_contacts *c) {
+    rg_grips g = {0};
+    for (size_t i = 0; i < c->pairs; i++) {
+        rg_gid id[2];
+        faces_of(c, i, id);
+        rg_grips_add(&g, id[0], id[1], c->grip + RG_GRIP * i);
+    }
+    return g;
+}
+
+/* Before the pairs go. One that presses is found again: a search looks further than a step goes. */
+static void keep_grips(rg_contacts *c) {
+    if (c->grip != NULL) {
+        rg_grips_clear(&c->kept);
+        c->kept = list_grips(c);
+    }
+}
+
+/* To the new pairs, which come by the numbers of their faces. */
+static void give_grips(rg_contacts *c) {
+    size_t at = 0;
+    c->grip = RG_NEW(double, RG_GRIP *(c->pairs + 1));
+    c->heat = RG_NEW(double, c->pairs + 1);
+    for (size_t i = 0; i < c->pairs; i++) {
+        rg_gid id[2];
+        faces_of(c, i, id);
+        rg_grips_find(&c->kept, &at, id[0], id[1], c->grip + RG_GRIP * i);
+    }
+    rg_grips_clear(&c->kept);
+}
+
 static void forget(rg_contacts *c) {
     rg_halo_free(c->halo);
     c->halo = NULL;
-    void *blocks[] = {c->face, c->rest,  c->corner, c->last,   c->id,    c->row,  c->moved, c->stepped,
-                      c->pair, c->touch, c->force,  c->energy, c->depth, c->sunk, c->box};
+    void *blocks[] = {c->face,  c->rest,  c->corner, c->last,  c->id,   c->row, c->moved, c->stepped, c->pair,
+                      c->touch, c->force, c->energy, c->depth, c->sunk, c->box, c->grip,  c->heat};
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) {
         rg_free(blocks[i]);
     }
+    c->grip = c->heat = NULL;
 }
 
 /* The exposed faces of this rank, where they are now. */
@@ -255,6 +302,7 @@ static rg_exposed_face *expose(rg_contacts *c, const uint8_t *exposed, const rg_
                                  .row = (int32_t)i,
                                  .former = f->interface != NO_INTERFACE,
                                  .modulus = rg_material_modulus(m),
+                                 .shear = m->mu,
                                  .height = rg_surface_height(d, slot, f->face)};
         set_rest(c, f, e[i].rest);
         set_row(c, i, u);
@@ -407,7 +455,16 @@ static double largest(const double *x, size_t count) {
     return most;
 }
 
+/* The spring of friction is as stiff across as the penalty along: with mu in place of lambda + 2 mu. */
+static void set_friction(const rg_contacts *c, const rg_candidate *from, rg_contact_pair *pair) {
+    double mu = from->face[0].shear + from->face[1].shear,
+           all = from->face[0].modulus + from->face[1].modulus;
+    memcpy(pair->friction, c->friction, sizeof c->friction);
+    pair->shear = c->rubs ? pair->stiffness * mu / all : 0;
+}
+
 void rg_contacts_search(rg_contacts *c, const uint8_t *exposed, const rg_real *u) {
+    keep_grips(c);
     forget(c);
     memset(c->tile_omega2, 0, c->domain->tiles * sizeof *c->tile_omega2);
     rg_exposed_face *own = expose(c, exposed, u);
@@ -424,8 +481,12 @@ void rg_contacts_search(rg_contacts *c, const uint8_t *exposed, const rg_real *u
         for (int k = 0; k < 2; k++) {
             c->pair[i].face[k] = row_of(c, &p[i].face[k], far);
         }
+        set_friction(c, &p[i], &c->pair[i]);
     }
     make_touches(c);
+    if (c->rubs) {
+        give_grips(c);
+    }
     int here = c->pairs > 0, anywhere;
     MPI_Allreduce(&here, &anywhere, 1, MPI_INT, MPI_MAX, c->comm);
     c->any = anywhere != 0;
@@ -486,9 +547,17 @@ static void note_touching(rg_contacts *c, size_t tile) {
     c->tile_touching[tile] = count;
 }
 
-void rg_contacts_meet(rg_contacts *c, const rg_kernels *kernels) {
+void rg_contacts_meet(rg_contacts *c, const rg_kernels *kernels, bool rub) {
     enum { BATCH = 256 };
-    rg_contact_args args = {c->corner, c->box, c->sunk, c->pair, c->force, c->energy, c->depth};
+    rg_contact_args args = {.corner = c->corner,
+                            .box = c->box,
+                            .sunk = c->sunk,
+                            .pair = c->pair,
+                            .force = c->force,
+                            .energy = c->energy,
+                            .depth = c->depth,
+                            .grip = rub ? c->grip : NULL,
+                            .heat = c->heat};
     size_t batches = (c->pairs + BATCH - 1) / BATCH;
 #pragma omp for schedule(static)
     for (size_t i = c->faces; i < c->faces + c->far; i++) {
@@ -555,7 +624,7 @@ static double depth_of(const rg_contacts *c, const face *f) {
 }
 
 void rg_contacts_push(const rg_contacts *c, size_t tile, const rg_push *push, double dt, double *impulse,
-                      rg_real *sunk) {
+                      double *heat, rg_real *sunk) {
     for (size_t i = c->tile_begin[tile]; i < c->tile_begin[tile + 1]; i++) {
         double force[3][3], felt = 0;
         size_t at = c->face[i].interface;
@@ -565,6 +634,9 @@ void rg_contacts_push(const rg_contacts *c, size_t tile, const rg_push *push, do
         if (face_forces(c, &c->face[i], force, &felt)) {
             push_element(c, &c->face[i], force, push);
             impulse[c->face[i].slot] += felt * dt;
+        }
+        for (size_t k = c->face[i].touch; heat != NULL && k < c->face[i + 1].touch; k++) {
+            heat[c->face[i].slot] += 0.5 * c->heat[c->touch[k].pair];
         }
     }
 }
@@ -602,6 +674,30 @@ int64_t rg_contacts_touching(const rg_contacts *c) {
 
 bool rg_contacts_any(const rg_contacts *c) {
     return c->any;
+}
+
+/* ---- Checkpoints ---- */
+
+size_t rg_contacts_grips(const rg_contacts *c, int64_t **key, double **value) {
+    size_t rows = 0;
+    *key = RG_NEW(int64_t, 2 * c->pairs + 1);
+    *value = RG_NEW(double, RG_GRIP_ROW *(2 * c->pairs + 1));
+    for (size_t i = 0; i < 2 * c->pairs; i++) {
+        rg_gid id[2];
+        faces_of(c, i / 2, id);
+        const double *grip = c->grip + RG_GRIP * (i / 2);
+        if (grip[RG_GRIP_STIFFNESS] > 0 && (size_t)c->pair[i / 2].face[i % 2] < c->faces) {
+            (*key)[rows] = id[i % 2];
+            rg_grips_row(id[1 - i % 2], grip, *value + RG_GRIP_ROW * rows++);
+        }
+    }
+    return rows;
+}
+
+void rg_contacts_take_grips(rg_contacts *c, size_t rows, const int64_t *key, const double *value) {
+    rg_grips_take(&c->kept, rows, key, value);
+    rg_free(c->grip); /* those of the present pairs do not count any more */
+    c->grip = NULL;
 }
 
 /* ---- Set-up ---- */
@@ -648,6 +744,7 @@ double rg_contacts_omega2_now(const rg_contacts *c) {
 void rg_contacts_free(rg_contacts *c) {
     if (c != NULL) {
         forget(c);
+        rg_grips_clear(&c->kept);
         rg_free(c->tile_begin);
         rg_free(c->tile_omega2);
         rg_free(c->tile_touching);

@@ -17,6 +17,7 @@
 
 #include "base/exact_sum.h"
 #include "case/case.h"
+#include "contact/grip.h"
 #include "contact/search.h"
 #include "domain/face.h"
 #include "domain/halo.h"
@@ -49,13 +50,14 @@ void rg_contacts_place(rg_contacts *c, size_t tile, const rg_real *u, const rg_r
 /* Exchange of the rows; NULL where no rank has a pair with another one. */
 rg_halo *rg_contacts_halo(const rg_contacts *c);
 
-/* Forces of all pairs. A worksharing loop: call it from all threads; ends with a barrier. */
-void rg_contacts_meet(rg_contacts *c, const rg_kernels *kernels);
+/* Forces of all pairs; `rub`: friction goes on by a step, which it does once for each state, else there is
+ * none. A worksharing loop: call it from all threads; ends with a barrier. */
+void rg_contacts_meet(rg_contacts *c, const rg_kernels *kernels, bool rub);
 
 /* What they do to the elements of a tile. impulse[slot] grows by the forces that the faces of each element
- * feel, times `dt` (N s). */
+ * feel, times `dt` (N s), heat[slot] by half of what friction took of each pair (J; NULL: there is none). */
 void rg_contacts_push(const rg_contacts *c, size_t tile, const rg_push *push, double dt, double *impulse,
-                      rg_real *sunk);
+                      double *heat, rg_real *sunk);
 
 /* By how much the sides of newly exposed interfaces have sunk, once the pairs have met. */
 void rg_contacts_sink(const rg_contacts *c, const uint8_t *exposed, rg_real *sunk);
@@ -75,6 +77,11 @@ bool rg_contacts_any(const rg_contacts *c);
  * pressed; and of what touches now, of this rank. */
 double rg_contacts_omega2(const rg_contacts *c);
 double rg_contacts_omega2_now(const rg_contacts *c);
+
+/* What friction remembers, as rows of a checkpoint (contact/grip.h): RG_GRIP_ROW values for each face here.
+ * Those that are taken hold from the next search on. */
+size_t rg_contacts_grips(const rg_contacts *c, int64_t **key, double **value);
+void rg_contacts_take_grips(rg_contacts *c, size_t rows, const int64_t *key, const double *value);
 
 void rg_contacts_free(rg_contacts *c);
 

@@ -18,6 +18,7 @@ typedef struct {
     int32_t rank, row;
     int32_t former;   /* not 0: it was an interface */
     double modulus;   /* lambda + 2 mu (Pa) */
+    double shear;     /* mu (Pa) */
     double height;    /* of its element over it (m) */
     double rest[9];   /* corners, undeformed (m) */
     double corner[9]; /* now */

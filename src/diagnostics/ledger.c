@@ -146,6 +146,11 @@ static void element_energies(rg_solver *s, const rg_tile *t, const rg_workspace 
                 rg_exact_add(&sum[VISCOUS], s->heat[slot]);
                 rg_exact_add(&parts_of_block(sum, s, slot / RG_LANES)[PART_DISSIPATED], s->heat[slot]);
             }
+            if (s->contact_heat != NULL) {
+                rg_exact_add(&sum[FRICTION], s->contact_heat[slot]);
+                rg_exact_add(&parts_of_block(sum, s, slot / RG_LANES)[PART_DISSIPATED],
+                             s->contact_heat[slot]);
+            }
             rg_exact_add(&sum[VOLUME], s->domain->geom[rg_geom_index(slot, RG_GEOM_VOLUME)]);
             add_momentum(sum, s, slot);
         }

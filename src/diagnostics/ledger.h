@@ -18,8 +18,8 @@ typedef struct {
         damage;         /* set free in the bulk by plastic flow and by growing microcracks (J); the latter
                      can be negative, where growth raises the stored energy (material/deshpande_evans_model.h) */
     double viscous;     /* dissipated by bulk viscosity (J) */
-    double friction;    /* dissipated where closed cracks slide (J); what they store while they stick is
-                         * part of contact */
+    double friction;    /* dissipated where closed cracks and fragments slide (J); what they store while they
+                         * stick is    part of contact */
     double unresolved;  /* set free where points switched, beyond what their law can take, and where faces
                          * opened because their time had come (J) */
     double radiated;    /* taken out of the body by absorbing sides and dashpots (J) */

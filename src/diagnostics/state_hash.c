@@ -16,6 +16,7 @@ static uint64_t element_hash(const rg_solver *s, size_t slot) {
     for (size_t row = 0; row < rows; row++) {
         h = rg_hash_double(h, rg_history_value(s, slot, row));
     }
+    h = s->contact_heat != NULL ? rg_hash_double(h, s->contact_heat[slot]) : h;
     return s->heat != NULL ? rg_hash_double(h, s->heat[slot]) : h;
 }
 

@@ -17,7 +17,7 @@ int rg_state_tables(const rg_state *st, rg_state_table table[RG_MAX_STATE]) {
     int tables = 0;
     for (int i = 0; i < st->arrays; i++) {
         const rg_state_array *a = &st->array[i];
-        if (a->of == RG_OF_LIST) {
+        if (a->of == RG_OF_LIST || a->of == RG_OF_POOL) {
             table[tables++] = (rg_state_table){.name = a->name, .arrays = 1, .array = {a}};
         } else if (a->of == RG_OF_FACE) {
             int t = 0;
@@ -97,7 +97,26 @@ static size_t row_bytes(const rg_state_table *t) {
 
 /* ---- writing ---- */
 
+static rg_sparse gather_pool(const rg_state_table *t) {
+    const rg_state_array *a = t->array[0];
+    int64_t *key;
+    double *value;
+    rg_sparse own = {.rows = a->pool.list(a->pool.of, &key, &value), .bytes = row_bytes(t)};
+    own.row = RG_NEW(char, own.rows *own.bytes);
+    for (size_t i = 0; i < own.rows; i++) {
+        char *at = own.row + i * own.bytes;
+        memcpy(at, &key[i], sizeof *key);
+        memcpy(at + sizeof *key, value + i * (size_t)a->count, rg_state_bytes(a));
+    }
+    rg_free(key);
+    rg_free(value);
+    return own;
+}
+
 static rg_sparse gather(const rg_state_table *t, const rg_solver *s) {
+    if (t->array[0]->of == RG_OF_POOL) {
+        return gather_pool(t);
+    }
     rg_sparse own = {.bytes = row_bytes(t)};
     entry *list = entries(t, s, false, &own.rows);
     own.row = RG_NEW(char, own.rows *own.bytes);
@@ -145,7 +164,7 @@ static rg_h5_slab key_slab(const rg_sparse *rows, int64_t first, int64_t total) 
 
 static rg_h5_slab rows_slab(const rg_slab *slab) {
     return (rg_h5_slab){.name = "rows",
-                        .type = H5T_NATIVE_UINT8,
+                        .type = H5T_NATIVE_UINT16,
                         .columns = 1,
                         .rows = slab->total,
                         .first = slab->first,
@@ -170,12 +189,13 @@ void rg_state_table_write(rg_h5_file *f, const rg_state_table *t, const rg_solve
     hid_t group = rg_h5_group(f, t->name);
     int64_t first, total;
     number(f->comm, (int64_t)sorted.rows, &first, &total);
-    char *column = RG_NEW(char, sorted.rows *sorted.bytes + slab->count);
+    char *column = RG_NEW(char, sorted.rows *sorted.bytes);
+    uint16_t *of_element = RG_NEW(uint16_t, slab->count);
     for (size_t i = 0; i < sorted.rows; i++) {
-        column[rg_sparse_key(&sorted, i) / 4 - slab->first]++;
+        of_element[rg_sparse_key(&sorted, i) / 4 - slab->first]++;
     }
     rg_h5_slab rows = rows_slab(slab);
-    rg_h5_write(f, group, &rows, NULL, column);
+    rg_h5_write(f, group, &rows, NULL, of_element);
     size_t from = 0, size = 0;
     for (int k = -1; k < t->arrays; k++) {
         rg_h5_slab c = column_slab(t, k, key_slab(&sorted, first, total), &from, &size);
@@ -183,6 +203,7 @@ void rg_state_table_write(rg_h5_file *f, const rg_state_table *t, const rg_solve
         rg_h5_write(f, group, &c, NULL, column);
     }
     rg_h5_note(f, H5Gclose(group) >= 0, "close", NULL);
+    rg_free(of_element);
     rg_free(column);
     rg_free(sorted.row);
 }
@@ -194,7 +215,23 @@ static int by_key(const void *a, const void *b) {
     return (p->key > q->key) - (p->key < q->key);
 }
 
+static void scatter_pool(const rg_state_array *a, const rg_sparse *own) {
+    int64_t *key = RG_NEW(int64_t, own->rows + 1);
+    double *value = RG_NEW(double, (own->rows + 1) * (size_t)a->count);
+    for (size_t i = 0; i < own->rows; i++) {
+        key[i] = rg_sparse_key(own, i);
+        memcpy(value + i * (size_t)a->count, own->row + i * own->bytes + sizeof *key, rg_state_bytes(a));
+    }
+    a->pool.take(a->pool.of, own->rows, key, value);
+    rg_free(key);
+    rg_free(value);
+}
+
 static bool scatter(const rg_state_table *t, const rg_solver *s, const rg_sparse *own) {
+    if (t->array[0]->of == RG_OF_POOL) {
+        scatter_pool(t->array[0], own);
+        return true;
+    }
     size_t count;
     entry *list = entries(t, s, true, &count);
     qsort(list, count, sizeof *list, by_key);
@@ -214,9 +251,9 @@ static bool scatter(const rg_state_table *t, const rg_solver *s, const rg_sparse
 }
 
 /* Whether the keys are those of the slab's elements: as many to each as its count says. */
-static bool keys_fit(const rg_sparse *rows, const rg_slab *slab, const uint8_t *of_element) {
-    uint8_t *left = RG_NEW(uint8_t, slab->count + 1);
-    memcpy(left, of_element, slab->count);
+static bool keys_fit(const rg_sparse *rows, const rg_slab *slab, const uint16_t *of_element) {
+    uint16_t *left = RG_NEW(uint16_t, slab->count + 1);
+    memcpy(left, of_element, slab->count * sizeof *left);
     bool ok = true;
     for (size_t i = 0; ok && i < rows->rows; i++) {
         int64_t element = rg_sparse_key(rows, i) / 4 - slab->first;
@@ -230,7 +267,7 @@ static bool keys_fit(const rg_sparse *rows, const rg_slab *slab, const uint8_t *
 /* The slab's rows of the table. Collective; false on all ranks if they cannot be read. */
 static bool read_sorted(rg_h5_file *f, hid_t group, const rg_state_table *t, const rg_slab *slab,
                         rg_sparse *sorted) {
-    uint8_t *of_element = RG_NEW(uint8_t, slab->count);
+    uint16_t *of_element = RG_NEW(uint16_t, slab->count);
     rg_h5_slab rows = rows_slab(slab);
     bool ok = rg_h5_all(f->comm, rg_h5_read(group, &rows, of_element));
     for (size_t i = 0; ok && i < slab->count; i++) {

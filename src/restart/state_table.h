@@ -1,5 +1,5 @@
 /* The part of the state that only some elements have, as tables of a checkpoint: the arrays of the broken
- * faces, and each list. */
+ * faces, each list and each pool. */
 #ifndef RG_STATE_TABLE_H
 #define RG_STATE_TABLE_H
 

@@ -62,6 +62,14 @@ static void save(rg_state *st, const char *name, per of, rg_state_type type, siz
     }
 }
 
+static size_t list_grips(const void *of, int64_t **key, double **value) {
+    return rg_contacts_grips(of, key, value);
+}
+
+static void take_grips(void *of, size_t rows, const int64_t *key, const double *value) {
+    rg_contacts_take_grips(of, rows, key, value);
+}
+
 void rg_state_of_solver(rg_state *st, rg_solver *s) {
     rg_state_add(st, "time", RG_OF_RUN, RG_STATE_DOUBLE, 1, &s->time);
     rg_state_add(st, "dt", RG_OF_RUN, RG_STATE_DOUBLE, 1, &s->dt);
@@ -72,6 +80,10 @@ void rg_state_of_solver(rg_state *st, rg_solver *s) {
     if (s->contacts != NULL) {
         rg_state_add(st, "contacts", RG_OF_RUN, RG_STATE_INT64, 1, &s->contacts_most);
         rg_state_add(st, "contact_omega2", RG_OF_RUN, RG_STATE_DOUBLE, 1, &s->contact_omega2);
+    }
+    if (rg_case_rubs(s->input)) {
+        rg_state_add_pool(st, "contact_grip", RG_GRIP_ROW,
+                          (rg_state_pool){s->contacts, list_grips, take_grips});
     }
     if (rg_case_opens(s->input)) {
         rg_state_add(st, "openings", RG_OF_RUN, RG_STATE_DOUBLE, 2, &s->openings.until);

@@ -19,12 +19,30 @@ void rg_state_add(rg_state *st, const char *name, rg_state_of of, rg_state_type 
 
 void rg_state_add_rows(rg_state *st, const char *name, rg_state_type type, int count, void *data,
                        size_t stride, size_t rows) {
-    add(st, (rg_state_array){name, RG_OF_RUN, type, count, data, NULL, rows, stride});
+    add(st, (rg_state_array){.name = name,
+                             .of = RG_OF_RUN,
+                             .type = type,
+                             .count = count,
+                             .data = data,
+                             .records = rows,
+                             .stride = stride});
 }
 
 void rg_state_add_list(rg_state *st, const char *name, rg_state_type type, int count, void *data,
                        size_t stride, size_t records, const int64_t *key) {
-    add(st, (rg_state_array){name, RG_OF_LIST, type, count, data, key, records, stride});
+    add(st, (rg_state_array){.name = name,
+                             .of = RG_OF_LIST,
+                             .type = type,
+                             .count = count,
+                             .data = data,
+                             .key = key,
+                             .records = records,
+                             .stride = stride});
+}
+
+void rg_state_add_pool(rg_state *st, const char *name, int count, rg_state_pool pool) {
+    add(st, (rg_state_array){
+                .name = name, .of = RG_OF_POOL, .type = RG_STATE_DOUBLE, .count = count, .pool = pool});
 }
 
 static size_t value_bytes(const rg_state_array *a) {

@@ -213,7 +213,7 @@ static void boundary_sweep(rg_solver *s, size_t tile, const rg_workspace *w, con
     if (s->contacts != NULL && p->constrain) {
         rg_push k = {p->dt, 0.5 * s->dt, p->velocity, step_velocity_of(s, tile, p)};
         rg_contacts_push(s->contacts, tile, &k, 0.5 * (s->dt + s->dt_next), s->contact_impulse,
-                         s->contact_sunk);
+                         s->contact_heat, s->contact_sunk);
     }
     if (p->apart) {
         rg_assembly_sum(s->assembly, tile, p->velocity);
@@ -335,7 +335,7 @@ static void meet(rg_solver *s, const impulse *p) {
     if (s->contacts == NULL || !p->constrain || !rg_contacts_any(s->contacts)) {
         return;
     }
-    rg_contacts_meet(s->contacts, s->kernels);
+    rg_contacts_meet(s->contacts, s->kernels, true);
 #pragma omp master
     {
         s->stepper->touching = rg_contacts_touching(s->contacts);
@@ -510,7 +510,7 @@ static void start_contacts(rg_solver *s) {
     publish(s);
     rg_halo_finish(rg_contacts_halo(s->contacts));
 #pragma omp parallel
-    rg_contacts_meet(s->contacts, s->kernels);
+    rg_contacts_meet(s->contacts, s->kernels, false);
     rg_exposure_refuse_overlap(s);
 }
 
@@ -577,7 +577,7 @@ static void search_contacts(rg_solver *s, bool exposed) {
     if (exposed) {
         rg_halo_finish(rg_contacts_halo(s->contacts));
 #pragma omp parallel
-        rg_contacts_meet(s->contacts, s->kernels);
+        rg_contacts_meet(s->contacts, s->kernels, false);
         rg_contacts_sink(s->contacts, s->exposed, s->contact_sunk);
         rg_exposure_settle(s);
         publish(s);

@@ -2,6 +2,7 @@
 
 import itertools
 
+import numpy as np
 import pytest
 from conftest import CASES, launch
 
@@ -87,6 +88,30 @@ def test_pressure_goes_through_faces_that_do_not_match(run, figure, case):
                 f"time: {{end: {end}}}\noutput: {{interval: {end}, fields: [stress], fragments: none}}\n")
     stress = run(path).frames()[-1]["stress"][:, 5]
     figure("stress across faces that do not match", abs(stress / -pressure - 1).max(), bound=1e-2)
+
+
+def test_block_slides_to_rest(run, figure, case):
+    """A block on a slab whose mesh does not match, which a weight holds that comes over some time: it loses mu g t of its speed,
+    which is heat then. What is missing of that rings on in both."""
+    mu, weight, rise, speed = 0.3, 1.6e8, 20 * H / SPEED, 120
+    rest = speed / (mu * weight) + rise / 2
+    boxes = [((-0.5 * H, -0.5 * H, 0), (5 * H, 2.5 * H, H), (5, 3, 1)), ((0, 0, 1.001 * H), (1.5 * H, 1.5 * H, H), (2, 2, 1))]
+    path = case("slide", boxes, material(0.2) + "boundary: [" + ", ".join(f"{{set: zlow, component: {c}, velocity: 0}}" for c in "xyz") + "]\n"
+                f'initial: {{velocity: {{x: "z > {H} ? {speed} : 0"}}}}\n'
+                f'loads: [{{where: "z > {H}", acceleration: {{z: "-{weight}*(t < {rise} ? (1 - cos(pi*t/{rise}))/2 : 1)"}}}}]\n'
+                f'time: {{end: {1.3 * rest}}}\noutput: {{interval: {rest / 20}, fields: [], sensors: [{{name: block, where: "z > {H}", values: [ux, vx]}}]}}\n')
+    result = run(path, sets={"contact.friction": mu})
+    time, way = result.history["time"], result.history["block_ux_mean"]
+    left = speed - mu * weight * rise / 2  # once all of the weight is there
+    theory = speed * rise - mu * weight * rise**2 * (1 / 4 - 1 / np.pi**2) + left**2 / (2 * mu * weight)
+    figure("way of a block that slides to rest", 1e6 * way[-1], theory=1e6 * theory, bound=1.4e-3, unit="um", relative=True)
+    slides = (time > 2 * rise) & (time < 0.95 * rest)
+    slowing, at_first = np.polyfit(time[slides], result.history["block_vx_mean"][slides], 1)
+    figure("time after which it would rest", -1e6 * at_first / slowing, theory=1e6 * rest, bound=5e-3, unit="us", relative=True)
+    assert np.ptp(way[time > 1.15 * rest]) < 2e-3 * theory
+    figure("heat of a block that slides to rest", 1e6 * result.energy["friction"][-1],
+           theory=1e6 * DENSITY * (1.5 * H) ** 2 * H * speed**2 / 2, bound=0.015, unit="uJ", relative=True)
+    assert result.summary["energy_error_rel"] < 2e-4
 
 
 def test_parts_that_lie_in_each_other_are_refused(case):

@@ -154,7 +154,14 @@ static void meet(twin *t, int a, int b, rg_contact_pair *pair) {
     rg_contact_box(corner + 9, box + 6);
     pair->face[0] = 0;
     pair->face[1] = 1;
-    rg_reference_contact(&(rg_contact_args){corner, box, sunk, pair, force, &energy, &depth}, 0, 1);
+    rg_contact_args args = {.corner = corner,
+                            .box = box,
+                            .sunk = sunk,
+                            .pair = pair,
+                            .force = force,
+                            .energy = &energy,
+                            .depth = &depth};
+    rg_reference_contact(&args, 0, 1);
     t->depth_of[a] = fmax(t->depth_of[a], depth - pair->skin);
     t->depth_of[b] = fmax(t->depth_of[b], depth - pair->skin);
     if (!(energy > 0)) {
@@ -252,7 +259,7 @@ static void place(const random_state *r) {
     rg_halo_start(halo);
     rg_halo_finish(halo);
 #pragma omp parallel
-    rg_contacts_meet(s->contacts, s->kernels);
+    rg_contacts_meet(s->contacts, s->kernels, false);
 }
 
 typedef struct {
@@ -335,7 +342,7 @@ static void check_forces(const random_state *r, const twin *t) {
     double *impulse = RG_NEW(double, slots);
     rg_push push = {.dt = DT, .dt_now = DT_NOW, .velocity = v, .step_velocity = w};
     for (size_t n = 0; n < s->domain->tiles; n++) {
-        rg_contacts_push(s->contacts, n, &push, DT, impulse, s->contact_sunk);
+        rg_contacts_push(s->contacts, n, &push, DT, impulse, NULL, s->contact_sunk);
     }
     report(pushed_well(r, t, v, DT) && pushed_well(r, t, w, DT_NOW), "contact", "forces on elements");
     report(impulse_good(r, t, impulse), "contact", "impulse");

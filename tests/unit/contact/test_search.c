@@ -72,8 +72,14 @@ static void compare(const rg_candidate *p, size_t pairs, int pass, int *over, in
             memcpy(corner + 9, f[k].corner, sizeof f[k].corner);
             rg_contact_box(corner, box);
             rg_contact_box(corner + 9, box + 6);
-            rg_kernels_select()->contact(&(rg_contact_args){corner, box, sunk, &pair, force, &energy, &depth},
-                                         0, 1);
+            rg_contact_args args = {.corner = corner,
+                                    .box = box,
+                                    .sunk = sunk,
+                                    .pair = &pair,
+                                    .force = force,
+                                    .energy = &energy,
+                                    .depth = &depth};
+            rg_kernels_select()->contact(&args, 0, 1);
             if (depth > 0) {
                 *over += 1;
                 *missed += !is_found(p, pairs, f[i].id, f[k].id);

@@ -10,18 +10,28 @@
 #include "kernels.h"
 #include "support/dice.h"
 #include "support/kernel_input.h"
+#include "support/near.h"
 
 enum { PAIRS = 4000, TRIES = 400000 };
 
 typedef struct {
     double corner[2 * PAIRS][9], box[2 * PAIRS][6], sunk[2 * PAIRS], force[PAIRS][18], energy[PAIRS],
-        depth[PAIRS];
+        depth[PAIRS], grip[PAIRS][RG_GRIP], heat[PAIRS];
     rg_contact_pair pair[PAIRS];
     size_t count;
+    bool rough; /* with friction */
 } bunch;
 
 static rg_contact_args args_of(bunch *b) {
-    return (rg_contact_args){b->corner[0], b->box[0], b->sunk, b->pair, b->force[0], b->energy, b->depth};
+    return (rg_contact_args){.corner = b->corner[0],
+                             .box = b->box[0],
+                             .sunk = b->sunk,
+                             .pair = b->pair,
+                             .force = b->force[0],
+                             .energy = b->energy,
+                             .depth = b->depth,
+                             .grip = b->rough ? b->grip[0] : NULL,
+                             .heat = b->heat};
 }
 
 /* The first `pairs` pairs. */
@@ -156,12 +166,7 @@ static void test_gradient(void **state) {
     assert_true(all > 9 * PAIRS && off < all / 1000);
 }
 
-/* The forces of a pair have no sum and no moment, about any point. */
-static void test_momenta(void **state) {
-    (void)state;
-    const rg_kernels *set = rg_kernels_select();
-    throw_pairs(&found, 9);
-    meet(set, &found, PAIRS);
+static void check_momenta(void) {
     for (size_t i = 0; i < PAIRS; i++) {
         double sum[3] = {0, 0, 0}, moment[3] = {0, 0, 0}, size = size_of(&found, i);
         for (int k = 0; found.energy[i] > 0 && k < 6; k++) {
@@ -177,6 +182,14 @@ static void test_momenta(void **state) {
             assert_true(fabs(moment[c]) <= 4e-15 * fmax(size, 1e-2 * found.pair[i].stiffness));
         }
     }
+}
+
+/* The forces of a pair have no sum and no moment, about any point. */
+static void test_momenta(void **state) {
+    (void)state;
+    throw_pairs(&found, 9);
+    meet(rg_kernels_select(), &found, PAIRS);
+    check_momenta();
 }
 
 static void test_exchange(void **state) {
@@ -325,12 +338,163 @@ static void test_value(void **state) {
     }
 }
 
+/* ---- Friction ---- */
+
+/* Pairs that have not met yet, rough ones and slippery ones. */
+static void throw_rough_pairs(bunch *b, uint64_t seed) {
+    dice d = {seed, 0};
+    b->rough = false;
+    throw_pairs(b, seed);
+    b->rough = true;
+    memset(b->grip, 0, sizeof b->grip);
+    for (size_t i = 0; i < PAIRS; i++) {
+        rg_contact_pair *p = &b->pair[i];
+        p->friction[1] = 0.4 * dice_unit(&d);
+        p->friction[0] = p->friction[1] * (1 + dice_unit(&d));
+        p->shear = (0.2 + 0.3 * dice_unit(&d)) * p->stiffness;
+    }
+}
+
+/* Moves corners a little. */
+static void stir(bunch *b, dice *d) {
+    for (size_t i = 0; i < PAIRS; i++) {
+        for (int k = 0; k < 18; k++) {
+            b->corner[2 * i + (size_t)k / 9][k % 9] += 0.01 * dice_sign(d);
+        }
+    }
+}
+
+typedef struct {
+    int sticks, slides, parts, grows;
+} tally;
+
+static void count_grips(const bunch *before, const bunch *after, tally *t) {
+    for (size_t i = 0; i < PAIRS; i++) {
+        double k0 = before->grip[i][RG_GRIP_STIFFNESS], k = after->grip[i][RG_GRIP_STIFFNESS];
+        bool slides = after->grip[i][RG_GRIP_SLIDES] > 0;
+        t->sticks += k0 > 0 && k > 0 && !slides;
+        t->slides += k > 0 && slides;
+        t->parts += k0 > 0 && k == 0;
+        t->grows += k0 > 0 && k > k0;
+    }
+}
+
+static void compare_grips(const char *name, double by) {
+    for (size_t i = 0; i < PAIRS; i++) {
+        const double *one = found.grip[i], *two = expected.grip[i], kappa = expected.pair[i].stiffness;
+        bool same = (one[RG_GRIP_STIFFNESS] > 0) == (two[RG_GRIP_STIFFNESS] > 0);
+        for (int k = 0; same && k < RG_GRIP;
+             k++) { /* ends of springs that are nearly nothing may be anywhere */
+            double weight = k == RG_GRIP_STIFFNESS ? 1 : two[RG_GRIP_STIFFNESS];
+            same = fabs(one[k] - two[k]) * weight <= by * kappa;
+        }
+        for (int k = 0; same && k < 18 && expected.energy[i] > 0; k++) {
+            same = fabs(found.force[i][k] - expected.force[i][k]) <= by * kappa;
+        }
+        same = same && fabs(found.heat[i] - expected.heat[i]) <= by * kappa &&
+               fabs(found.energy[i] - expected.energy[i]) <= by * kappa;
+        if (!same) {
+            fail_msg("%s: pair %zu, k %g, heat %g instead of k %g, heat %g", name, i, one[RG_GRIP_STIFFNESS],
+                     found.heat[i], two[RG_GRIP_STIFFNESS], expected.heat[i]);
+        }
+    }
+}
+
+/* From the same grips on, as faces move: they begin, stick, slide, grow and part. */
+static void test_friction_reference(void **state) {
+    (void)state;
+    const rg_kernels *sets[INPUT_SETS];
+    static bunch before;
+    int n = input_sets(sets, INPUT_SETS);
+    dice d = {12, 0};
+    tally t = {0};
+    throw_rough_pairs(&before, 12);
+    for (int step = 0; step < 4; step++) {
+        expected = before;
+        meet(&rg_kernels_reference, &expected, PAIRS);
+        for (int s = 0; s < n; s++) {
+            found = before;
+            meet(sets[s], &found, PAIRS);
+            compare_grips(sets[s]->name, 1e-14);
+        }
+        count_grips(&before, &expected, &t);
+        before = expected;
+        stir(&before, &d);
+    }
+    assert_true(t.sticks > 500 && t.slides > 500 && t.parts > 100 && t.grows > 500);
+}
+
+static void test_friction_momenta(void **state) {
+    (void)state;
+    dice d = {14, 0};
+    throw_rough_pairs(&found, 14);
+    for (int step = 0; step < 3; step++) {
+        meet(rg_kernels_select(), &found, PAIRS);
+        check_momenta();
+        stir(&found, &d);
+    }
+}
+
+/* A face that slides over a larger one, d deep: k = shear area, it slips at mu_s N, then mu_k N holds it back
+ * and takes all of its work. Far from the origin, askew. */
+static void test_friction_value(void **state) {
+    (void)state;
+    const rg_kernels *set = rg_kernels_select();
+    static const double shear = 0.8, kinetic = 0.2, rest = 0.3, way[2] = {0.6, 0.8};
+    dice d = {13, 0};
+    static const double normal = 3 * 0.5 * 0.01 * (1 - 4e-4) * (1 - 12e-4);
+    double R[3][3], work = 0, last = 0, heat = 0;
+    bool slides = false;
+    bunch *b = &found;
+    dice_rotation(&d, R);
+    memset(b, 0, sizeof *b);
+    b->rough = true;
+    b->pair[0] = (rg_contact_pair){
+        .face = {0, 1}, .stiffness = 3, .limit = 0.5, .shear = shear, .friction = {rest, kinetic}};
+    for (int step = 0; step < 60; step++) {
+        double p[6][3] = {{0, 0, 0.01}, {1, 0, 0.01}, {0, 1, 0.01}, {-3, -3, 0}, {-3, 9, 0}, {9, -3, 0}};
+        double moved = 1e-3 * step;
+        for (int i = 0; i < 6; i++) {
+            for (int c = 0; c < 2 && i < 3; c++) {
+                p[i][c] += moved * way[c];
+            }
+            for (int c = 0; c < 3; c++) {
+                b->corner[i / 3][3 * (i % 3) + c] =
+                    10 + R[c][0] * p[i][0] + R[c][1] * p[i][1] + R[c][2] * p[i][2];
+            }
+        }
+        meet(set, b, 1);
+        double drag[3] = {0, 0, 0};
+        for (int k = 0; k < 9; k++) {
+            for (int c = 0; c < 3; c++) {
+                drag[c] -= R[k % 3][c] * b->force[0][k];
+            }
+        }
+        double pull = drag[0] * way[0] + drag[1] * way[1], spring = shear * 0.5 * moved;
+        slides = slides || spring > rest * normal;
+        assert_true(near(pull, slides ? kinetic * normal : spring, 1e-14));
+        assert_true(near(-drag[2], -normal, 1e-14));
+        assert_true(near(drag[0] * way[1] - drag[1] * way[0], 0, 1e-14));
+        work += step > 0 ? 0.5 * (last + pull) * 1e-3 : 0;
+        heat += b->heat[0];
+        last = pull;
+    }
+    double stored = 0.5 * pow(kinetic * normal, 2) / (0.5 * shear);
+    assert_true(slides && near(heat, work - stored, 1e-14) && heat > 5 * stored);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_reference), cmocka_unit_test(test_gradient),
-        cmocka_unit_test(test_momenta),   cmocka_unit_test(test_exchange),
-        cmocka_unit_test(test_cut),       cmocka_unit_test(test_edges_along_each_other),
+        cmocka_unit_test(test_reference),
+        cmocka_unit_test(test_gradient),
+        cmocka_unit_test(test_momenta),
+        cmocka_unit_test(test_exchange),
+        cmocka_unit_test(test_cut),
+        cmocka_unit_test(test_edges_along_each_other),
         cmocka_unit_test(test_value),
+        cmocka_unit_test(test_friction_reference),
+        cmocka_unit_test(test_friction_momenta),
+        cmocka_unit_test(test_friction_value),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
