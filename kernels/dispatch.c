@@ -4,7 +4,7 @@
 
 #include "kernels.h"
 
-#define RG_KERNEL_SET(isa, label)                                                                            \
+#define RG_KERNEL_SET(isa, label, bytes)                                                                     \
     void rg_send_##isa(const rg_trace_args *, size_t, size_t);                                               \
     void rg_send_tractions_##isa(const rg_trace_args *, size_t, size_t);                                     \
     void rg_receive_##isa(const rg_trace_args *, size_t, size_t);                                            \
@@ -20,6 +20,7 @@
     void rg_prestress_##isa(const rg_prestress_args *, size_t, size_t);                                      \
     void rg_prestress_state_##isa(const rg_prestress_state_args *, size_t, size_t);                          \
     static const rg_kernels set_##isa = {label,                                                              \
+                                         bytes,                                                              \
                                          rg_send_##isa,                                                      \
                                          rg_send_tractions_##isa,                                            \
                                          rg_receive_##isa,                                                   \
@@ -36,11 +37,11 @@
                                          rg_prestress_state_##isa}
 
 #ifdef RG_X86
-RG_KERNEL_SET(v4, "x86-64-v4");
-RG_KERNEL_SET(v3, "x86-64-v3");
-RG_KERNEL_SET(v2, "x86-64-v2");
+RG_KERNEL_SET(v4, "x86-64-v4", 64);
+RG_KERNEL_SET(v3, "x86-64-v3", 32);
+RG_KERNEL_SET(v2, "x86-64-v2", 16);
 #else
-RG_KERNEL_SET(generic, "generic");
+RG_KERNEL_SET(generic, "generic", 16);
 #endif
 
 int rg_kernels_available(const rg_kernels *sets[], int capacity) {

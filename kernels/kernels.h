@@ -269,6 +269,7 @@ static inline void rg_contact_box(const double *corner, double *box) {
 /* A set of kernels. `begin` and `end` count blocks; of contact, pairs. */
 typedef struct {
     const char *name; /* "x86-64-v4", ..., "reference" */
+    int vector;       /* bytes of a vector; 0: it has none */
     void (*send)(const rg_trace_args *args, size_t begin, size_t end);
     void (*send_tractions)(const rg_trace_args *args, size_t begin, size_t end);
     void (*receive)(const rg_trace_args *args, size_t begin, size_t end);

@@ -2,9 +2,11 @@
 
 #include <math.h>
 
+#include "library.h"
+
 const char *rg_material_word(rg_material_model model) {
 #define WORD(name, NAME, word, meaning, history, inside) [RG_MATERIAL_##NAME] = (word),
-    static const char *const words[] = {RG_MATERIALS(WORD)};
+    static const char *const words[] = {RG_MATERIALS(WORD)[RG_MATERIAL_USER] = "user"};
     return words[model];
 }
 
@@ -12,6 +14,10 @@ int rg_material_history(rg_material_model model) {
 #define HISTORY(name, NAME, word, meaning, history, inside) [RG_MATERIAL_##NAME] = (history),
     static const int values[] = {RG_MATERIALS(HISTORY)};
     return values[model];
+}
+
+int rg_material_values(const rg_material *m) {
+    return m->model == RG_MATERIAL_USER ? m->of.user.library->history : rg_material_history(m->model);
 }
 
 unsigned rg_material_inside(rg_material_model model) {
@@ -22,7 +28,7 @@ unsigned rg_material_inside(rg_material_model model) {
 
 int rg_material_exists(rg_material_model model) {
 #define EXISTS(name, NAME, word, meaning, history, inside) [RG_MATERIAL_##NAME] = 1,
-    static const int here[RG_MATERIAL_MODELS] = {RG_MATERIALS_HERE(EXISTS)};
+    static const int here[] = {RG_MATERIALS_HERE(EXISTS)[RG_MATERIAL_USER] = 1};
     return here[model];
 }
 

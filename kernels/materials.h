@@ -107,11 +107,14 @@ enum {
 #endif
 
 #define RG_MATERIAL_ENUM(name, NAME, word, meaning, history, inside) RG_MATERIAL_##NAME,
-typedef enum { RG_MATERIALS(RG_MATERIAL_ENUM) RG_MATERIAL_MODELS } rg_material_model;
+typedef enum {
+    RG_MATERIALS(RG_MATERIAL_ENUM) RG_MATERIAL_MODELS, /* of this program */
+    RG_MATERIAL_USER = RG_MATERIAL_MODELS,             /* that of a library of the user's (library.h) */
+} rg_material_model;
 
 #define RG_MATERIAL_BIT(name, NAME, word, meaning, history, inside)                                          \
     RG_MATERIAL_BIT_##NAME = 1 << RG_MATERIAL_##NAME,
-enum { RG_MATERIALS(RG_MATERIAL_BIT) };
+enum { RG_MATERIALS(RG_MATERIAL_BIT) RG_MATERIAL_BIT_USER = 1 << RG_MATERIAL_USER };
 
 /* What a parameter may be. */
 typedef enum {
@@ -235,6 +238,14 @@ typedef struct {
     double strength, slope, dilation, excess;
 } rg_dp_cone;
 
+enum { RG_USER_PARAMETERS = 32 }; /* at most, of a material of the user's */
+
+/* Such a material: its library, and its parameters in the order in which that declares them. */
+typedef struct {
+    const struct rg_user_material *library;
+    double parameter[RG_USER_PARAMETERS];
+} rg_user_values;
+
 /* A material as a kernel takes it. */
 typedef struct {
     double lambda, mu; /* Lame constants of the undeformed, undamaged solid (Pa); of an anisotropic one the
@@ -245,6 +256,7 @@ typedef struct {
     union {
         rg_de_material deshpande_evans;
         rg_anisotropic anisotropic;
+        rg_user_values user;
         double parameter[RG_PARAMETERS]; /* of all others */
         struct {
             double given[RG_PARAMETERS]; /* the same */
@@ -256,9 +268,12 @@ typedef struct {
 /* The model's name in a case file. */
 const char *rg_material_word(rg_material_model model);
 
-/* Values of history per point, and what is inside, of a model. */
+/* Values of history per point, and what is inside, of a model of this program. */
 int rg_material_history(rg_material_model model);
 unsigned rg_material_inside(rg_material_model model);
+
+/* Values of history per point of any material. */
+int rg_material_values(const rg_material *m);
 
 /* Whether this build has the model's kernels. */
 int rg_material_exists(rg_material_model model);

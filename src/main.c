@@ -16,6 +16,7 @@
 #include "export_command.h"
 #include "keys_command.h"
 #include "layout.h"
+#include "material_command.h"
 #include "materials_command.h"
 #include "mesh_command.h"
 #include "revision.h"
@@ -222,6 +223,9 @@ int main(int argc, char **argv) {
     }
     if (argc > 1 && strcmp(argv[1], "materials") == 0 && !asks_for_help(argc, argv)) {
         return answer(rg_materials_command(argc, argv));
+    }
+    if (argc > 1 && strcmp(argv[1], "material") == 0 && !asks_for_help(argc, argv)) {
+        return answer(rg_material_command(argc, argv));
     }
     if (argc > 1 && strcmp(argv[1], "export") == 0 && !asks_for_help(argc, argv)) {
         setenv("HDF5_USE_FILE_LOCKING", "FALSE", 0); /* the run may be writing */

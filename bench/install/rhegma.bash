@@ -8,8 +8,9 @@ _rhegma() {
         compopt -o nospace 2>/dev/null
         return
         ;;
+    --isa) COMPREPLY=($(compgen -W "x86-64-v2 x86-64-v3 x86-64-v4 generic" -- "$word")) && return ;;
     -o | --restart)
-        COMPREPLY=($(compgen $([[ $command == export || $command == mesh ]] && echo -f || echo -d) -- "$word"))
+        COMPREPLY=($(compgen $([[ $command =~ ^(export|mesh|material)$ ]] && echo -f || echo -d) -- "$word"))
         return
         ;;
     --unit) COMPREPLY=($(compgen -W "m cm mm um nm in ft" -- "$word")) && return ;;
@@ -20,10 +21,11 @@ _rhegma() {
     mesh) options="-o --unit --scale --merge --apart --extrude --split --size --curvature --improve --tile --set --info --case --partition --help" ;;
     keys) options="--markdown --schema --help" ;;
     export) options="-o --time --crack --help" ;;
+    material) options="-o --isa --help" ;;
     verify | materials) options="--help" ;;
     esac
     if [ "$COMP_CWORD" = 1 ]; then
-        COMPREPLY=($(compgen -W "run check export keys materials verify mesh --version --help" -- "$word"))
+        COMPREPLY=($(compgen -W "run check export keys material materials verify mesh --version --help" -- "$word"))
     elif [[ $word == -* ]]; then
         COMPREPLY=($(compgen -W "$options" -- "$word"))
     elif [ "$command" = materials ]; then

@@ -4,6 +4,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "library.h"
+
 bool rg_boundary_damps(const rg_boundary *b) {
     return b->absorbing || b->dashpot > 0;
 }
@@ -126,11 +128,19 @@ int rg_case_find_material(const rg_case *c, const char *name) {
     return -1;
 }
 
+int rg_input_history(const rg_material_input *in) {
+    return in->model == RG_MATERIAL_USER ? in->user.is.library->history : rg_material_history(in->model);
+}
+
+unsigned rg_input_inside(const rg_material_input *in) {
+    return in->model == RG_MATERIAL_USER ? in->user.is.library->facts->inside : rg_material_inside(in->model);
+}
+
 /* Of all materials. */
 static unsigned internal_fields(const rg_case *c) {
     unsigned inside = 0;
     for (int i = 0; i <= c->others; i++) {
-        inside |= rg_material_inside(rg_case_material(c, i)->model);
+        inside |= rg_input_inside(rg_case_material(c, i));
     }
     return (inside & RG_HAS_DAMAGE ? RG_FIELD_DAMAGE : 0U) | (inside & RG_HAS_REGIME ? RG_FIELD_REGIME : 0U) |
            (inside & RG_HAS_PLASTIC ? RG_FIELD_PLASTIC : 0U);

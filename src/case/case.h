@@ -98,6 +98,31 @@ typedef struct {
     double axis[2][3], angles[3];                                   /* of any length; degrees */
 } rg_anisotropic_input;
 
+/* What the checks of a user's material found (case/user_check.c): deviations over the largest stress or
+ * energy there was, and ratios. */
+typedef struct {
+    bool energetic;     /* it gives an energy */
+    double energy;      /* stress against differences of the energy */
+    double turned;      /* of a turned state against the turned stress and the same energy */
+    double symmetric;   /* Kirchhoff's stress against its transpose */
+    double tangent;     /* the tangent against its transpose */
+    double modulus[2];  /* least and most of the acoustic tensor at rest over that of the moduli declared */
+    double stiffening;  /* most of that of deformed states over the bound given */
+    bool path;          /* it has a history, and the following hold: */
+    double balance;     /* work of a cycle against what is stored and set free */
+    double path_turned; /* of a cycle on which the solid turns besides, likewise */
+    double step;        /* stress of a step against that of the state that it leaves */
+    double released;    /* share of the work put in that the cycle sets free */
+} rg_user_report;
+
+/* A material of the user's (kernels/library.h). */
+typedef struct {
+    char *library; /* path of it; absolute once loaded */
+    uint64_t hash; /* of what it holds */
+    rg_user_values is;
+    rg_user_report report;
+} rg_user_input;
+
 typedef struct {
     rg_material_model model;
     double young, poisson, density;
@@ -105,8 +130,9 @@ typedef struct {
     double parameter[RG_PARAMETERS];    /* materials.h */
     rg_deshpande_evans deshpande_evans; /* but for poisson, density, yield_stress and single_pi */
     rg_interaction interaction;         /* c3 of the ceramic: as printed, or as one derives it */
-    char *name;                         /* NULL: "material", of the one without which no case is */
-    char *preset;                       /* that filled what the case does not say; NULL: none */
+    rg_user_input user;
+    char *name;   /* NULL: "material", of the one without which no case is */
+    char *preset; /* that filled what the case does not say; NULL: none */
 } rg_material_input;
 
 /* A material besides `material`, and where it is: one of `set` and `where`; or, in the case file alone, a CSV
@@ -390,6 +416,10 @@ bool rg_face_set_is_any(const rg_face_set *set);
 /* Input of material i (0: `material`, then the others), and its name. */
 const rg_material_input *rg_case_material(const rg_case *c, int i);
 const char *rg_case_material_name(const rg_case *c, int i);
+
+/* Values of history per point, and what is inside, of a material. */
+int rg_input_history(const rg_material_input *in);
+unsigned rg_input_inside(const rg_material_input *in);
 
 /* Number of the material of that name; -1 if there is none. */
 int rg_case_find_material(const rg_case *c, const char *name);

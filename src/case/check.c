@@ -295,6 +295,11 @@ static void learn_material(rg_check *ck, const rg_key *key, const rg_node *node,
     if (at >= first && at < first + size) {
         learn_parameter(ck, (at - first) / sizeof(double), node, good);
     }
+    if (at == offsetof(rg_material_input, user.library)) {
+        m->library = good ? node : NULL;
+    } else if (at == offsetof(rg_material_input, user.is) && m->model && m->of->model == RG_MATERIAL_USER) {
+        rg_user_rule(ck, good ? node : NULL);
+    }
     if (at == offsetof(rg_material_input, model)) {
         m->model = good;
         ck->models = ck->models && good;

@@ -33,6 +33,7 @@ typedef struct {
     const rg_node *saturation;             /* its saturation_stress; NULL: not there */
     const rg_node *given[RG_PARAMETERS];   /* its other parameters that are there and good */
     bool bad[RG_PARAMETERS];               /* ... that are not good */
+    const rg_node *library;                /* its library; NULL: not there, or not good */
 } rg_material_check;
 
 typedef struct {
@@ -61,8 +62,10 @@ bool rg_bool_read(const rg_node *node, bool *value);
 void rg_value_wrong(rg_check *ck, const rg_key *key, const rg_node *node, const char *path,
                     const char *nearest, const char *what);
 
-/* A path that the case gives relative to its own file. Free with rg_free. */
+/* A path that the case gives relative to its own file; the same as one that holds anywhere. Free with
+ * rg_free. */
 char *rg_path_beside_case(const rg_check *ck, const char *path);
+char *rg_path_of_case(const rg_check *ck, const char *path);
 
 /* Makes mesh.file, given relative to the case file, a path that holds anywhere; reports a file that cannot be
  * read. */
@@ -79,6 +82,7 @@ void rg_parameters_rule(rg_check *ck);
 void rg_flaw_rule(rg_check *ck);
 void rg_material_name_rule(rg_check *ck, const rg_node *node);
 void rg_anisotropic_rule(rg_check *ck); /* anisotropic.c: which keys go together, stable, axes */
+void rg_user_rule(rg_check *ck, const rg_node *parameters); /* user.c: what its library makes of it */
 void rg_fields_rule(rg_check *ck, const rg_key *key, const rg_node *node);
 /* Reports output times after the end of the run. */
 void rg_times_rule(rg_check *ck, const rg_node *node);
@@ -125,6 +129,9 @@ void rg_material_rule(rg_check *ck, const rg_node *list, int i, const char *path
 void rg_initial_set_rule(rg_check *ck, const rg_node *list, int i, const char *path, bool good);
 /* Puts the rows of CSV files in the place of the entries of `materials` that name them (material_table.c). */
 void rg_material_tables_expand(rg_check *ck, rg_node *root);
+
+/* Puts what stands in the blocks of users' materials and is no key under `parameters` (user.c). */
+void rg_user_parameters_gather(rg_node *root);
 
 /* Fills the blocks of `material` and `materials` that name a preset with those of its keys that they do not
  * have and that their model uses. Reports names that are none (preset.c). */

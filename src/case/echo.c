@@ -1,4 +1,5 @@
 /* Writes a case with all values used, as a case file that reads back to the same case. */
+#include <inttypes.h>
 #include <string.h>
 
 #include "base/files.h"
@@ -6,6 +7,7 @@
 #include "case/expr.h"
 #include "case/key.h"
 #include "case/table.h"
+#include "library.h"
 
 /* Double quotes, because only they can hold any text. */
 static void write_text(FILE *out, const char *text) {
@@ -94,6 +96,20 @@ static void write_interval(FILE *out, const rg_case *c) {
     }
 }
 
+/* The material that has the key. */
+static const rg_user_input *user_of(const rg_key *key, const void *base) {
+    return &((const rg_material_input *)(const void *)((const char *)base + key->input))->user;
+}
+
+static void write_parameters(FILE *out, const rg_user_input *user) {
+    const rg_user_facts *facts = user->is.library->facts;
+    for (int i = 0; i < facts->parameters; i++) {
+        fprintf(out, "%s%s: ", i == 0 ? "{" : ", ", facts->parameter[i].name);
+        write_numbers(out, &(rg_key){.type = RG_KEY_REAL, .count = 1}, &user->is.parameter[i]);
+    }
+    fputc('}', out);
+}
+
 void rg_key_write(FILE *out, const rg_key *as_model, const void *base) {
     const rg_key here = rg_key_here(as_model, base), *key = &here;
     const void *value = (const char *)base + key->offset;
@@ -131,6 +147,13 @@ void rg_key_write(FILE *out, const rg_key *as_model, const void *base) {
     case RG_KEY_INTERVAL:
         write_interval(out, base);
         break;
+    case RG_KEY_LIBRARY:
+        write_text(out, rg_pointer_get(value));
+        fprintf(out, " # %016" PRIx64, user_of(key, base)->hash);
+        break;
+    case RG_KEY_PARAMETERS:
+        write_parameters(out, user_of(key, base));
+        break;
     case RG_KEY_TABLES:
         rg_tables_write(out, value);
         break;
@@ -161,7 +184,10 @@ bool rg_key_present(const rg_key *as_model, const void *base) {
     if (key->type == RG_KEY_INTERVAL) {
         return has_interval(base);
     }
-    if (key->type == RG_KEY_TEXT || key->type == RG_KEY_EXPR) {
+    if (key->type == RG_KEY_PARAMETERS) {
+        return user_of(key, base)->is.library->facts->parameters > 0;
+    }
+    if (key->type == RG_KEY_TEXT || key->type == RG_KEY_EXPR || key->type == RG_KEY_LIBRARY) {
         return rg_pointer_get(value) != NULL;
     }
     if (key->type == RG_KEY_BOOL) {

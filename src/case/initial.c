@@ -68,7 +68,7 @@ void rg_stress_rule(const rg_entry *e) {
     const rg_case *c = e->ck->c;
     for (int i = 0; i <= c->others && rg_case_has_stress(c); i++) {
         rg_material_model model = rg_case_material(c, i)->model;
-        if (rg_material_history(model) > 0 || model == RG_MATERIAL_ANISOTROPIC) {
+        if (rg_input_history(rg_case_material(c, i)) > 0 || model == RG_MATERIAL_ANISOTROPIC) {
             char *what = rg_text_format("needs elastic isotropic materials, and %s is %s: its limits, or its "
                                         "energy, would not know of "
                                         "a stress that is there before",
@@ -83,15 +83,18 @@ void rg_stress_rule(const rg_entry *e) {
 void rg_start_rule(const rg_entry *e) {
     const rg_case *c = e->ck->c;
     unsigned inside = 0;
+    bool flows = false;
     for (int i = 0; i <= c->others; i++) {
-        inside |= rg_material_inside(rg_case_material(c, i)->model);
+        inside |= rg_input_inside(rg_case_material(c, i));
+        flows = flows || (rg_case_material(c, i)->model == RG_MATERIAL_USER &&
+                          rg_input_history(rg_case_material(c, i)) > 0);
     }
     rg_form form = c->interface.form;
     const char *wrong =
         c->start != RG_START_STATIC ? NULL
         : form == RG_FORM_INCOMPLETE || form == RG_FORM_INTRINSIC
             ? "needs form variational or continuous, whose forces have a potential without a history"
-        : (inside & (RG_HAS_DAMAGE | RG_HAS_PLASTIC)) != 0
+        : flows || (inside & (RG_HAS_DAMAGE | RG_HAS_PLASTIC)) != 0
             ? "needs elastic materials: what flows or is damaged on the way would depend on the way"
         : c->bodies > 0 ? "cannot be found with bodies, which the solid might touch on the way"
         : c->contact.model == RG_CONTACT_GENERAL

@@ -96,6 +96,12 @@ static void type_words(const rg_key *key, char *text, size_t size) {
     case RG_KEY_INTERVAL:
         rg_text_add(text, size, "integer >= 1 (steps), or number > 0 and < 1 (simulated seconds)");
         break;
+    case RG_KEY_LIBRARY:
+        rg_text_add(text, size, "path of a library that rhegma material compiled");
+        break;
+    case RG_KEY_PARAMETERS:
+        rg_text_add(text, size, "mapping of names to numbers");
+        break;
     case RG_KEY_TABLES:
         rg_text_add(text, size,
                     "mapping of names to: list of [argument, value], ascending; path of a CSV file; "
@@ -128,11 +134,12 @@ void rg_models_words(const rg_key *key, char *text, size_t size) {
     text[0] = '\0';
     for (int m = 0; m < RG_MATERIAL_MODELS && others != 0; m++) {
         if (others == 1U << m) {
-            rg_text_add(text, size, "all but %s", rg_material_word((rg_material_model)m));
+            rg_text_add(text, size, "all but %s%s", rg_material_word((rg_material_model)m),
+                        (key->models & RG_MATERIAL_BIT_USER) == 0 ? ", user" : "");
             return;
         }
     }
-    for (int m = 0; m < RG_MATERIAL_MODELS; m++) {
+    for (int m = 0; m <= RG_MATERIAL_USER; m++) {
         if ((key->models >> m & 1U) != 0) {
             rg_text_add(text, size, "%s%s", join, rg_material_word((rg_material_model)m));
             join = ", ";
@@ -394,7 +401,7 @@ void rg_keys_free(const rg_key_table *table, void *base) {
     for (int i = 0; i < table->keys; i++) {
         const rg_key *key = &table->key[i];
         void *value = (char *)base + key->offset;
-        if (key->type == RG_KEY_TEXT || key->type == RG_KEY_REALS) {
+        if (key->type == RG_KEY_TEXT || key->type == RG_KEY_REALS || key->type == RG_KEY_LIBRARY) {
             rg_free(rg_pointer_get(value));
         } else if (key->type == RG_KEY_EXPR) { /* may be shared by two keys of a group */
             rg_expr_free(rg_pointer_get(value));

@@ -47,8 +47,9 @@
 /* Words in the order of the enums they set; behind some what each means. */
 #define WORD(name, NAME, word, ...)             word,
 #define MEANING(name, NAME, word, meaning, ...) meaning,
-static const char *const models[] = {RG_MATERIALS(WORD) NULL};
-static const char *const models_meaning[] = {RG_MATERIALS(MEANING)};
+static const char *const models[] = {RG_MATERIALS(WORD) "user", NULL};
+static const char *const models_meaning[] = {
+    RG_MATERIALS(MEANING) "your own, of a library that rhegma material compiles"};
 static const char *const laws[] = {
 #define RG_LAW(NAME, name, word, ...) word,
 #include "laws.h"

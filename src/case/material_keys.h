@@ -61,6 +61,10 @@ RG_MATERIAL_PARAMETERS(PARAMETER)
 {.name = KEY("orientation.angles"), REAL3, .entries = "phi1, Phi, phi2", ANY, ELSE("[0, 0, 0]"), ALONG_AXES,
  AT(anisotropic.angles),
  MEANS("in place of axes: Euler angles after Bunge in degrees, by which x, y, z turn into its axes: phi1 about z, Phi about the new x, phi2 about the new z")},
+{.name = KEY("library"), .type = RG_KEY_LIBRARY, REQUIRED, .models = RG_MATERIAL_BIT_USER, AT(user.library),
+ MEANS("path of what rhegma material compiled, relative to the case file; its parameters stand beside it, or under parameters")},
+{.name = KEY("parameters"), .type = RG_KEY_PARAMETERS, ELSE("those beside library"), .models = RG_MATERIAL_BIT_USER, AT(user.is),
+ MEANS("those that the library declares, by name")},
 
 #undef AT
 #undef FLAWS

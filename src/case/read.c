@@ -71,6 +71,7 @@ rg_case *rg_case_read_text(const char *path, const char *text, size_t size, int 
     rg_check check = {.problems = &problems, .c = c};
     rg_material_tables_expand(&check, &root);
     rg_presets_expand(&check, &root);
+    rg_user_parameters_gather(&root);
     rg_case_check(&check, &root);
     rg_node_clear(&root);
     if (problems.count > 0) {

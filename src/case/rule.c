@@ -17,18 +17,25 @@ char *rg_path_beside_case(const rg_check *ck, const char *path) {
     return rg_text_format("%.*s%s", folder, file, path);
 }
 
+char *rg_path_of_case(const rg_check *ck, const char *file) {
+    char here[4096], *path = rg_path_beside_case(ck, file);
+    if (path[0] == '/' || getcwd(here, sizeof here) == NULL) {
+        return path;
+    }
+    char *whole = rg_text_format("%s/%s", here, path);
+    rg_free(path);
+    return whole;
+}
+
 void rg_mesh_file_rule(rg_check *ck, const rg_node *node) {
-    char *file = ck->c->mesh.file, here[4096];
+    char *file = ck->c->mesh.file;
     char *path = rg_path_beside_case(ck, file);
     if (access(path, R_OK) != 0) {
         rg_subject subject = {
             .key = "mesh.file", .value = file, .allowed = "path of a mesh file, relative to the case file"};
         rg_problem_add(ck->problems, node->at, &subject, "cannot be read: %s", strerror(errno));
-    } else if (path[0] == '/' || getcwd(here, sizeof here) == NULL) {
-        ck->c->mesh.file = rg_text_copy(path, strlen(path));
-        rg_free(file);
     } else {
-        ck->c->mesh.file = rg_text_format("%s/%s", here, path);
+        ck->c->mesh.file = rg_path_of_case(ck, file);
         rg_free(file);
     }
     rg_free(path);

@@ -182,6 +182,13 @@ static void put_single(writer *w, const rg_key *key) {
     case RG_KEY_FLAGS:
         put_enum(w, key);
         break;
+    case RG_KEY_PARAMETERS:
+        put_text(w, "type", "object");
+        open_group(w, "additionalProperties", '{');
+        put_text(w, "type", "number");
+        close_group(w, '}');
+        break;
+    case RG_KEY_LIBRARY:
     case RG_KEY_TEXT:
     case RG_KEY_TEXTS:
         put_any_text(w, key);
@@ -324,7 +331,7 @@ static effect of_model(const void *model, const rg_key *key) {
 }
 
 static void put_models(writer *w, const rg_key_table *table, const char *section) {
-    for (int model = 0; model < RG_MATERIAL_MODELS; model++) {
+    for (int model = 0; model <= RG_MATERIAL_USER; model++) {
         open_group(w, NULL, '{');
         put_if(w, "model", rg_material_word((rg_material_model)model), false);
         put_consequence(w, "then", table, section, of_model, &model);

@@ -336,6 +336,13 @@ bool rg_value_read(rg_check *ck, const rg_key *key, const rg_node *node, const c
         return read_bool(ck, key, node, path, value);
     case RG_KEY_INTERVAL:
         return read_interval(ck, key, node, path, base);
+    case RG_KEY_LIBRARY:
+        return read_text(ck, key, node, path, value);
+    case RG_KEY_PARAMETERS: /* which there are only the library knows: rg_user_rule */
+        if (node->kind != RG_NODE_MAPPING) {
+            rg_value_wrong(ck, key, node, path, NULL, "not a mapping of keys");
+        }
+        return node->kind == RG_NODE_MAPPING;
     case RG_KEY_TABLES:
         return rg_tables_read(ck, key, node, path, value);
     case RG_KEY_LIST:

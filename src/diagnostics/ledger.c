@@ -85,7 +85,7 @@ static rg_exact_sum *parts_of_block(rg_exact_sum *sum, const rg_solver *s, size_
 }
 
 static void add_released(rg_exact_sum *sum, const rg_solver *s, size_t slot) {
-    int history = rg_material_history(rg_material_of(s, slot)->model);
+    int history = rg_material_values(rg_material_of(s, slot));
     for (size_t k = 0; history > 0 && k < RG_RELEASED; k++) {
         double released = rg_history_value(s, slot, (size_t)(RG_GAUSS * history) + k);
         rg_exact_add(&sum[RELEASED + k], released);

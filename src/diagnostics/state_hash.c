@@ -12,7 +12,7 @@ static uint64_t element_hash(const rg_solver *s, size_t slot) {
         size_t at = rg_node_index(slot, k / 3, k % 3);
         h = rg_hash_double(rg_hash_double(h, s->u[at]), s->step_velocity[at]);
     }
-    size_t rows = rg_history_rows(rg_material_history(rg_material_of(s, slot)->model));
+    size_t rows = rg_history_rows(rg_material_values(rg_material_of(s, slot)));
     for (size_t row = 0; row < rows; row++) {
         h = rg_hash_double(h, rg_history_value(s, slot, row));
     }

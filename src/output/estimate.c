@@ -8,6 +8,7 @@
 #include "diagnostics/ledger.h"
 #include "base/first_bad.h"
 #include "cohesive/facts.h"
+#include "library.h"
 #include "mesh/info.h"
 #include "output/snapshot.h"
 #include "partition/material.h"
@@ -187,6 +188,32 @@ void rg_estimate_warn(const rg_case *c, const rg_estimate *e) {
     }
 }
 
+/* What the checks of a user's material found. */
+static void print_user(const rg_user_input *user, FILE *out) {
+    const rg_user_facts *facts = user->is.library->facts;
+    const rg_user_report *r = &user->report;
+    fprintf(out, "library        %s of %s (%016" PRIx64 ")\n", facts->name, user->library, user->hash);
+    fprintf(out, "checked        stress ");
+    if (r->energetic) {
+        fprintf(out, "the derivative of the energy to %.1e, ", r->energy);
+    } else {
+        fprintf(out, "without an energy, so that energy.csv will not add up, ");
+    }
+    fprintf(out, "turns with the solid to %.1e, Kirchhoff's symmetric to %.1e, the tangent to %.1e\n",
+            r->turned, r->symmetric, r->tangent);
+    fprintf(out,
+            "               acoustic tensor at rest %.4g to %.4g times the declared, strained %.3g of the "
+            "bound\n",
+            r->modulus[0], r->modulus[1], r->stiffening);
+    if (r->path) {
+        fprintf(out,
+                "               a cycle adds up to %.1e of its work, %.2g of which it sets free, and turns "
+                "with the "
+                "solid to %.1e; stress of a step is that of the state after it to %.1e\n",
+                r->balance, r->released, r->path_turned, r->step);
+    }
+}
+
 static void print_material(const rg_solver *s, const rg_estimate *e, int i, FILE *out) {
     const rg_material *m = &s->model->material[i];
     double limit, speed;
@@ -209,6 +236,9 @@ static void print_material(const rg_solver *s, const rg_estimate *e, int i, FILE
             out,
             "warning: no solid carries waves at %.3g m/s: are its moduli in Pa and its density in kg/m3?\n",
             fastest);
+    }
+    if (m->model == RG_MATERIAL_USER) {
+        print_user(&rg_case_material(s->input, i)->user, out);
     }
     if (rg_material_plastic_wave(m, &limit, &speed)) {
         fprintf(out, "plastic waves  %.1f m/s, beyond %.4g Pa in uniaxial strain\n", speed, limit);

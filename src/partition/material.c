@@ -7,6 +7,7 @@
 #include "base/principal.h"
 #include "base/stiffness.h"
 #include "base/vector.h"
+#include "case/user.h"
 
 static void set_young(rg_material *m, double young, double nu) {
     m->lambda = young * nu / ((1 + nu) * (1 - 2 * nu));
@@ -100,7 +101,9 @@ static void set_anisotropic(rg_material *m, const rg_anisotropic_input *in, cons
 
 static rg_material make(const rg_material_input *in, const rg_material *like) {
     rg_material m = {.model = in->model, .density = in->density};
-    if (m.model == RG_MATERIAL_ANISOTROPIC) {
+    if (m.model == RG_MATERIAL_USER) {
+        m = rg_user_material_of(in);
+    } else if (m.model == RG_MATERIAL_ANISOTROPIC) {
         set_anisotropic(&m, &in->anisotropic, like);
     } else if (m.model == RG_MATERIAL_MOONEY_RIVLIN) {
         memcpy(m.of.parameter, in->parameter, sizeof m.of.parameter);

@@ -19,7 +19,7 @@ rg_model *rg_model_make(const rg_case *c) {
                     .stiffest = 1};
     m->crack_stride = rg_crack_stride(&m->law);
     for (int i = 0; i < m->materials; i++) {
-        size_t block = rg_history_block(rg_material_history(m->material[i].model));
+        size_t block = rg_history_block(rg_material_values(&m->material[i]));
         m->history_stride = block > m->history_stride ? block : m->history_stride;
     }
     return m;

@@ -69,7 +69,7 @@ void rg_tile_state(const rg_solver *s, const rg_tile *t, const rg_workspace *w, 
                                    .internal =
                                        internal == NULL ? NULL : internal + begin * points * RG_INTERNAL};
         rg_tile_bulk_state(s, t, &args, begin, end);
-        if (internal != NULL && rg_material_history(bulk.material.model) == 0) {
+        if (internal != NULL && rg_material_values(&bulk.material) == 0) {
             memset(args.internal, 0, (end - begin) * points * RG_INTERNAL * sizeof *internal);
         }
     }

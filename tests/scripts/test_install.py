@@ -8,7 +8,7 @@ import pytest
 from conftest import ENVIRONMENT, PROGRAM, ROOT, SINGLE, TIMEOUT
 
 FILES = """bin/rhegma bin/rhegma-plot bin/rhegma-convert share/rhegma/plot share/rhegma/convert share/rhegma/rhegma.py share/rhegma/case.schema.json share/rhegma/examples/spall/spall.yaml
-    share/man/man1/rhegma.1 share/bash-completion/completions/rhegma""".split()
+    include/rhegma/user/material.c include/rhegma/user/material.h include/rhegma/element/bulk.h share/man/man1/rhegma.1 share/bash-completion/completions/rhegma""".split()
 
 
 def command(*words, cwd=None, **more):
@@ -42,6 +42,17 @@ def test_an_installed_example_is_run_and_drawn(prefix, tmp_path):
     assert (tmp_path / "results/spall/energy.png").stat().st_size > 10000 and "energy.png" in said
 
 
+def test_a_material_is_compiled_with_the_installed_headers(prefix, tmp_path):
+    """And with those alone: what it was built from need not be there."""
+    source = prefix / "share/rhegma/examples/user-material/softening.c"
+    command(prefix / "bin/rhegma", "material", source, "-o", "softening.so", cwd=tmp_path, CC="cc -Werror -MMD")
+    (needs,) = tmp_path.glob("*.d")
+    assert f"{prefix}/bin/../include/rhegma/element/bulk.h" in needs.read_text() and str(ROOT) not in needs.read_text()
+    case = prefix / "share/rhegma/examples/user-material/user-material.yaml"
+    said = command(prefix / "bin/rhegma", "check", case, "--set", f"material.library={tmp_path}/softening.so")
+    assert "library        softening of " in said
+
+
 def test_the_schema_is_the_programs(prefix):
     assert (prefix / "share/rhegma/case.schema.json").read_text() == command(PROGRAM, "keys", "--schema")
 
@@ -49,7 +60,7 @@ def test_the_schema_is_the_programs(prefix):
 @pytest.mark.skipif(SINGLE, reason="once is enough")
 def test_the_page_and_the_completion_name_every_option(prefix):
     """Of those that the usage names."""
-    usage = "".join(command(PROGRAM, word, "--help") for word in ("run", "check", "verify", "export", "keys", "mesh"))
+    usage = "".join(command(PROGRAM, word, "--help") for word in ("run", "check", "verify", "export", "keys", "material", "mesh"))
     options = set(re.findall(r"(?<![\w-])--?[a-z][\w-]*", usage)) - {"-n", "-language-server"}
     page = (prefix / "share/man/man1/rhegma.1").read_text().replace("\\-", "-")
     completion = (ROOT / "bench/install/rhegma.bash").read_text()

@@ -122,6 +122,7 @@ static inline void name_models(char *text, size_t size, int inside) {
             join = ", ";
         }
     }
+    rg_text_add(text, size, inside == 0 ? ", user" : "");
 }
 
 /* Those that take Young's modulus, an anisotropic one three of them. */
