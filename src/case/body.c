@@ -36,9 +36,13 @@ static void check_shape(const rg_entry *e, const rg_body_input *b) {
     if (b->shape == RG_SHAPE_NONE && faces != NULL) {
         rg_entry_wrong(e, "faces", faces->key_at, (rg_subject){0}, "not used: it touches nothing");
     }
-    if (b->shape == RG_SHAPE_NONE && b->ties == 0) {
+    if (b->shape == RG_SHAPE_NONE && !rg_body_is_tied(b)) {
         rg_entry_wrong(e, "tied", e->item->at, (rg_subject){0},
                        "missing: a body that touches nothing has no other use");
+    }
+    const rg_node *until = rg_entry_given(e, "tied_until");
+    if (until != NULL && !rg_body_is_tied(b)) {
+        rg_entry_wrong(e, "tied_until", until->key_at, (rg_subject){0}, "not used: nothing is tied to it");
     }
     check_direction(e, "normal", b->shape == RG_SHAPE_PLANE, b->normal, "it belongs to a plane");
     check_direction(e, "axis", b->shape == RG_SHAPE_CYLINDER, b->axis, "it belongs to a cylinder");
@@ -115,8 +119,8 @@ static void check_turn(const rg_entry *e, const rg_body_input *b) {
     if (b->motion == RG_MOTION_PRESCRIBED || rg_body_has_inertia(b)) {
         return;
     }
-    const char *const keys[] = {"spin", "tied"};
-    for (int i = 0; i < 2; i++) {
+    const char *const keys[] = {"spin", "tied", "tied_where"};
+    for (int i = 0; i < 3; i++) {
         const rg_node *node = rg_entry_given(e, keys[i]);
         if (node != NULL) {
             rg_entry_wrong(e, keys[i], node->key_at, (rg_subject){0},

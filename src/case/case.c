@@ -60,8 +60,12 @@ bool rg_body_has_inertia(const rg_body_input *b) {
     return b->density > 0 || b->inertia[0] > 0;
 }
 
+bool rg_body_is_tied(const rg_body_input *b) {
+    return b->ties > 0 || b->tied_where != NULL;
+}
+
 bool rg_body_turns(const rg_body_input *b) {
-    bool central = b->shape == RG_SHAPE_SPHERE && b->ties == 0;
+    bool central = b->shape == RG_SHAPE_SPHERE && !rg_body_is_tied(b);
     return rg_body_spins(b) || (b->motion == RG_MOTION_FREE && rg_body_has_inertia(b) && !central);
 }
 

@@ -162,7 +162,7 @@ static void tile_drift(rg_solver *s, size_t tile, const rg_workspace *w) {
     rg_drift_args args = {s->dt_next, s->velocity + at, s->u + at};
     s->kernels->drift(&args, 0, rg_tile_eblocks(t));
     rg_constraints_drift(s->constraints, tile, s->u);
-    rg_ties_drift(s->ties, tile, s->dt_next, s->u);
+    rg_ties_drift(s->ties, tile, s->time, s->dt_next, s->u);
     if (s->contacts != NULL) {
         rg_contacts_place(s->contacts, tile, s->u, s->contact_sunk);
     }
@@ -173,7 +173,7 @@ static void tile_drift(rg_solver *s, size_t tile, const rg_workspace *w) {
 /* The velocities of a tile are complete. */
 static void tile_finish(rg_solver *s, size_t tile, const rg_workspace *w, const impulse *p) {
     if (p->constrain) {
-        rg_ties_kick(s->ties, tile, s->dt, s->dt_next, p->velocity, step_velocity_of(s, tile, p));
+        rg_ties_kick(s->ties, tile, s->time, s->dt, s->dt_next, p->velocity, step_velocity_of(s, tile, p));
         rg_loads_book(s->loads, tile, s->u, p->velocity);
         rg_absorbing_book(s->absorbing, tile, p->velocity);
     }
@@ -191,7 +191,7 @@ static void tile_complete(rg_solver *s, size_t tile, const rg_workspace *w, cons
         rg_push damp = {p->dt, 0.5 * s->dt, p->velocity, step_velocity_of(s, tile, p)};
         rg_absorbing_damp(s->absorbing, tile, &damp);
         rg_constraints_kick(s->constraints, tile, s->u, p->velocity, step_velocity_of(s, tile, p));
-        rg_ties_gather(s->ties, tile, p->velocity);
+        rg_ties_gather(s->ties, tile, s->time, p->velocity);
     }
     if (!(p->constrain && rg_ties_any(s->ties))) {
         tile_finish(s, tile, w, p);
@@ -378,7 +378,7 @@ static void finish_tied(rg_solver *s, const impulse *p) {
     }
 #pragma omp master
     {
-        rg_ties_close(s->ties);
+        rg_ties_close(s->ties, s->time);
         rg_bodies_kick(s->bodies, s->time, s->dt, s->dt_next);
     }
 #pragma omp barrier

@@ -38,6 +38,11 @@ struct rg_ties {
 
 /* ---- In time ---- */
 
+/* Whether what is tied to a body is still in a kick at `time`, and up to the next one. */
+static bool holds(const rg_body *b, double time) {
+    return b->input->tied_until <= 0 || time < b->input->tied_until;
+}
+
 /* From the body's centre, at the start. */
 static void arm_at_start(const rg_ties *t, const entry *e, int i, double arm[3]) {
     double x[3];
@@ -59,12 +64,15 @@ static void momenta(const entry *e, const rg_real *velocity, double out[RG_NODES
     }
 }
 
-void rg_ties_gather(rg_ties *t, size_t tile, const rg_real *velocity) {
+void rg_ties_gather(rg_ties *t, size_t tile, double time, const rg_real *velocity) {
     for (size_t n = t->tile_begin[tile]; n < t->tile_begin[tile + 1]; n++) {
         const entry *e = &t->entry[n];
         const rg_body *b = &t->bodies->body[e->body];
         rg_exact_sum *sum = t->sum + SUMS * (omp_get_thread_num() * t->bodies->count + e->body);
         double momentum[RG_NODES][3], all[SUMS] = {0};
+        if (!holds(b, time)) {
+            continue;
+        }
         momenta(e, velocity, momentum);
         for (int i = 0; i < e->pattern->constrained; i++) {
             double start[3], arm[3], angular[3];
@@ -82,7 +90,7 @@ void rg_ties_gather(rg_ties *t, size_t tile, const rg_real *velocity) {
     }
 }
 
-void rg_ties_close(rg_ties *t) {
+void rg_ties_close(rg_ties *t, double time) {
     int sums = SUMS * t->bodies->count;
     for (int i = sums; i < sums * t->threads; i++) {
         rg_exact_merge(&t->sum[i % sums], &t->sum[i]);
@@ -93,6 +101,9 @@ void rg_ties_close(rg_ties *t) {
         for (int c = 0; c < 3; c++) {
             tied->momentum[c] = rg_exact_value(&t->sum[SUMS * i + c]);
             tied->angular[c] = rg_exact_value(&t->sum[SUMS * i + 3 + c]);
+        }
+        if (!holds(&t->bodies->body[i], time)) {
+            *tied = (rg_body_tied){.any = false};
         }
     }
     memset(t->sum, 0, (size_t)(sums * t->threads) * sizeof *t->sum);
@@ -123,12 +134,15 @@ static void bring(const entry *e, double target[RG_NODES][3], double share, rg_r
     }
 }
 
-void rg_ties_kick(const rg_ties *t, size_t tile, double dt_last, double dt_next, rg_real *velocity,
-                  rg_real *now) {
+void rg_ties_kick(const rg_ties *t, size_t tile, double time, double dt_last, double dt_next,
+                  rg_real *velocity, rg_real *now) {
     for (size_t n = t->tile_begin[tile]; n < t->tile_begin[tile + 1]; n++) {
         const entry *e = &t->entry[n];
         const rg_body *b = &t->bodies->body[e->body];
         double chord[RG_NODES][3];
+        if (!holds(b, time)) {
+            continue;
+        }
         for (int i = 0; i < e->pattern->constrained; i++) {
             double start[3], arm[3];
             arm_at_start(t, e, i, start);
@@ -151,11 +165,14 @@ static void moved(const rg_body *b, const double x[3], const double rotation[4],
     }
 }
 
-void rg_ties_drift(const rg_ties *t, size_t tile, double dt, rg_real *u) {
+void rg_ties_drift(const rg_ties *t, size_t tile, double time, double dt, rg_real *u) {
     for (size_t n = t->tile_begin[tile]; n < t->tile_begin[tile + 1]; n++) {
         const entry *e = &t->entry[n];
         const rg_body *b = &t->bodies->body[e->body];
         double x[3], rotation[4], start[3], to[3];
+        if (!holds(b, time)) {
+            continue;
+        }
         rg_rotation_join(b->turn.step, b->turn.rotation, rotation);
         for (int c = 0; c < 3; c++) {
             x[c] = b->x[c] + dt * b->v[c];
@@ -201,30 +218,44 @@ void rg_ties_describe(const rg_ties *t, int i, char *words, size_t size) {
     }
 }
 
+/* Adds the nodes of the selected faces to those of each element, and the area of faces not yet in `seen`. */
+static void add_nodes(const rg_ties *t, const rg_selection *selection, const rg_case *c, const rg_part *part,
+                      uint16_t *nodes, uint8_t *seen, rg_exact_sum *area) {
+    const rg_domain *d = t->domain;
+    uint8_t *faces = rg_selection_faces(selection, c, d, part, t->comm);
+    for (size_t n = 0; n < RG_FACES * d->blocks * RG_LANES; n++) {
+        size_t slot = n / RG_FACES;
+        int face = (int)(n % RG_FACES);
+        double normal[3];
+        if ((faces[slot] >> face & 1) == 0 || (seen[slot] >> face & 1) != 0) {
+            continue;
+        }
+        seen[slot] |= (uint8_t)(1u << face);
+        rg_exact_add(area, rg_surface_area(d->corner + 12 * slot, face, normal));
+        for (int a = 0; a < RG_FNODES; a++) {
+            nodes[slot] |= (uint16_t)(1u << rg_face_node[face][a]);
+        }
+    }
+    rg_free(faces);
+}
+
 /* Bits of the nodes of each element that are tied to body i; adds the area of the faces. */
 static uint16_t *nodes_of(rg_ties *t, int i, const rg_case *c, const rg_part *part, rg_assembly *shared) {
-    const rg_domain *d = t->domain;
-    uint16_t *nodes = RG_NEW(uint16_t, d->blocks * RG_LANES + 1);
+    size_t slots = t->domain->blocks * RG_LANES;
+    uint16_t *nodes = RG_NEW(uint16_t, slots + 1);
+    uint8_t *seen = RG_NEW(uint8_t, slots + 1);
     rg_exact_sum area = {0};
+    char list[64];
+    snprintf(list, sizeof list, "bodies[%d].tied", i);
     for (int k = 0; k < c->body[i].ties; k++) {
-        char list[64];
-        snprintf(list, sizeof list, "bodies[%d].tied", i);
         rg_selection selection = {list, k, c->body[i].tied[k], NULL, false};
-        uint8_t *faces = rg_selection_faces(&selection, c, d, part, t->comm);
-        for (size_t n = 0; n < RG_FACES * d->blocks * RG_LANES; n++) {
-            size_t slot = n / RG_FACES;
-            int face = (int)(n % RG_FACES);
-            double normal[3];
-            if ((faces[slot] >> face & 1) == 0) {
-                continue;
-            }
-            rg_exact_add(&area, rg_surface_area(d->corner + 12 * slot, face, normal));
-            for (int a = 0; a < RG_FNODES; a++) {
-                nodes[slot] |= (uint16_t)(1u << rg_face_node[face][a]);
-            }
-        }
-        rg_free(faces);
+        add_nodes(t, &selection, c, part, nodes, seen, &area);
     }
+    if (c->body[i].tied_where != NULL) {
+        rg_selection selection = {"bodies", i, NULL, c->body[i].tied_where, false};
+        add_nodes(t, &selection, c, part, nodes, seen, &area);
+    }
+    rg_free(seen);
     rg_exact_allreduce(&area, 1, t->comm);
     t->area[i] = rg_exact_value(&area);
     if (shared != NULL) {
@@ -295,7 +326,7 @@ static void tell_bodies(const rg_ties *t) {
         for (int k = 0; k < CARRIED; k++) {
             value[k] = rg_exact_value(&sum[CARRIED * i + k]);
         }
-        b->tied.any = b->input->ties > 0;
+        b->tied.any = rg_body_is_tied(b->input);
         b->tied.mass = value[0];
         memcpy(b->tied.first, value + 1, sizeof b->tied.first);
         for (int k = 0; k < 9; k++) { /* symmetric to the last bit */
@@ -312,7 +343,7 @@ rg_ties *rg_ties_make(const rg_case *c, const rg_domain *d, const rg_part *part,
     *t = (rg_ties){.domain = d, .bodies = bodies, .comm = comm, .threads = threads, .patterns.mass = c->mass};
     t->tile_begin = RG_NEW(size_t, d->tiles + 1);
     for (int i = 0; i < c->bodies; i++) {
-        t->any = t->any || c->body[i].ties > 0;
+        t->any = t->any || rg_body_is_tied(&c->body[i]);
     }
     if (!t->any) {
         return t;
@@ -321,7 +352,7 @@ rg_ties *rg_ties_make(const rg_case *c, const rg_domain *d, const rg_part *part,
     t->sum = RG_NEW(rg_exact_sum, (size_t)(SUMS * c->bodies * threads));
     uint16_t **nodes = RG_NEW(uint16_t *, (size_t)c->bodies);
     for (int i = 0; i < c->bodies; i++) {
-        nodes[i] = c->body[i].ties > 0 ? nodes_of(t, i, c, part, shared) : NULL;
+        nodes[i] = rg_body_is_tied(&c->body[i]) ? nodes_of(t, i, c, part, shared) : NULL;
     }
     refuse_conflicts(t, c, nodes, constraints);
     size_t room = 0;

@@ -6,7 +6,7 @@
  * places x + R a. What all of them take is linear in v and R', with coefficients that the body knows from the
  * start, but for sums over v*: six numbers a body and step, exact, so that all ranks move it alike. Both
  * momenta of body and solid together stay to rounding, and the critical step is what it was: what is held
- * vibrates no faster. */
+ * vibrates no faster. Nodes that are let go (tied_until) keep their velocities, and so does the body. */
 #ifndef RG_TIE_H
 #define RG_TIE_H
 
@@ -31,18 +31,18 @@ bool rg_ties_any(const rg_ties *t);
 /* Puts the nodes where the bodies are at the start, with their velocities. */
 void rg_ties_start(const rg_ties *t, rg_real *u, rg_real *velocity);
 
-/* What the nodes of a tile would have after a kick without the bodies; then, once all tiles have: their sums,
- * for rg_bodies_kick. The latter collective. */
-void rg_ties_gather(rg_ties *t, size_t tile, const rg_real *velocity);
-void rg_ties_close(rg_ties *t);
+/* What the nodes of a tile would have after a kick at `time` without the bodies; then, once all tiles have:
+ * their sums, for rg_bodies_kick. The latter collective; it tells bodies whose nodes are let go. */
+void rg_ties_gather(rg_ties *t, size_t tile, double time, const rg_real *velocity);
+void rg_ties_close(rg_ties *t, double time);
 
-/* Once the bodies are kicked, between a step of dt_last and one of dt_next: velocities of a tile, and those
- * at the time of the step unless `now` is NULL. */
-void rg_ties_kick(const rg_ties *t, size_t tile, double dt_last, double dt_next, rg_real *velocity,
-                  rg_real *now);
+/* Once the bodies are kicked at `time`, between a step of dt_last and one of dt_next: velocities of a tile,
+ * and those at the time of the step unless `now` is NULL. */
+void rg_ties_kick(const rg_ties *t, size_t tile, double time, double dt_last, double dt_next,
+                  rg_real *velocity, rg_real *now);
 
-/* Before the bodies drift: puts the nodes of a tile where that takes them. */
-void rg_ties_drift(const rg_ties *t, size_t tile, double dt, rg_real *u);
+/* Before the bodies drift from `time` on: puts the nodes of a tile where that takes them. */
+void rg_ties_drift(const rg_ties *t, size_t tile, double time, double dt, rg_real *u);
 
 /* What is tied to body i in words: "2.5e-09 m2"; nothing if there is none. */
 void rg_ties_describe(const rg_ties *t, int i, char *words, size_t size);

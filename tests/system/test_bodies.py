@@ -186,6 +186,7 @@ def test_block_between_two_walls_is_held(run, figure):
 
 HEAD = {"name": "head", "shape": "none", "motion": "free", "at": [1e-4, -2e-4, 4.4e-3], "mass": 4e-6, "tied": ["z+"],
         "inertia": [3e-12, 4e-12, 5e-12, 1e-13, -2e-13, 3e-13], "velocity": {"x": 3, "z": -2}, "spin": {"x": 37e3, "y": 7e3, "z": 1.1e4}}
+FREE = {key: value for key, value in HEAD.items() if key != "tied"}
 TUMBLING = {"mesh": {"cells": [2, 2, 8], "size": [1e-3, 1e-3, 4e-3], "origin": [-5e-4, -5e-4, 0], "jitter": 0.1},
             "material": {"model": "neo-hookean", "young": 2e9, "poisson": 0.3, "density": 1200},
             "interface": {"law": "none", "penalty": "isotropic"}, "bodies": [HEAD],
@@ -213,6 +214,26 @@ def test_a_head_tied_to_a_tumbling_bar(run, figure, form, bound):
     figure(f"tumbling bar with a head, {form}: change of angular momentum, relative", angular, bound=rounding(1e-14, 1e-5), why=ROUNDING)
     figure(f"tumbling bar with a head, {form}: energy error", tied.summary["energy_error_rel"], bound=bound)
     assert np.ptp(history["head_wy"]) > 2e3 and abs(history["head_my"]).max() > 1e-4
+
+
+def test_a_head_that_is_let_go(run, figure):
+    """Until then all is as with the tie, which here is chosen by its faces; from then on the head flies freely: its momentum
+    and its angular momentum about its centre, which is attitude and spin, stay."""
+    until = 0.8e-5
+    tied = run(CASES / "bounce.yaml", sets=TUMBLING)
+    free = run(CASES / "bounce.yaml", sets={**TUMBLING, "bodies": [{**FREE, "tied_where": "nz > 0.5", "tied_until": until}]})
+    linear, angular = momenta(free.energy)
+    figure("head that is let go: change of linear momentum, relative", linear, bound=rounding(1e-14, 1e-5), why=ROUNDING)
+    figure("head that is let go: change of angular momentum, relative", angular, bound=rounding(1e-14, 1e-5), why=ROUNDING)
+    figure("head that is let go: energy error", free.summary["energy_error_rel"], bound=2e-6)
+    history, held = free.history, tied.history
+    before = int((history["time"] < until).sum())
+    assert 100 < before < len(history) - 100
+    for name in ("head_vx", "head_wy", "head_qw", "head_mx"):
+        assert np.array_equal(history[name][:before], held[name][:before]), name
+    after = history[before + 1:]
+    assert all(np.ptp(after[f"head_v{c}"]) == 0 and abs(after[f"head_f{c}"]).max() == abs(after[f"head_m{c}"]).max() == 0 for c in "xyz")
+    assert np.ptp(held["head_vx"][before + 1:]) > 0.1 and np.ptp(after["head_wy"]) > 0
 
 
 def test_a_mass_tied_to_a_bar_is_slowed_as_in_theory(run, figure):
@@ -264,6 +285,8 @@ def test_a_plate_that_is_hit_beside_its_middle_turns(run, figure):
 
 @pytest.mark.parametrize("sets, words", [
     ({"boundary": [{"set": "x-", "component": "x", "velocity": 0}]}, "elements with nodes that are tied to a body have others whose motion `boundary` prescribes"),
+    ({"bodies": [{**HEAD, "tied_where": "nz > 2"}]}, "bodies[0]: no face of the surface is in it, where: nz > 2"),
+    ({"bodies": [{**FREE, "shape": "sphere", "radius": 1e-3, "tied_until": 1e-6}]}, "bodies[0].tied_until: not used: nothing is tied to it"),
     ({"bodies": [HEAD, {**HEAD, "name": "other", "tied": ["x-"]}]}, "elements with nodes that are tied to two bodies")])
 def test_ties_that_contradict_are_refused(scratch, sets, words):
     process = launch("check", CASES / "bounce.yaml", *overrides({**TUMBLING, **sets}))

@@ -154,7 +154,7 @@ STATEFUL = {  # what has state of its own: bodies, free and prescribed; a materi
     "bounce": {"time.end": 1.5e-6, "bodies": [
         {"name": "ball", "shape": "sphere", "motion": "free", "at": [0.1e-3, 0, 1e-3], "radius": 1e-3, "density": 8000, "velocity": {"z": -20}},
         {"name": "rod", "shape": "cylinder", "motion": "free", "at": [0.3e-3, 0, -3e-3], "axis": [1, 0, 0.1], "radius": 1e-3, "density": 8000,
-         "length": 3e-3, "spin": {"x": 1e4, "y": 2e3}, "tied": ["z-"], "faces": ["y-"]}]},
+         "length": 3e-3, "spin": {"x": 1e4, "y": 2e3}, "tied": ["z-"], "tied_until": 1.2e-6, "faces": ["y-"]}]},
     "push": {"output.times": [0.4e-7, 1.1e-7], "output.fields": ["displacement"]},
     "ceramic": {"time.end": 4.5e-8, "output.interval": 2e-9, "output.fields": ["damage"]},
 }

@@ -95,14 +95,14 @@ static step take(rg_solver *s) {
         of.before[i] = motion_of(&b->body[i]);
     }
     for (size_t t = 0; t < s->domain->tiles; t++) {
-        rg_ties_gather(s->ties, t, s->velocity);
+        rg_ties_gather(s->ties, t, TIME, s->velocity);
     }
-    rg_ties_close(s->ties);
+    rg_ties_close(s->ties, TIME);
     rg_bodies_sum(b);
     rg_bodies_kick(b, TIME, DT_LAST, DT);
     for (size_t t = 0; t < s->domain->tiles; t++) {
-        rg_ties_kick(s->ties, t, DT_LAST, DT, s->velocity, s->step_velocity);
-        rg_ties_drift(s->ties, t, DT, s->u);
+        rg_ties_kick(s->ties, t, TIME, DT_LAST, DT, s->velocity, s->step_velocity);
+        rg_ties_drift(s->ties, t, TIME, DT, s->u);
     }
     rg_bodies_drift(b, DT);
     for (int i = 0; i < 2; i++) {
