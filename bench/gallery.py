@@ -13,6 +13,7 @@ know, so that a wrong value shows as one.
 """
 
 import dataclasses
+import functools
 import hashlib
 import html
 import importlib.util
@@ -92,6 +93,36 @@ def rayleigh_speed(material):
         middle = (low + high) / 2
         low, high = (middle, high) if rayleigh(middle) > 0 else (low, middle)
     return low
+
+
+def moving_crack_share(material, v):
+    """G of a crack in mode I that runs at v, over that of one at rest under the same load: g = A k^2 (Freund 1990, 5.3 and 6.4),
+    which is 1 - v/c_R only nearly. A = v^2 a_d/((1 - nu) c_s^2 D), D = 4 a_d a_s - (1 + a_s^2)^2, a^2 = 1 - (v/c)^2;
+    k = (1 - v/c_R)/sqrt(1 - v/c_d) times what the factors of Rayleigh's function give, an integral over slownesses."""
+    if v == 0:
+        return 1.0
+    cd, cs = material.dilatational_speed, material.shear_speed
+    ad, as_ = math.sqrt(1 - (v / cd) ** 2), math.sqrt(1 - (v / cs) ** 2)
+    universal = v**2 * ad / ((1 - material.poisson) * cs**2 * (4 * ad * as_ - (1 + as_**2) ** 2))
+    fast, slow = 1 / cd, 1 / cs
+    angle = (np.arange(400) + 0.5) * math.pi / 400
+    s = (fast + slow) / 2 - (slow - fast) / 2 * np.cos(angle)
+    phase = np.arctan(4 * s**2 * np.sqrt((s**2 - fast**2) * (slow**2 - s**2)) / (slow**2 - 2 * s**2) ** 2)
+    integral = np.sum(phase / (1 / v - s) * np.sin(angle)) * (slow - fast) / 2 * math.pi / 400
+    factor = (1 - v / rayleigh_speed(material)) / math.sqrt(1 - v / cd) * math.exp(integral / math.pi)
+    return universal * factor**2
+
+
+@functools.cache
+def shares_of_speeds(material):
+    speeds = rayleigh_speed(material) * np.linspace(0, 0.999, 1000)
+    return speeds, np.array([moving_crack_share(material, v) for v in speeds])
+
+
+def moving_crack_speed(material, share):
+    """The speed at which G is that share of what it is at rest."""
+    speeds, shares = shares_of_speeds(material)
+    return np.interp(-np.asarray(share), -shares, speeds)
 
 
 @dataclasses.dataclass(frozen=True)

@@ -191,6 +191,20 @@ def test_energy_spent_and_first_fracture(tmp_path):
     assert gallery.rayleigh_speed(steel) == pytest.approx(0.9274 * steel.shear_speed, rel=1e-4)  # of nu 0.3
 
 
+def test_energy_of_a_moving_crack():
+    """g(v) against a crack by boundary integral, which knows nothing of it."""
+    moving, setup = gallery.load("moving-crack"), gallery.load("moving-crack").runs(False)["run"]
+    case, glass = setup.case, rhegma.one_material(setup.case, "a crack")
+    other = moving.boundary_integral().run(glass, moving.TENSION, float(case["interface"]["strength"]),
+                                           float(case["interface"]["energy"]), 6e-6, 2e-4, 0.08)
+    for span in ((3e-6, 4e-6), (4e-6, 5e-6), (4e-6, 6e-6)):
+        assert moving.mean_speed(*other, span) == pytest.approx(np.mean(moving.speed(case, np.linspace(*span, 201))), rel=0.02)
+    rayleigh = gallery.rayleigh_speed(glass)
+    assert gallery.moving_crack_share(glass, 0) == 1 and gallery.moving_crack_share(glass, 0.9999 * rayleigh) < 2e-4
+    assert gallery.moving_crack_share(glass, 1e-3 * rayleigh) == pytest.approx(1, abs=2e-3)
+    assert gallery.moving_crack_share(glass, gallery.moving_crack_speed(glass, 0.3)) == pytest.approx(0.3, rel=1e-4)
+
+
 def test_cases_of_the_gallery():
     """Each can be loaded, and says what it runs, from files that are there; the gallery of examples tells the command."""
     assert gallery.names()
