@@ -157,11 +157,40 @@ static void test_neighbours(void) {
            "scales by the height of elements");
 }
 
+/* Pairs that rank 0 finds of two faces that face each other, a little apart, moved by `away` along x, the
+ * second one stretched `stretched` times. */
+static size_t pairs_of_two(double away, double stretched) {
+    static const double low[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0}, high[9] = {0, 0, 0.1, 0, 1, 0.1, 1, 0, 0.1};
+    rg_exposed_face f[2] = {at(4, low), at(8, high)};
+    for (int k = 0; k < 9; k++) {
+        f[0].rest[k] += 100; /* nothing is shared undeformed */
+        f[1].corner[k] *= k % 3 < 2 ? stretched : 1;
+        for (int i = 0; i < 2; i++) {
+            f[i].corner[k] += k % 3 == 0 ? away : 0;
+            f[i].row = i;
+        }
+    }
+    size_t pairs;
+    rg_free(rg_search_pairs(&by, f, rank == 0 ? 2 : 0, &pairs, MPI_COMM_WORLD));
+    return rank == 0 ? pairs : 0;
+}
+
+/* The grid of cells ends 2^20 of them from the origin. */
+static void test_lost_faces(void) {
+    report(pairs_of_two(0, 1) == (rank == 0) && pairs_of_two(1e5, 1) == (rank == 0), "search",
+           "finds two faces");
+    report(pairs_of_two(1e8, 1) == 0 && pairs_of_two(-1e8, 1) == 0 && pairs_of_two(NAN, 1) == 0, "search",
+           "leaves out what is nowhere near");
+    report(pairs_of_two(0, 9.9) == (rank == 0) && pairs_of_two(0, 10.1) == 0, "search",
+           "leaves out torn faces");
+}
+
 int main(int argc, char **argv) {
     MPI_Init(&argc, &argv);
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);
     MPI_Comm_size(MPI_COMM_WORLD, &ranks);
     test_all_pairs();
     test_neighbours();
+    test_lost_faces();
     return finish_with_nothing_left();
 }

@@ -712,8 +712,16 @@ static void check_body_hash(random_state *r) {
             good = noticed(r->solver, &b->seen.x[c], here) && good;
             good = noticed(r->solver, &b->seen.v[c], here) && good;
         }
+        b->turns = true;
+        for (int c = 0; c < 3; c++) {
+            good = noticed(r->solver, &b->turn.seen_spin[c], here) && good;
+        }
+        for (int k = 0; k < 4; k++) {
+            good = noticed(r->solver, &b->turn.seen_rotation[k], here) && good;
+        }
+        b->turns = false;
     }
-    report(good, "hash", "every place and velocity of bodies");
+    report(good, "hash", "every place, velocity, rotation and spin of bodies");
     rg_body_seen kept = r->solver->bodies->body[0].seen;
     uint64_t before = rg_state_hash(r->solver);
     r->solver->bodies->body[0].seen = r->solver->bodies->body[1].seen;

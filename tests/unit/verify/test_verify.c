@@ -13,7 +13,7 @@
 #include "domain/element.h"
 #include "quadrature.h"
 #include "verify/check.h"
-#include "support/tap.h"
+#include "support/tap_memory.h"
 
 /* ---- rows ---- */
 
@@ -491,5 +491,5 @@ int main(int argc, char **argv) {
         once = once && times_told[i] == 1;
     }
     report(once, "all checks", "tell each row once");
-    return finish();
+    return finish_with_nothing_left();
 }
