@@ -490,7 +490,7 @@ static const rg_key body_keys[] = {
     BODY_SPIN("spin.x", 0, "angular velocity about x: of a free body that turns at the start, of a prescribed one at all times"),
     BODY_SPIN("spin.y", 1, "about y"),
     BODY_SPIN("spin.z", 2, "about z"),
-    {.name = "faces", .type = RG_KEY_TEXTS, .choice = box_sets, ELSE("all on the surface"), BODY(set),
+    {.name = "faces", .type = RG_KEY_TEXTS, .choice = box_sets, ELSE("all on the surface; with contact.model general also those that crack open"), BODY(set),
      .offset_count = offsetof(rg_body_input, sets), MEANS("sets of faces that may touch it")},
     {.name = "tied", .type = RG_KEY_TEXTS, .choice = box_sets, ELSE("none"), BODY(tied),
      .offset_count = offsetof(rg_body_input, ties), MEANS("sets of faces that move and turn with it: their forces and moments are the body's")},

@@ -244,7 +244,7 @@ static void sum_up(rg_solver *s, rg_exact_sum *sum, rg_peak *unresolved) {
             rg_tile_receive(s, &d->tile[t], w);
             element_energies(s, &d->tile[t], w, energy, change, mine);
             interface_energies(s, &d->tile[t], w, energy, mine, &peak);
-            rg_bodies_energy(s->bodies, t, s->u, &mine[INTERFACE + RG_E_CONTACT]);
+            rg_bodies_energy(s->bodies, t, s->u, s->body_clear, &mine[INTERFACE + RG_E_CONTACT]);
             rg_loads_energy(s->loads, t, s->u, &mine[FOUNDATION], &mine[BRIEF]);
             if (s->contacts != NULL) {
                 rg_contacts_energy(s->contacts, t, &mine[INTERFACE + RG_E_CONTACT]);

@@ -9,6 +9,7 @@
 #include "base/mem.h"
 #include "base/first_bad.h"
 #include "base/vector.h"
+#include "contact/contact.h"
 #include "partition/material.h"
 #include "solver/initial.h"
 #include "domain/element.h"
@@ -81,29 +82,46 @@ static bool *touching_groups(const rg_case *c, const rg_part *part, int i, MPI_C
     return touching;
 }
 
+/* 2 * interface + side of a face that has been exposed; -1 of others. */
+static int64_t born_as(const rg_domain *d, const rg_tile *t, const uint8_t *exposed, size_t slot, int face) {
+    int32_t link = d->interface[rg_link_index(slot, face)];
+    if (exposed == NULL || d->id[slot] < 0 || link < 0) {
+        return -1;
+    }
+    size_t i = t->ibegin * RG_LANES + (size_t)link / 4;
+    return exposed[i] >= RG_EXPOSED ? (int64_t)(2 * i) + link % 2 : -1;
+}
+
+static rg_contact_face face_of(const rg_bodies *b, size_t slot, int face, int body, int64_t born) {
+    const rg_domain *d = b->surface.domain;
+    double normal[3], area = rg_surface_area(d->corner + 12 * slot, face, normal);
+    double modulus = rg_material_modulus(&b->surface.material[d->material[slot / RG_LANES]]);
+    double kappa = b->body[body].input->penalty * modulus / rg_surface_height(d, slot, face);
+    return (rg_contact_face){.slot = (rg_lid)slot,
+                             .face = (int8_t)face,
+                             .body = (int16_t)body,
+                             .born = born,
+                             .stiffness = kappa * area};
+}
+
 /* Visits the faces of a tile that may touch a body, in an order that follows from the mesh: counts them and,
  * with room for them, lists them. */
-static size_t list_faces(rg_bodies *b, bool *const touching[], size_t tile, rg_contact_face *out) {
+static size_t list_faces(const rg_bodies *b, const uint8_t *exposed, size_t tile, rg_contact_face *out) {
     const rg_domain *d = b->surface.domain;
     size_t count = 0;
     for (size_t slot = d->tile[tile].begin * RG_LANES; slot < d->tile[tile].end * RG_LANES; slot++) {
         for (int k = 0; k < RG_FACES * b->count; k++) {
             int face = k / b->count, body = k % b->count, group = d->set[4 * slot + (size_t)face];
-            bool may = b->body[body].input->shape != RG_SHAPE_NONE &&
-                       (touching[body] == NULL || (group >= 0 && touching[body][group]));
-            if (!may || !rg_surface_has(d, slot, face)) {
+            const bool *touching = b->touching[body];
+            bool surface = rg_surface_has(d, slot, face);
+            int64_t born = surface ? -1 : born_as(d, &d->tile[tile], exposed, slot, face);
+            bool may =
+                surface ? touching == NULL || (group >= 0 && touching[group]) : born >= 0 && touching == NULL;
+            if (!may || b->body[body].input->shape == RG_SHAPE_NONE) {
                 continue;
             }
             if (out != NULL) {
-                double normal[3];
-                const rg_material *m = &b->surface.material[d->material[slot / RG_LANES]];
-                double modulus = rg_material_modulus(m);
-                double kappa = b->body[body].input->penalty * modulus / rg_surface_height(d, slot, face);
-                out[count] = (rg_contact_face){
-                    .slot = (rg_lid)slot,
-                    .face = (int8_t)face,
-                    .body = (int16_t)body,
-                    .stiffness = kappa * rg_surface_area(d->corner + 12 * slot, face, normal)};
+                out[count] = face_of(b, slot, face, body, born);
             }
             count++;
         }
@@ -111,22 +129,19 @@ static size_t list_faces(rg_bodies *b, bool *const touching[], size_t tile, rg_c
     return count;
 }
 
-static void find_faces(rg_bodies *b, const rg_case *c, const rg_part *part) {
-    bool **touching = RG_NEW(bool *, (size_t)b->count);
-    for (int i = 0; i < b->count; i++) {
-        touching[i] = touching_groups(c, part, i, b->comm);
+void rg_bodies_expose(rg_bodies *b, const uint8_t *exposed) {
+    size_t tiles = b->surface.domain->tiles;
+    if (b->count == 0) {
+        return;
     }
-    for (size_t t = 0; t < b->surface.domain->tiles; t++) {
-        b->tile_begin[t + 1] = b->tile_begin[t] + list_faces(b, touching, t, NULL);
+    rg_free(b->face);
+    for (size_t t = 0; t < tiles; t++) {
+        b->tile_begin[t + 1] = b->tile_begin[t] + list_faces(b, exposed, t, NULL);
     }
-    b->face = RG_NEW(rg_contact_face, b->tile_begin[b->surface.domain->tiles] + 1);
-    for (size_t t = 0; t < b->surface.domain->tiles; t++) {
-        list_faces(b, touching, t, b->face + b->tile_begin[t]);
+    b->face = RG_NEW(rg_contact_face, b->tile_begin[tiles] + 1);
+    for (size_t t = 0; t < tiles; t++) {
+        list_faces(b, exposed, t, b->face + b->tile_begin[t]);
     }
-    for (int i = 0; i < b->count; i++) {
-        rg_free(touching[i]);
-    }
-    rg_free(touching);
 }
 
 /* ---- Time step ---- */
@@ -166,20 +181,19 @@ static double face_eigenvalue(const rg_bodies *b) {
 
 /* Largest squared frequency of an element whose faces are all pressed, held by nothing else. */
 static double element_omega2(const rg_bodies *b) {
-    double largest = 0, eigenvalue = face_eigenvalue(b), sum = 0;
+    double largest = 0, sum = 0;
     size_t faces = b->tile_begin[b->surface.domain->tiles];
     for (size_t i = 0; i < faces; i++) {
         const rg_contact_face *f = &b->face[i];
         bool same = i > 0 && f->slot == f[-1].slot;
         double mass = rg_element_mass(b->surface.domain, b->surface.material, (size_t)f->slot);
-        sum = (same ? sum : 0) + eigenvalue * f->stiffness / mass;
+        sum = (same ? sum : 0) + b->eigenvalue * f->stiffness / mass;
         largest = fmax(largest, sum);
     }
     return largest;
 }
 
-/* Square of the largest lever of forces that press a face, about a body's centre, at the start. */
-static double lever2(const rg_bodies *b, const rg_contact_face *f) {
+double rg_body_lever2(const rg_bodies *b, const rg_contact_face *f) {
     const rg_body *body = &b->body[f->body];
     double x[RG_FNODES][3], arm[3], most = 0;
     rg_surface_place(&b->surface, (size_t)f->slot, f->face, NULL, x);
@@ -205,7 +219,7 @@ static double body_omega2(const rg_bodies *b, int body) {
         const rg_contact_face *f = &b->face[i];
         if (f->body == body) {
             rg_exact_add(&sum[0], f->stiffness);
-            rg_exact_add(&sum[1], turns ? f->stiffness * lever2(b, f) : 0);
+            rg_exact_add(&sum[1], turns ? f->stiffness * rg_body_lever2(b, f) : 0);
             double normal[3],
                 area = rg_surface_area(b->surface.domain->corner + 12 * (size_t)f->slot, f->face, normal);
             kappa = fmax(kappa, f->stiffness / area);
@@ -302,8 +316,14 @@ rg_bodies *rg_bodies_make(const rg_case *c, const rg_domain *d, const rg_part *p
     refuse_lapse(b, c);
     b->sum = RG_NEW(rg_exact_sum, (size_t)(RG_BODY_SUMS * b->count * threads));
     b->total = RG_NEW(rg_exact_sum, (size_t)(RG_BODY_SUMS * b->count));
-    find_faces(b, c, part);
+    b->tile_omega2 = RG_NEW(double, d->tiles + 1);
+    b->touching = RG_NEW(bool *, (size_t)b->count);
+    for (int i = 0; i < b->count; i++) {
+        b->touching[i] = touching_groups(c, part, i, comm);
+    }
+    rg_bodies_expose(b, NULL);
     refuse_overlap(b, c, &part->volume);
+    b->eigenvalue = face_eigenvalue(b);
     b->omega2 = contact_omega2(b);
     return b;
 }
@@ -312,7 +332,10 @@ void rg_bodies_free(rg_bodies *b) {
     if (b == NULL) {
         return;
     }
-    void *blocks[] = {b->body, b->tile_begin, b->face, b->sum, b->total, b};
+    for (int i = 0; i < b->count; i++) {
+        rg_free(b->touching[i]);
+    }
+    void *blocks[] = {b->body, b->tile_begin, b->face, b->touching, b->tile_omega2, b->sum, b->total, b};
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) {
         rg_free(blocks[i]);
     }

@@ -5,7 +5,9 @@
  * Contact is a penalty on penetration, with one potential: the integral over the outer faces of
  *     (kappa/2) <g>^2,    kappa = penalty (lambda + 2 mu)/h,
  * g the depth of a point below the body's surface, h the height of the element over the face: the stiffness
- * with which interfaces hold together (solver/surface.h: the integral).
+ * with which interfaces hold together (solver/surface.h: the integral). With contact between fragments
+ * (contact/contact.h) faces that are exposed in the run have it too, each from when it has been outside all
+ * bodies: so nothing jumps. What they add to the frequency counts from when they are pressed.
  *
  * Every rank knows all bodies and moves them alike: the force on a body is an exact sum over faces
  * (base/exact_sum.h), sent for under the tile-boundary faces and needed when the step ends. Bodies kick and
@@ -28,7 +30,7 @@
 #include "solver/state.h"
 #include "solver/surface.h"
 
-enum { RG_BODY_SUMS = 6 };
+enum { RG_BODY_FORCE, RG_BODY_MOMENT = 3, RG_BODY_BORN = 6, RG_BODY_SUMS };
 
 /* A body as it was seen at a present time, between kick and drift. */
 typedef struct {
@@ -85,6 +87,7 @@ typedef struct {
     rg_lid slot;
     int8_t face;
     int16_t body;
+    int64_t born;     /* 2 * interface + side, of one exposed in the run; -1: of the surface */
     double stiffness; /* kappa times the area of the face (N/m) */
 } rg_contact_face;
 
@@ -95,9 +98,14 @@ typedef struct {
     rg_surface surface;
     size_t *tile_begin; /* faces of tile t: from tile_begin[t] on */
     rg_contact_face *face;
-    double omega2;       /* what contact adds to the largest squared frequency, at most (1/s^2) */
-    rg_exact_sum *sum;   /* [threads][count][6] force and moment on each body (N, N m) */
-    rg_exact_sum *total; /* [count][6] */
+    bool **touching;   /* [count]: groups of faces that may touch a body; NULL: all, and those exposed */
+    double eigenvalue; /* of an element of unit mass with unit stiffness on one face */
+    double omega2; /* what contact of the surface adds to the largest squared frequency, at most (1/s^2) */
+    double *tile_omega2; /* [tiles]: what that of exposed faces adds now, on elements */
+    double born_omega2;  /* and on bodies */
+    rg_exact_sum *sum;   /* [threads][count][RG_BODY_SUMS] force and moment on each body (N, N m), and what
+                            exposed faces add to its squared frequency (1/s^2) */
+    rg_exact_sum *total; /* [count][RG_BODY_SUMS] */
     MPI_Request request;
     rg_body_lapse lapse; /* the first; on all ranks the same */
 } rg_bodies;
@@ -108,6 +116,9 @@ typedef struct {
 rg_bodies *rg_bodies_make(const rg_case *c, const rg_domain *d, const rg_part *part, const rg_material *m,
                           int threads, MPI_Comm comm);
 
+/* Lists the faces anew: with those of interfaces i with exposed[i] >= RG_EXPOSED (contact/contact.h). */
+void rg_bodies_expose(rg_bodies *b, const uint8_t *exposed);
+
 /* The velocities that the case gives body i at the start. */
 void rg_bodies_begin(rg_bodies *b, int i);
 
@@ -115,11 +126,17 @@ void rg_bodies_begin(rg_bodies *b, int i);
 double rg_body_depth(const rg_body *b, const double x[3], double normal[3]);
 
 /* Forces of the bodies on the faces of a tile at displacement u: kicks the velocities and keeps account of
- * the forces for the bodies' own. Threads call it for different tiles. */
-void rg_bodies_touch(rg_bodies *b, size_t tile, const rg_real *u, const rg_push *push);
+ * the forces for the bodies' own. Bit k of clear[i]: side k of interface i, once exposed, has been outside
+ * all bodies. Threads call it for different tiles. */
+void rg_bodies_touch(rg_bodies *b, size_t tile, const rg_real *u, const rg_push *push, uint8_t *clear);
 
 /* Adds the contact energy of a tile's faces at displacement u (J) to `energy`. */
-void rg_bodies_energy(const rg_bodies *b, size_t tile, const rg_real *u, rg_exact_sum *energy);
+void rg_bodies_energy(const rg_bodies *b, size_t tile, const rg_real *u, const uint8_t *clear,
+                      rg_exact_sum *energy);
+
+/* What contact of exposed faces adds to the squared frequency of elements of this rank, when the forces were
+ * last computed. */
+double rg_bodies_omega2_now(const rg_bodies *b);
 
 /* Starts the sum of the forces over threads and ranks. One thread, once all tiles are touched. Collective. */
 void rg_bodies_sum(rg_bodies *b);
@@ -149,6 +166,9 @@ rg_bodies_account rg_bodies_take(const rg_bodies *b, double longer);
  * in the step to come. */
 void rg_body_arm(const rg_body *b, const double at_start[3], double arm[3]);
 void rg_body_sweep(const rg_body *b, const double arm[3], double moved[3]);
+
+/* Square of the largest lever of forces that press a face, about its body's centre at present (m^2). */
+double rg_body_lever2(const rg_bodies *b, const rg_contact_face *f);
 
 /* Registers what moves (solver/state.h). */
 void rg_bodies_register(rg_bodies *b, rg_state *st);

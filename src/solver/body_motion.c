@@ -232,11 +232,14 @@ void rg_bodies_sum(rg_bodies *b) {
 
 void rg_bodies_kick(rg_bodies *all, double time, double dt_last, double dt_next) {
     MPI_Wait(&all->request, MPI_STATUS_IGNORE);
+    all->born_omega2 = 0;
     for (int i = 0; i < all->count; i++) {
         rg_body *b = &all->body[i];
+        all->born_omega2 =
+            fmax(all->born_omega2, rg_exact_value(&all->total[RG_BODY_SUMS * i + RG_BODY_BORN]));
         for (int c = 0; c < 3; c++) {
-            b->seen.force[c] = rg_exact_value(&all->total[RG_BODY_SUMS * i + c]);
-            b->turn.moment[c] = rg_exact_value(&all->total[RG_BODY_SUMS * i + 3 + c]);
+            b->seen.force[c] = rg_exact_value(&all->total[RG_BODY_SUMS * i + RG_BODY_FORCE + c]);
+            b->turn.moment[c] = rg_exact_value(&all->total[RG_BODY_SUMS * i + RG_BODY_MOMENT + c]);
         }
         memcpy(b->seen.x, b->x, sizeof b->seen.x);
         memcpy(b->turn.seen_rotation, b->turn.rotation, sizeof b->turn.rotation);

@@ -35,6 +35,9 @@
     X(exposed, BYTE, FACE, 1, s->input->contact.model == RG_CONTACT_GENERAL, "exposed")                      \
     X(contact_sunk, REAL, FACE, 2, s->input->contact.model == RG_CONTACT_GENERAL, "contact_sunk")            \
     X(contact_impulse, DOUBLE, ELEMENT, 1, s->input->contact.model == RG_CONTACT_GENERAL, "contact_impulse") \
+    /* sides of exposed interfaces that have been outside all bodies since, as bits */                       \
+    X(body_clear, BYTE, FACE, 1, s->input->contact.model == RG_CONTACT_GENERAL && s->input->bodies > 0,      \
+      "body_clear")                                                                                          \
     /* half of what friction took of its pairs (J) */                                                        \
     X(contact_heat, DOUBLE, ELEMENT, 1, rg_case_rubs(s->input), "contact_heat")                              \
     /* tangent over the undeformed one, at most (1): of elements, of tiles */                                \

@@ -76,7 +76,7 @@ static void tile_kick(rg_solver *s, size_t tile, const rg_workspace *w, const im
 static void push(rg_solver *s, size_t tile, const impulse *p) {
     rg_push k = {p->dt, 0.5 * s->dt, p->velocity, step_velocity_of(s, tile, p)};
     rg_loads_push(s->loads, tile, &k);
-    rg_bodies_touch(s->bodies, tile, s->u, &k);
+    rg_bodies_touch(s->bodies, tile, s->u, &k, s->body_clear);
 }
 
 /* Largest value; not a number if one is not (a maximum forgets it). */
@@ -300,7 +300,8 @@ static void start_stiffening(rg_solver *s) {
         s->stepper->here[2] = s->contacts != NULL ? rg_contacts_moved(s->contacts) : 0;
         s->stepper->here[3] = s->stepper->separated;
         s->stepper->here[4] = s->contacts != NULL ? rg_contacts_omega2_now(s->contacts) : 0;
-        MPI_Iallreduce(s->stepper->here, s->stepper->anywhere, 5, MPI_DOUBLE, MPI_MAX, s->comm,
+        s->stepper->here[5] = s->contacts != NULL ? rg_bodies_omega2_now(s->bodies) : 0;
+        MPI_Iallreduce(s->stepper->here, s->stepper->anywhere, RG_STEP_MOSTS, MPI_DOUBLE, MPI_MAX, s->comm,
                        &s->stepper->stiffening_request);
     }
     mark(s, RG_PHASE_REDUCE);
@@ -390,7 +391,9 @@ static void finish_tied(rg_solver *s, const impulse *p) {
 /* With what contact between fragments adds: the most it has so far. A step that came and went with each touch
  * would cost energy at every change. */
 static double stiffened(rg_solver *s, double stiffening) {
-    s->contact_omega2 = fmax(s->contact_omega2, s->stepper->anywhere[4]);
+    double bodies = s->contacts != NULL ? s->stepper->anywhere[5] + s->bodies->born_omega2 : 0;
+    double now = s->stepper->anywhere[4] + bodies;
+    s->contact_omega2 = fmax(s->contact_omega2, now);
     return s->contact_omega2 > 0 ? fmax(stiffening, 1) + s->contact_omega2 / s->omega2 : stiffening;
 }
 
@@ -435,7 +438,6 @@ static void evaluate(rg_solver *s, const impulse *whole) {
     }
     MPI_Wait(&s->stepper->stiffening_request, MPI_STATUS_IGNORE);
     finish_meeting(s);
-    s->stiffening_anywhere = stiffened(s, s->stepper->anywhere[0]);
     s->stop_request = (int)s->stepper->anywhere[1];
     if (s->tile_opening_rate != NULL && p->constrain) {
         rg_step_limiter_agree(s);
@@ -446,6 +448,7 @@ static void evaluate(rg_solver *s, const impulse *whole) {
         }
         rg_account_close(s->account);
     }
+    s->stiffening_anywhere = stiffened(s, s->stepper->anywhere[0]);
     rg_phases_mark(&s->phases, RG_PHASE_REDUCE);
 }
 
@@ -506,6 +509,7 @@ static void start_contacts(rg_solver *s) {
     rg_exposure_mark(s);
     rg_exposure_take(s);
     rg_exposure_settle(s);
+    rg_bodies_expose(s->bodies, s->exposed);
     rg_contacts_search(s->contacts, s->exposed, s->u);
     publish(s);
     rg_halo_finish(rg_contacts_halo(s->contacts));
@@ -551,6 +555,7 @@ void rg_solver_resume(rg_solver *s) {
     }
     if (s->contacts != NULL) {
         s->stepper->separated = memchr(s->exposed, RG_SEPARATED, d->iblocks * RG_LANES) != NULL;
+        rg_bodies_expose(s->bodies, s->exposed);
         rg_contacts_search(s->contacts, s->exposed, s->u);
     }
     publish(s);
@@ -580,6 +585,7 @@ static void search_contacts(rg_solver *s, bool exposed) {
         rg_contacts_meet(s->contacts, s->kernels, false);
         rg_contacts_sink(s->contacts, s->exposed, s->contact_sunk);
         rg_exposure_settle(s);
+        rg_bodies_expose(s->bodies, s->exposed);
         publish(s);
     }
 }

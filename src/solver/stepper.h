@@ -5,14 +5,17 @@
 
 #include "solver/solver.h"
 
+enum { RG_STEP_MOSTS = 6 };
+
 struct rg_stepper {
     rg_material *material;        /* [materials], readied for the step that led here */
     rg_real *rows[2], *tractions; /* trace rows, of the current state and of the next; traction rows */
     int current;                  /* which of `rows` */
     rg_halo *halo_u[2], *halo_t;  /* of `rows` and `tractions` */
     /* Stiffening, stop request, way that faces in contact have moved (contact/contact.h), 1 where faces have
-     * separated, and what contact adds to the squared frequency: of this rank, of all; both on their way. */
-    double here[5], anywhere[5];
+     * separated, and what contact adds to the squared frequency, of fragments and of faces that opened with
+     * bodies: of this rank, of all; both on their way. */
+    double here[RG_STEP_MOSTS], anywhere[RG_STEP_MOSTS];
     MPI_Request stiffening_request; /* of these */
     bool separated;                 /* some faces have, and wait to be exposed */
     int64_t touching, touching_anywhere;

@@ -206,7 +206,7 @@ static stored_parts stored_energies(const random_state *r) {
 static double body_energy(const rg_solver *s) {
     rg_exact_sum sum = {0};
     for (size_t t = 0; t < s->domain->tiles; t++) {
-        rg_bodies_energy(s->bodies, t, s->u, &sum);
+        rg_bodies_energy(s->bodies, t, s->u, NULL, &sum);
     }
     return total(rg_exact_value(&sum));
 }
