@@ -19,6 +19,7 @@
 #include "material_command.h"
 #include "materials_command.h"
 #include "mesh_command.h"
+#include "partition/mesh_case.h"
 #include "revision.h"
 #include "run.h"
 #include "usage.h"
@@ -142,6 +143,9 @@ static rg_case *read_case(const arguments *a, int rank) {
     rg_free(text);
     if (rank != 0) {
         fclose(errors);
+    }
+    if (c != NULL) {
+        rg_case_take_crack(c, MPI_COMM_WORLD);
     }
     return c;
 }

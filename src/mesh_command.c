@@ -16,6 +16,7 @@
 #include "case/read.h"
 #include "mesh/apart.h"
 #include "mesh/check.h"
+#include "mesh/import/crack.h"
 #include "mesh/file.h"
 #include "mesh/import/convert.h"
 #include "mesh/import/inp_read.h"
@@ -34,6 +35,7 @@ static const char usage[] =
     "         --merge D       nodes as near as D (in the unit of IN) to one another become one\n"
     "         --apart         parts that share no node stay apart where they touch: contact acts between "
     "them\n"
+    "         --crack NAME    faces that lie on each other with nodes of their own are a crack, set NAME\n"
     "         --extrude T[,N] a flat mesh of triangles becomes a plate of thickness T (in the unit of IN), "
     "in\n"
     "                         N layers; its edges are faces then, and there are sets bottom and top\n"
@@ -133,6 +135,8 @@ static void read_option(rg_mesh_arguments *a, const char *option, const char *va
         a->unit = value;
     } else if (strcmp(option, "--merge") == 0) {
         a->how.merge = read_number(option, value);
+    } else if (strcmp(option, "--crack") == 0) {
+        a->crack = value;
     } else if (strcmp(option, "--extrude") == 0) {
         read_extrusion(a, value);
     } else if (strcmp(option, "--size") == 0) {
@@ -180,6 +184,7 @@ static const char *import_option(const rg_mesh_arguments *a) {
            : a->how.split         ? "--split"
            : a->how.thickness > 0 ? "--extrude"
            : a->apart             ? "--apart"
+           : a->crack != NULL     ? "--crack"
            : a->how.merge > 0     ? "--merge"
            : a->unit != NULL      ? "--unit"
            : a->how.scale > 0     ? "--scale"
@@ -280,6 +285,19 @@ static void keep_apart(rg_mesh *mesh, const char *input) {
     }
 }
 
+/* Of a part, where parts are kept apart. */
+static void take_crack(rg_mesh *mesh, const rg_mesh_arguments *a) {
+    rg_mesh_crack crack = rg_mesh_take_crack(mesh, a->crack);
+    if (crack.faces == 0) {
+        rg_fatal(RG_USAGE, "%s: --crack %s: no two faces lie on each other with nodes of their own", a->input,
+                 a->crack);
+    }
+    printf("%s: crack '%s': %" PRId64
+           " faces, %.4g m2 around (%.4g, %.4g, %.4g) m, open from the start unless "
+           "interface.sets names it\n",
+           a->input, a->crack, crack.faces, crack.area, crack.place[0], crack.place[1], crack.place[2]);
+}
+
 static void tell_touches(const rg_mesh *mesh, const char *input) {
     size_t count;
     rg_touch *touch = rg_mesh_touches(mesh, &count);
@@ -357,6 +375,7 @@ void rg_mesh_finish(rg_mesh *mesh, const rg_mesh_arguments *a) {
     rg_mesh_sort(mesh);
     rg_mesh_connect(mesh);
     a->apart ? keep_apart(mesh, a->input) : (void)0;
+    a->crack != NULL ? take_crack(mesh, a) : (void)0;
     rg_mesh_check(mesh, a->input);
     rg_mesh_check_overlaps(mesh, a->input);
     tell_parts(mesh, a->input);

@@ -18,6 +18,7 @@ typedef struct {
     bool improve;          /* --improve */
     int tile;              /* --tile; 0: RG_TILE */
     bool apart;            /* --apart */
+    const char *crack;     /* --crack; NULL: none */
     const char *partition; /* --partition: numbers of ranks, separated by commas */
     int overrides;
     const char **override; /* --set */

@@ -14,11 +14,11 @@ _rhegma() {
         return
         ;;
     --unit) COMPREPLY=($(compgen -W "m cm mm um nm in ft" -- "$word")) && return ;;
-    --walltime | --time | --scale | --merge | --extrude | --size | --curvature) return ;;
+    --walltime | --time | --scale | --merge | --crack | --extrude | --size | --curvature) return ;;
     esac
     case $command in
     run) options+=" --restart --overwrite --walltime" ;;
-    mesh) options="-o --unit --scale --merge --apart --extrude --split --size --curvature --improve --tile --set --info --case --partition --help" ;;
+    mesh) options="-o --unit --scale --merge --apart --crack --extrude --split --size --curvature --improve --tile --set --info --case --partition --help" ;;
     keys) options="--markdown --schema --help" ;;
     export) options="-o --time --crack --help" ;;
     material) options="-o --isa --help" ;;

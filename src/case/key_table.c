@@ -363,7 +363,7 @@ static const rg_key face_set_keys[] = {
     {.name = "law", EXPLAINED(breakings), ELSE("interface"), .offset = offsetof(rg_face_set, breaking),
      MEANS("whether they can break")},
     {.name = "open", .type = RG_KEY_BOOL, ELSE("false"), .offset = offsetof(rg_face_set, open),
-     MEANS("true: a crack from the start, whose faces press and rub where they are closed; nothing was dissipated there")},
+     MEANS("true: a crack from the start, whose faces press and rub where they are closed; nothing was dissipated there; so is the crack that a mesh file brings (rhegma mesh --crack), unless an entry names its set")},
     {.name = "at", .unit = "s", REAL, ABOVE(0), ELSE("the start"), .offset = offsetof(rg_face_set, opens_at),
      MEANS("the open faces hold, whatever pulls at them, and open at the first step from this time on; what the crack's DG terms stored is booked as `unresolved`")},
     {.name = "strength", .unit = "Pa", FACE, ABOVE(0), ELSE("interface.strength"), OF_SET(strength),

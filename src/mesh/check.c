@@ -148,9 +148,10 @@ static rg_gid element_of(const rg_mesh *mesh, rg_gid vertex) {
 
 const char *rg_mesh_open_words(bool apart) {
     return apart
-               ? "the mesh is open there, inside one of its parts; --merge D joins nodes that coincide"
-               : "the mesh is open there; rhegma mesh joins nodes that coincide by --merge D, or keeps parts "
-                 "apart by --apart";
+               ? "the mesh is open there, inside one of its parts; rhegma mesh joins nodes that coincide by "
+                 "--merge D, or takes faces that lie on each other for a crack by --crack NAME"
+               : "the mesh is open there; rhegma mesh joins nodes that coincide by --merge D, keeps parts "
+                 "apart by --apart, or takes faces that lie on each other for a crack by --crack NAME";
 }
 
 /* twin[v]: the lowest vertex at the place of v, below v; -1 if there is none. */

@@ -318,7 +318,8 @@ static void read_header(rg_mesh_file *f) {
     }
     if (version > 3) {
         int64_t all = h->elements < INT32_MAX ? h->elements : INT32_MAX;
-        h->parts = (int32_t)read_count(f, "parts", 1, all);
+        h->parts = (int32_t)read_count(f, "parts", 0, all);
+        h->crack = (int32_t)read_count(f, "crack", 0, h->surface.count);
     }
     check_datasets(f);
 }
@@ -768,6 +769,7 @@ static rg_mesh *adopt(rg_mesh_slab *slab, double *x, rg_mesh_header *h) {
                       .original = slab->original,
                       .region = slab->region,
                       .part = slab->part,
+                      .crack = h->crack,
                       .volume = h->volume};
     h->surface = h->volume = (rg_sets){.count = 0};
     rg_free(slab->vertex);

@@ -16,10 +16,12 @@
  *   surface_combinations  [rows][2] number of a combination, from 0 on, and one of the sets that it is of,
  * both volume_combinations   ascending (mesh/sets.h)
  *
- * and only from version 4 on, which is for parts that are kept apart although they touch (mesh/apart.h),
+ * and only from version 4 on, which is for parts that are kept apart although they touch (mesh/apart.h), and
+ * for cracks (mesh/import/crack.h),
  *
- *   attribute       parts: how many there are
- *   part            [elements] which one an element is of
+ *   attributes      parts: how many there are, 0 if none are kept apart; crack: 1 + the surface set whose
+ *                   faces between elements are open from the start, 0: none
+ *   part            [elements] which one an element is of; not there if none are kept apart
  *
  *   corner          [elements][4] vertices, ascending; face f of an element is the one opposite corner f
  *   neighbour       [elements][4] element across face f; -1 on the surface
@@ -71,6 +73,7 @@ typedef struct {
     double box[2][3]; /* m */
     rg_sets surface, volume;
     int32_t parts; /* that are kept apart; 0: none are */
+    int32_t crack; /* 1 + surface set; 0: none */
 } rg_mesh_header;
 
 typedef struct {

@@ -178,8 +178,9 @@ static void put_header(const target *w, const rg_mesh *mesh) {
                   {"volume_sets", mesh->volume.count},
                   {"surface_combinations", combined_rows(&mesh->surface)},
                   {"volume_combinations", combined_rows(&mesh->volume)},
-                  {"parts", rg_mesh_apart(mesh)}};
-    size_t known = sizeof counts / sizeof *counts - (w->version == 1 ? 3 : w->version < 4 ? 1 : 0);
+                  {"parts", rg_mesh_apart(mesh)},
+                  {"crack", mesh->crack}};
+    size_t known = sizeof counts / sizeof *counts - (w->version == 1 ? 4 : w->version < 4 ? 2 : 0);
     for (size_t i = 0; i < known; i++) {
         put_attribute(w, counts[i].name, H5T_NATIVE_INT64, 1, &counts[i].value);
     }
@@ -366,7 +367,7 @@ void rg_mesh_file_add_partitions(const char *path, int partitions, const rg_tile
 }
 
 static int64_t version_of(const rg_mesh *mesh) {
-    if (mesh->part != NULL) {
+    if (mesh->part != NULL || mesh->crack > 0) {
         return 4;
     }
     for (rg_gid slot = 0; slot < 4 * mesh->elements; slot++) {

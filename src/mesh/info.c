@@ -207,6 +207,9 @@ static void print_sets(const rg_mesh *mesh, FILE *out) {
         fprintf(out, "surface set    %s: %" PRId64 " faces", mesh->surface.name[s], sides[s] - 2 * inside[s]);
         inside[s] > 0 ? fprintf(out, ", and %" PRId64 " between elements\n", inside[s]) : fputc('\n', out);
     }
+    if (mesh->crack > 0) {
+        fprintf(out, "crack          %s: open from the start\n", mesh->surface.name[mesh->crack - 1]);
+    }
     fprintf(out, "               in no surface set: %" PRId64 " faces\n", free_faces);
     for (int32_t s = 0; s < mesh->volume.count; s++) {
         fprintf(out, "volume set     %s: %" PRId64 " elements\n", mesh->volume.name[s], elements[s]);

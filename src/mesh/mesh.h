@@ -27,6 +27,8 @@ typedef struct {
     rg_gid *original; /* [elements]: numbers that the elements had in the input; NULL: as here */
     int32_t *region;  /* [elements]: group among `volume`; -1 for none; NULL: none at all */
     rg_sets volume;   /* named sets of elements */
+    int32_t
+        crack; /* 1 + set of faces inside that are a crack from the start (mesh/import/crack.h); 0: none */
     int32_t *part; /* [elements]: parts that are kept apart although they touch (mesh/apart.h); NULL: none */
     rg_gid *inner; /* [inners][3]: vertices, ascending, of faces inside that the input has: an import only */
     size_t inners;

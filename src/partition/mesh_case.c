@@ -41,6 +41,72 @@ static void check_sets(const rg_case *c) {
     rg_mesh_file_close(f);
 }
 
+/* The name of the crack's set, which the caller frees; NULL: there is none. */
+static char *crack_of(const char *path) {
+    rg_mesh_file *f = rg_mesh_file_open(path);
+    const rg_mesh_header *h = rg_mesh_file_header(f);
+    char *name = NULL;
+    if (h->crack > 0) {
+        const char *from = h->surface.name[h->crack - 1];
+        name = strcpy(RG_NEW(char, strlen(from) + 1), from);
+    }
+    rg_mesh_file_close(f);
+    return name;
+}
+
+static char *share_name(char *name, int rank, MPI_Comm comm) {
+    int length = name != NULL ? (int)strlen(name) + 1 : 0;
+    MPI_Bcast(&length, 1, MPI_INT, 0, comm);
+    if (length > 0) {
+        name = rank == 0 ? name : RG_NEW(char, (size_t)length);
+        MPI_Bcast(name, length, MPI_CHAR, 0, comm);
+    }
+    return name;
+}
+
+/* Why a case cannot have faces that are open from the start, as the rules for interface.sets and start say it
+ * of those that it names; NULL: it can. */
+static const char *refuse_crack(const rg_case *c) {
+    return c->interface.law == RG_LAW_NONE || c->interface.law == RG_LAW_FREE
+               ? "needs a law of interfaces that ends (law: none in interface.sets keeps all other faces "
+                 "whole)"
+           : c->interface.form == RG_FORM_CONTINUOUS && c->interface.faces == NULL
+               ? "needs interface.faces, which select it, in form continuous"
+           : c->start == RG_START_STATIC && c->interface.friction > 0
+               ? "needs interface.friction 0 with start: static: where it sticks would depend on the way"
+               : NULL;
+}
+
+void rg_case_take_crack(rg_case *c, MPI_Comm comm) {
+    int rank;
+    MPI_Comm_rank(comm, &rank);
+    char *name =
+        c->mesh.file == NULL ? NULL : share_name(rank == 0 ? crack_of(c->mesh.file) : NULL, rank, comm);
+    bool named = name == NULL;
+    for (int i = 0; i < c->interface.sets && !named; i++) {
+        named = c->interface.set[i].set != NULL && strcmp(c->interface.set[i].set, name) == 0;
+    }
+    const char *wrong = named ? NULL : refuse_crack(c);
+    if (wrong != NULL) {
+        rg_speak(comm);
+        rg_fatal(RG_USAGE, "%s: mesh.file: %s: its crack, set '%s', is open from the start, which %s",
+                 c->path, c->mesh.file, name, wrong);
+    }
+    if (named) {
+        rg_free(name);
+        return;
+    }
+    int sets = c->interface.sets;
+    rg_face_set *all = RG_NEW(rg_face_set, (size_t)sets + 1);
+    for (int i = 0; i < sets; i++) {
+        all[i] = c->interface.set[i];
+    }
+    all[sets] = (rg_face_set){.set = name, .open = true}; /* the last: what others say does not close it */
+    rg_free(c->interface.set);
+    c->interface.set = all;
+    c->interface.sets = sets + 1;
+}
+
 rg_mesh *rg_mesh_of_case(const rg_case *c) {
     if (c->mesh.file != NULL) {
         check_sets(c);

@@ -17,7 +17,7 @@
 #include "mesh/info.h"
 #include "mesh/rows.h"
 
-enum { MESHES = 3, FIELDS = 15, ATTRIBUTES = 9, CHANGE = 5, MOST_CHANGES = 16, IMAGE = 1 << 20 };
+enum { MESHES = 3, FIELDS = 15, ATTRIBUTES = 10, CHANGE = 5, MOST_CHANGES = 16, IMAGE = 1 << 20 };
 
 typedef struct {
     const rg_rows *rows;
@@ -34,9 +34,9 @@ typedef struct {
 } base;
 
 static base bases[MESHES];
-static const char *const attribute[ATTRIBUTES] = {"version",      "vertices",      "elements",
-                                                  "interfaces",   "tile_elements", "tiles",
-                                                  "surface_sets", "volume_sets",   "parts"};
+static const char *const attribute[ATTRIBUTES] = {"version",       "vertices", "elements",     "interfaces",
+                                                  "tile_elements", "tiles",    "surface_sets", "volume_sets",
+                                                  "parts",         "crack"};
 static const rg_rows partition = {"partition_2", RG_ROWS_INT32, 1};
 
 /* ---- the good files ---- */

@@ -112,7 +112,7 @@ HELP = {"": "run check export keys materials mesh verify --version --help",
         "export": "-o --time --crack .vtu .vtp .stl",
         "keys": "PREFIX --markdown --schema yaml-language-server expressions",
         "materials": "NAME material.preset",
-        "mesh": "-o --scale --unit --merge --apart --extrude --split --size --curvature --improve --tile --info --case --partition --set"}
+        "mesh": "-o --scale --unit --merge --apart --crack --extrude --split --size --curvature --improve --tile --info --case --partition --set"}
 
 
 @pytest.mark.parametrize("arguments", [["--help"], ["-h"], ["run", "--help"], ["check", "a.yaml", "-h"], ["verify", "--help"],

@@ -43,7 +43,7 @@ SETS = {
 MOVED = {"instance-moved": (10, 0, 0), "system-moved": (10, 0, 0)}
 REFUSED = {
     "two-instances": "elements 1 and 101 have different vertices at the same place (0, 0, 0) m: the mesh is open there; rhegma "
-                     "mesh joins nodes that coincide by --merge D, or keeps parts apart by --apart\n",
+                     "mesh joins nodes that coincide by --merge D, keeps parts apart by --apart, or takes faces that lie on each other for a crack by --crack NAME\n",
     "type-short": "two-words.inp:29: *ELEM is not a keyword that is known here, and might change the mesh: without it, the mesh could be "
                   "another one\n",
 }

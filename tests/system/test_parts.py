@@ -5,7 +5,7 @@ import re
 import numpy as np
 import pytest
 from conftest import launch
-from test_fragment_contact import H, HELD, SPEED, deck, material
+from test_fragment_contact import H, HELD, SPEED, YOUNG, deck, material
 from test_restart import assert_same_results, checkpoints, copy, go_on
 
 LENGTH = 30  # elements along a bar
@@ -88,7 +88,7 @@ def test_both_ways_are_offered(scratch):
     for name, boxes, what in (("match", bars(1), "different vertices at the same place"), ("hang", bars(2), "different vertices"),
                               ("shift", [bars(1)[0], ((-0.7 * H, -0.6 * H, 0), (H, H, H), (1, 1, 1))], "a hanging node")):
         said = make(scratch, name, boxes, expect=2).stderr
-        assert what in said and "rhegma mesh joins nodes that coincide by --merge D, or keeps parts apart by --apart" in said
+        assert what in said and "rhegma mesh joins nodes that coincide by --merge D, keeps parts apart by --apart, or takes faces that lie on each other for a crack by --crack NAME" in said
     make(scratch, "shift", [bars(1)[0], ((-0.7 * H, -0.6 * H, 0), (H, H, H), (1, 1, 1))], "--apart")
 
 
@@ -113,3 +113,69 @@ def test_nodes_are_merged_before_parts_are_kept_apart(scratch):
     third = ((H, -0.9 * H, 0.3 * H), (2 * H, 1.8 * H, (LENGTH - 0.5) * H), (1, 3, 3))
     said = make(scratch, "both", [*bars(1), third], "--merge", "1e-9", "--apart").stdout
     assert "parts 1 and 2 touch: 60 and 18 faces" in said and "parts 2 and 3" not in said
+
+
+# ---- Cracks of no width ----
+
+
+@pytest.fixture(scope="module")
+def notched(scratch):
+    """A block of 4 x 1 x 4 cells, split amid its height where x < 0: there the lower and the upper half have nodes of their own."""
+    size = (4 * H, H, 2 * H)
+    text = deck([((-2 * H, 0, -2 * H), size, (4, 1, 2)), ((-2 * H, 0, 0), size, (4, 1, 2))])
+    nodes, rest = text.split("*ELEMENT, TYPE=C3D4\n")
+    elements, sets = rest.split("*NSET", 1)
+    place = {int(line.split(",")[0]): tuple(map(float, line.split(",")[1:])) for line in nodes.splitlines()[1:]}
+    lower = {x: n for n, x in place.items() if n <= len(place) // 2}
+    stands_for = {n: lower[x] if x in lower and x[0] > -1e-9 * H else n for n, x in place.items()}
+    lines = [[int(word) for word in line.split(",")] for line in elements.splitlines()]
+    elements = "".join(", ".join(map(str, [e, *(stands_for[n] for n in nodes)])) + "\n" for e, *nodes in lines)
+    (scratch / "notched.inp").write_text(f"{nodes}*ELEMENT, TYPE=C3D4\n{elements}*NSET{sets}")
+    said = {}
+    for name, *options in (("refused",), ("crack", "--crack", "flaw"), ("glued", "--merge", "1e-9")):
+        said[name] = launch("mesh", scratch / "notched.inp", "-o", scratch / f"{name}.h5", *options)
+    assert said["refused"].returncode == 2 and "by --crack NAME" in said["refused"].stderr
+    assert re.search(r"crack 'flaw': 4 faces, 2e-08 m2 around \(-0.0001, 5e-05, \S+\) m, open from the start", said["crack"].stdout), said["crack"].stderr
+    info = launch("mesh", "--info", scratch / "crack.h5").stdout
+    assert "surface set    flaw: 0 faces, and 4 between elements\n" in info and "crack          flaw: open from the start\n" in info
+    return scratch
+
+
+def pressed(folder, name, traction, more=""):
+    path = folder / f"{name}-{traction:g}-{len(more)}.yaml"
+    path.write_text(f"defaults: 1\nmesh: {{file: {name}.h5}}\ninterface: {{law: linear, strength: 1e9, energy: 1e3{more}}}\nstart: static\n{material()}"
+                    f"loads: [{{set: zhigh, traction: {{z: {traction}}}}}]\n"
+                    "boundary: [{set: zlow, component: z, displacement: 0}, {set: ylow, component: y, displacement: 0}, {set: xhigh, component: x, displacement: 0}]\n"
+                    f"time: {{end: {H / SPEED}}}\noutput: {{interval: {H / SPEED}, fields: [stress], probes: [{{name: over, at: [{-1.9 * H}, {H / 2}, {0.1 * H}]}}]}}\n")
+    return path
+
+
+def test_a_crack_opens_and_presses_shut(run, figure, notched):
+    """Its twin is the block whose nodes were merged, which stretches and shrinks by the stress over Young's modulus."""
+    stress = 1e6
+    there = {(name, sign): run(pressed(notched, name, sign * stress)).history["over_uz"][0] for name in ("crack", "glued") for sign in (-1, 1)}
+    whole = 2.1 * H * stress / YOUNG
+    figure("block without a crack, stretched", there["glued", 1] / whole, theory=1, bound=1e-6)
+    soft = H / 2 * stress / YOUNG  # what contact gives way: its stiffness is beta_s E/h, 2 E/H
+    figure("block with a crack of no width, pressed shut", there["crack", -1] / -(whole + soft), theory=1, bound=6e-3)
+    assert there["crack", 1] > 3 * whole
+
+
+def test_a_crack_is_the_same_on_any_layout_and_in_other_words(run, notched):
+    """As the mesh brings it, and as the case names it; in words that take it back it is glued."""
+    path = pressed(notched, "crack", 1e6)
+    one = run(path)
+    assert {run(path, ranks=n).summary["state_hash"] for n in (2, 3)} == {one.summary["state_hash"]}
+    assert "set: \"flaw\"" in (one.dir / "case.yaml").read_text()
+    named = run(pressed(notched, "crack", 1e6, ", sets: [{set: flaw, open: true}]"))
+    assert named.summary["state_hash"] == one.summary["state_hash"]
+    held = run(pressed(notched, "crack", 1e6, ", sets: [{set: flaw, strength: 1e9}]"))
+    assert held.history["over_uz"][0] == pytest.approx(2.1 * H * 1e6 / YOUNG, rel=1e-5)
+    beside = run(pressed(notched, "crack", 1e6, ', sets: [{where: "abs(z) < 1e-9", strength: 2e9}]'))  # does not close it
+    assert beside.history["over_uz"][0] == pytest.approx(one.history["over_uz"][0], rel=1e-6)
+    process = launch("check", path, "--set", "interface={law: none}")
+    assert process.returncode == 2 and "its crack, set 'flaw', is open from the start, which needs a law" in process.stderr
+
+
+def test_no_crack_where_none_is(scratch):
+    assert "--crack flaw: no two faces lie on each other" in make(scratch, "sound", bars(1)[:1], "--crack", "flaw", expect=2).stderr

@@ -261,8 +261,9 @@ static void test_same_place(void **state) {
     (void)state;
     const char *at =
         "rhegma: chain: elements %d and 74 have different vertices at the same place (%s) m: the mesh is "
-        "open there; rhegma mesh joins nodes that coincide by --merge D, or keeps parts apart by --apart\n";
-    char one[400], all[1200];
+        "open there; rhegma mesh joins nodes that coincide by --merge D, keeps parts apart by --apart, or "
+        "takes faces that lie on each other for a crack by --crack NAME\n";
+    char one[500], all[1500];
     snprintf(one, sizeof one, at, 71, "1, 2.5, 9");
     copies = 1;
     expect_said(check_copies, RG_USAGE, one);
@@ -315,8 +316,9 @@ static void test_three_at_one_place(void **state) {
     (void)state;
     const char *at =
         "rhegma: three: elements 0 and %d have different vertices at the same place (%s) m: the mesh is open "
-        "there; rhegma mesh joins nodes that coincide by --merge D, or keeps parts apart by --apart\n";
-    char said[600];
+        "there; rhegma mesh joins nodes that coincide by --merge D, keeps parts apart by --apart, or takes "
+        "faces that lie on each other for a crack by --crack NAME\n";
+    char said[900];
     int used = snprintf(said, sizeof said, at, 1, "-0, -0, -0");
     snprintf(said + used, sizeof said - (size_t)used, at, 2, "-0, -0, -0");
     expect_said(check_three, RG_USAGE, said);
@@ -519,7 +521,8 @@ static void test_hanging_is_told(void **state) {
         "rhegma: chain: a vertex of element 74 at (0.25, 4.625, 12.25) m lies on a face of element "
         "73 without "
         "being its corner (a hanging node): the mesh is open there; rhegma mesh joins nodes that coincide "
-        "by --merge D, or keeps parts apart by --apart\n");
+        "by --merge D, keeps parts apart by --apart, or takes faces that lie on each other for a crack by "
+        "--crack NAME\n");
 }
 
 /* ---- parts ---- */

@@ -199,8 +199,8 @@ static void test_header(void **state) {
         {"interfaces", 541, "interfaces: 541 is not between 0 and 540\n"},
         {"interfaces", 540, ""}, /* the reader of the whole does not count them */
         {"interfaces", 0, ""},
-        {"tile_elements", 0, "tile_elements: 0 is not between 1 and 256\n"},
-        {"tile_elements", 257, "tile_elements: 257 is not between 1 and 256\n"},
+        {"tile_elements", 0, "tile_elements: 0 is not between 1 and 1024\n"},
+        {"tile_elements", 1025, "tile_elements: 1025 is not between 1 and 1024\n"},
         {"tile_elements", 256, "tiles: 68 is not between 2 and 2\n"},
         {"tile_elements", 1, "tiles: 68 is not between 270 and 270\n"},
         {"surface_sets", -1, "surface_sets: -1 is not between 0 and 16777216\n"},

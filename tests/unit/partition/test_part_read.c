@@ -321,7 +321,7 @@ static void check_boundary(void) {
 /* What is told of a mesh, in order. */
 typedef struct {
     rg_gid key[2];
-    char words[200];
+    char words[RG_INPUT_ERROR_WORDS];
 } line;
 
 static int by_key(const void *a, const void *b) {
