@@ -53,12 +53,15 @@ typedef enum {
 #define RG_LAW(NAME, ...) RG_LAW_##NAME,
 #include "laws.h"
 #undef RG_LAW
-    RG_LAWS,
-    RG_LAW_NONE = RG_LAWS
+    RG_LAWS, /* of this program */
+    RG_LAW_NONE = RG_LAWS,
+    RG_LAW_USER /* that of a library of the user's (library.h) */
 } rg_law;
 
 enum {
-    RG_LAW_SHAPE = 4,  /* parameters of its own that a law may have */
+    RG_LAW_SHAPE = 8,  /* parameters of its own that a law may have */
+    RG_USER_WORK = 6,  /* of a user's law: work of separation over strength times critical opening, ... */
+    RG_USER_END = 7,   /* and opening of full separation over the critical one */
     RG_LAW_MEMORY = 4, /* values that a point may remember besides its crack state */
 };
 
@@ -109,9 +112,10 @@ typedef struct {
     double onset;  /* conserving activation: opening from which the law starts, in units as RG_ONSET's */
     double beta_s; /* of the penalty; likewise read by it alone */
     rg_law law;
-    double shape[RG_LAW_SHAPE]; /* the law's own parameters */
-    double separation;          /* effective opening of full separation (m) */
-    rg_contact contact;         /* potential: tractions turn the mid-surface besides */
+    double shape[RG_LAW_SHAPE];     /* the law's own parameters */
+    const struct rg_user_law *user; /* of a user's: its library */
+    double separation;              /* effective opening of full separation (m) */
+    rg_contact contact;             /* potential: tractions turn the mid-surface besides */
     double slope;   /* contact is at least so stiff (Pa/m): the law's own slope where it starts with one */
     rg_shear shear; /* fading: with a conserving activation */
     rg_sliding sliding;

@@ -1,5 +1,6 @@
-/* A material of the user's own, as the program and its library see each other. `rhegma material FILE.c`
- * compiles user/material.c around the file, and that defines the one symbol of the library, rg_user_here.
+/* A material or a cohesive law of the user's own, as the program and its library see each other. `rhegma
+ * material FILE.c` compiles user/material.c (of a law user/law.c) around the file, and that defines the one
+ * symbol of the library, rg_user_here.
  *
  * The head never changes. Behind it everything may: then RG_USER_ABI goes up, and libraries that were made
  * before are refused. */
@@ -11,7 +12,8 @@
 enum {
     RG_USER_ABI = 1,
     /* What kernels are handed; where sizes differ, so do places, whoever forgot the number above. */
-    RG_USER_LAYOUT = (int)(sizeof(rg_bulk_args) + 7 * sizeof(rg_bulk_state_args) + 63 * sizeof(rg_material)),
+    RG_USER_LAYOUT = (int)(sizeof(rg_bulk_args) + 7 * sizeof(rg_bulk_state_args) + 63 * sizeof(rg_material) +
+                           5 * sizeof(rg_interface_args) + 11 * sizeof(rg_interface_state_args)),
     RG_LIBRARY_HISTORY = 256, /* values per point, at most */
 };
 
@@ -20,7 +22,7 @@ enum {
 
 typedef struct {
     char magic[16];
-    char kind[16]; /* "material" */
+    char kind[16]; /* "material", "law" */
     int32_t abi, layout;
     int32_t vector, real; /* bytes of a vector, of a number in it */
     char isa[32];         /* instruction set, as RHEGMA_ISA has it */
@@ -69,5 +71,31 @@ typedef struct rg_user_material {
     /* Of RG_LANES points, each on its own. */
     void (*points)(const rg_material *m, bool advance, rg_user_point point[RG_LANES]);
 } rg_user_material;
+
+/* What a user's file says of its law, by RG_USER_LAW_IS (user/law.h). */
+typedef struct {
+    const char *name, *meaning;
+    const rg_user_parameter *parameter;
+    int parameters; /* at most RG_USER_WORK */
+    /* Work of separation over strength times critical opening, and opening of full separation over the
+     * critical one. */
+    double (*work)(const double parameter[]);
+    double (*end)(const double parameter[]);
+} rg_user_law_facts;
+
+/* One point of a law, for the checks. */
+typedef struct {
+    double strength, opening, largest; /* in: sigma_c (Pa), delta_c, largest opening so far (m) */
+    double secant, dissipated;         /* out: Pa/m, J/m^2 */
+} rg_user_law_point;
+
+typedef struct rg_user_law {
+    rg_user_head head;
+    const rg_user_law_facts *facts;
+    void (*interface)(const rg_interface_args *args, size_t begin, size_t end);
+    void (*interface_state)(const rg_interface_state_args *args, size_t begin, size_t end);
+    /* Of RG_LANES points, each on its own. */
+    void (*points)(const rg_cohesive *law, rg_user_law_point point[RG_LANES]);
+} rg_user_law;
 
 #endif

@@ -25,6 +25,7 @@ enum { MOST_ARGUMENTS = 64 };
 typedef struct {
     const char *file, *isa;
     char *library;
+    bool law; /* a cohesive law, not a material */
 } arguments;
 
 static int complain(const char *what, const char *argument) {
@@ -44,6 +45,8 @@ static int parse(int argc, char **argv, arguments *a) {
             i++;
         } else if (strcmp(argv[i], "--isa") == 0) {
             a->isa = argv[++i];
+        } else if (strcmp(argv[i], "--law") == 0) {
+            a->law = true;
         } else if (argv[i][0] == '-') {
             return complain("unknown option", argv[i]);
         } else if (a->file == NULL) {
@@ -118,7 +121,7 @@ static int run(char *const argument[]) {
     return WIFEXITED(status) ? WEXITSTATUS(status) : RG_FAILURE;
 }
 
-/* Compiles user/material.c around the file. */
+/* Compiles user/material.c or user/law.c around the file. */
 static int compile(const arguments *a, const char *file, const char *library) {
     const char *environment = getenv("CC");
     char *headers = find_headers(), *argument[MOST_ARGUMENTS + 1] = {NULL};
@@ -130,7 +133,7 @@ static int compile(const arguments *a, const char *file, const char *library) {
     char *named[] = {rg_text_format("-DRG_USER_ISA=\"%s\"", a->isa),
                      rg_text_format("-DRG_USER_SOURCE=\"%s\"", file),
                      rg_text_format("-I%s", headers),
-                     rg_join_path(headers, "user/material.c"),
+                     rg_join_path(headers, a->law ? "user/law.c" : "user/material.c"),
                      rg_text_copy("-o", 2),
                      rg_text_copy(library, strlen(library)),
                      rg_text_copy("-lm", 3)};
@@ -161,21 +164,28 @@ static void print_parameter(const rg_user_parameter *p) {
     printf("\n");
 }
 
+static void print_facts(const char *name, const char *meaning, const rg_user_parameter *list, int count) {
+    printf("%s%s%s%s\n", name, meaning != NULL ? ": " : "", meaning != NULL ? meaning : "",
+           count > 0 ? "; parameters:" : "");
+    for (int i = 0; i < count; i++) {
+        print_parameter(&list[i]);
+    }
+}
+
 /* What was made; of another instruction set, or of a file that states nonsense, why it cannot serve here. */
 static int tell(const arguments *a) {
     char why[512], *path = realpath(a->library, NULL);
     const rg_kernels *here = rg_kernels_select();
     printf("%s: for %s, %s precision\n", a->library, a->isa, RG_PRECISION);
     int status = RG_OK;
-    if (here != NULL && strcmp(here->name, a->isa) == 0) {
-        const rg_user_material *u = path != NULL ? rg_user_load(path, why, sizeof why) : NULL;
+    if (here != NULL && path != NULL && strcmp(here->name, a->isa) == 0) {
+        const rg_user_material *u = a->law ? NULL : rg_user_load(path, why, sizeof why);
+        const rg_user_law *law = a->law ? rg_user_load_law(path, why, sizeof why) : NULL;
         if (u != NULL) {
-            printf("%s%s%s, %d values of history per point%s\n", u->facts->name,
-                   u->facts->meaning != NULL ? ": " : "", u->facts->meaning != NULL ? u->facts->meaning : "",
-                   u->history, u->facts->parameters > 0 ? "; parameters:" : "");
-            for (int i = 0; i < u->facts->parameters; i++) {
-                print_parameter(&u->facts->parameter[i]);
-            }
+            print_facts(u->facts->name, u->facts->meaning, u->facts->parameter, u->facts->parameters);
+            printf("values of history per point: %d\n", u->history);
+        } else if (law != NULL) {
+            print_facts(law->facts->name, law->facts->meaning, law->facts->parameter, law->facts->parameters);
         } else {
             fprintf(stderr, "rhegma: material: %s: %s\n", a->library, why);
             status = RG_USAGE;

@@ -8,7 +8,7 @@ static const char overview[] =
     "       rhegma check CASE.yaml [options]   say what a run would do, without running\n"
     "       rhegma keys [PREFIX]               the keys of a case file, with units, ranges, defaults\n"
     "       rhegma materials [NAME]            solids that a case may name, with values and sources\n"
-    "       rhegma material FILE.c [-o LIB.so] compile a material of your own for a case to load\n"
+    "       rhegma material FILE.c [-o LIB.so] compile a material or law of your own for a case to load\n"
     "       rhegma mesh IN -o OUT.h5 [options] make a mesh file, or show what is in one\n"
     "       rhegma export DIR -o OUT           fields or cracks of a run as a .vtu, .vtp or .stl file\n"
     "       rhegma verify                      check the program on this machine against theory\n"
@@ -58,9 +58,10 @@ static const struct {
      "usage: rhegma materials          names of solids for material.preset, one a line\n"
      "       rhegma materials NAME     its values, with cohesive ones beside them, source and validity\n"},
     {"material",
-     "usage: rhegma material FILE.c [-o LIB.so] [--isa NAME]\n"
+     "usage: rhegma material FILE.c [-o LIB.so] [--law] [--isa NAME]\n"
      "Compiles a material of your own into a library that a case names: material: {model: user, library: "
      "LIB.so, ...}.\n"
+     "  --law        a cohesive law instead: interface: {law: user, library: LIB.so, ...}\n"
      "  -o LIB.so    the library (FILE.so)\n"
      "  --isa NAME   instruction set that it is for, as RHEGMA_ISA has it (that of this machine)\n"
      "The compiler is the one that this program was built with, or the one that CC names.\n"},

@@ -21,7 +21,7 @@ _rhegma() {
     mesh) options="-o --unit --scale --merge --apart --crack --extrude --split --size --curvature --improve --tile --set --info --case --partition --help" ;;
     keys) options="--markdown --schema --help" ;;
     export) options="-o --time --crack --help" ;;
-    material) options="-o --isa --help" ;;
+    material) options="-o --law --isa --help" ;;
     verify | materials) options="--help" ;;
     esac
     if [ "$COMP_CWORD" = 1 ]; then

@@ -20,6 +20,7 @@
 #include "element/interface_friction.h"
 #include "element/interface_law.h"
 #include "element/interface_rise.h"
+#include "library.h"
 
 /* ---- Points of damaged faces ---- */
 
@@ -121,6 +122,10 @@ RG_INLINE rg_activation shifted(const interface *s) {
     return s->args->law.activation == RG_ACTIVATION_TOTAL ? RG_ACTIVATION_TOTAL : RG_ACTIVATION_CONTINUOUS;
 }
 
+#ifndef RG_USER_LAW
+#define RG_INTERFACE_LAWS "laws.h" /* a library has but its own: user/law.c */
+#endif
+
 /* A law that a conserving activation cannot serve has nothing there: no case has it. */
 #define RG_LAW(NAME, name, word, meaning, forms, work, separation, normal_slope, shear_slope, memory)        \
     static const law_functions law_##name = {rg_##name##_respond,                                            \
@@ -137,15 +142,15 @@ RG_INLINE rg_activation shifted(const interface *s) {
             damaged(s, law_##name, RG_ACTIVATION_CONSERVING);                                                \
         }                                                                                                    \
     }
-#include "laws.h"
+#include RG_INTERFACE_LAWS
 #undef RG_LAW
 
 static void (*const damaged_by_law[][RG_ACTIVATIONS])(interface *s) = {
 #define RG_LAW(NAME, name, ...)                                                                              \
-    {[RG_ACTIVATION_CONTINUOUS] = damaged_##name,                                                            \
-     [RG_ACTIVATION_TOTAL] = damaged_##name,                                                                 \
-     [RG_ACTIVATION_CONSERVING] = damaged_conserving_##name},
-#include "laws.h"
+    [RG_LAW_##NAME] = {[RG_ACTIVATION_CONTINUOUS] = damaged_##name,                                          \
+                       [RG_ACTIVATION_TOTAL] = damaged_##name,                                               \
+                       [RG_ACTIVATION_CONSERVING] = damaged_conserving_##name},
+#include RG_INTERFACE_LAWS
 #undef RG_LAW
 };
 
@@ -184,6 +189,12 @@ RG_INLINE void prefetch_cracks(const rg_interface_args *args, size_t block, size
 }
 
 void RG_ISA_NAME(rg_interface)(const rg_interface_args *args, size_t begin, size_t end) {
+#ifndef RG_USER_LAW
+    if (args->law.law == RG_LAW_USER) {
+        args->law.user->interface(args, begin, end);
+        return;
+    }
+#endif
     for (size_t b = begin; b < end; b++) {
         prefetch_cracks(args, b + 1, end);
         for (int lane = 0; lane < RG_LANES; lane += RG_VLEN) {
@@ -241,15 +252,15 @@ RG_INLINE void crack_energy(interface *s, rg_vec sum[RG_E_INTERFACE], law_functi
             crack_energy(s, sum, law_##name, RG_ACTIVATION_CONSERVING);                                      \
         }                                                                                                    \
     }
-#include "laws.h"
+#include RG_INTERFACE_LAWS
 #undef RG_LAW
 
 static void (*const energy_by_law[][RG_ACTIVATIONS])(interface *s, rg_vec sum[RG_E_INTERFACE]) = {
 #define RG_LAW(NAME, name, ...)                                                                              \
-    {[RG_ACTIVATION_CONTINUOUS] = energy_##name,                                                             \
-     [RG_ACTIVATION_TOTAL] = energy_##name,                                                                  \
-     [RG_ACTIVATION_CONSERVING] = energy_conserving_##name},
-#include "laws.h"
+    [RG_LAW_##NAME] = {[RG_ACTIVATION_CONTINUOUS] = energy_##name,                                           \
+                       [RG_ACTIVATION_TOTAL] = energy_##name,                                                \
+                       [RG_ACTIVATION_CONSERVING] = energy_conserving_##name},
+#include RG_INTERFACE_LAWS
 #undef RG_LAW
 };
 
@@ -296,6 +307,12 @@ RG_INLINE void state_vector(const rg_interface_state_args *args, size_t block, s
 }
 
 void RG_ISA_NAME(rg_interface_state)(const rg_interface_state_args *args, size_t begin, size_t end) {
+#ifndef RG_USER_LAW
+    if (args->interface->law.law == RG_LAW_USER) {
+        args->interface->law.user->interface_state(args, begin, end);
+        return;
+    }
+#endif
     for (size_t b = begin; b < end; b++) {
         for (int lane = 0; lane < RG_LANES; lane += RG_VLEN) {
             state_vector(args, b, b - begin, lane);

@@ -81,7 +81,7 @@ RG_INLINE void load_law(interface *s) {
 
 /* Values that a point remembers of a law with RG_MIXED; 0 of others. */
 RG_INLINE int mixed_memory(rg_law law) {
-    static const int8_t memories[] = {
+    static const int8_t memories[RG_LAW_USER + 1] = {
 #define RG_LAW(NAME, name, word, meaning, forms, work, separation, normal_slope, shear_slope, memory)        \
     ((forms)&RG_MIXED) != 0 ? memory : 0,
 #include "laws.h"
@@ -92,7 +92,7 @@ RG_INLINE int mixed_memory(rg_law law) {
 
 /* Values that a point remembers of a law. */
 RG_INLINE int law_memory(rg_law law) {
-    static const int8_t memories[] = {
+    static const int8_t memories[RG_LAW_USER + 1] = {
 #define RG_LAW(NAME, name, word, meaning, forms, work, separation, normal_slope, shear_slope, memory) memory,
 #include "laws.h"
 #undef RG_LAW

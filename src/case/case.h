@@ -115,13 +115,26 @@ typedef struct {
     double released;    /* share of the work put in that the cycle sets free */
 } rg_user_report;
 
-/* A material of the user's (kernels/library.h). */
+/* A library of the user's (kernels/library.h). */
 typedef struct {
-    char *library; /* path of it; absolute once loaded */
+    char *path;    /* absolute once loaded */
     uint64_t hash; /* of what it holds */
+} rg_library_input;
+
+/* A material of one. */
+typedef struct {
+    rg_library_input library;
     rg_user_values is;
     rg_user_report report;
 } rg_user_input;
+
+/* A law of one; its parameters are those of `shape`. */
+typedef struct {
+    rg_library_input library;
+    const struct rg_user_law *is;
+    double share;  /* what a monotonic opening takes over the energy of the case */
+    double closed; /* most by which dissipated and stored work differ from it, over it */
+} rg_user_law_input;
 
 typedef struct {
     rg_material_model model;
@@ -311,9 +324,10 @@ typedef struct {
         rg_activation activation;
         double onset; /* of a conserving activation (kernels.h: RG_ONSET) */
         rg_contact contact;
-        double friction;                     /* coefficient of closed faces */
-        rg_rise rise;                        /* of strengths with the rate of stress; rate 0: none */
-        double shape[RG_LAWS][RG_LAW_SHAPE]; /* parameters of its own of each law */
+        double friction;                             /* coefficient of closed faces */
+        rg_rise rise;                                /* of strengths with the rate of stress; rate 0: none */
+        double shape[RG_LAW_USER + 1][RG_LAW_SHAPE]; /* parameters of its own of each law */
+        rg_user_law_input user;
         int sets;
         rg_face_set *set; /* faces with properties of their own */
         struct {

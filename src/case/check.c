@@ -342,6 +342,10 @@ static void learn(rg_check *ck, const rg_key *key, const rg_node *node, bool goo
         ck->penalty_given = node != NULL;
     } else if (key->offset == offsetof(rg_case, interface.law)) {
         rg_law_rule(ck, node, good);
+    } else if (key->offset == offsetof(rg_case, interface.user.library)) {
+        ck->law_library = good ? node : NULL;
+    } else if (key->offset == offsetof(rg_case, interface.user.is) && ck->law_library != NULL) {
+        rg_user_law_rule(ck, good ? node : NULL);
     } else if (key->offset == offsetof(rg_case, interface.activation)) {
         ck->switch_given = node != NULL;
         rg_activation_rule(ck, node, good);

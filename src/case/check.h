@@ -40,11 +40,12 @@ typedef struct {
     rg_problems *problems;
     rg_case *c;
     rg_usage usage[RG_GROUPS];
-    bool box;           /* mesh.origin and mesh.size are good */
-    bool form;          /* interface.form and .faces are good */
-    bool models;        /* those of all materials are good */
-    bool penalty_given; /* interface.beta_s is there */
-    bool switch_given;  /* interface.activation or .onset is there */
+    bool box;                   /* mesh.origin and mesh.size are good */
+    bool form;                  /* interface.form and .faces are good */
+    bool models;                /* those of all materials are good */
+    bool penalty_given;         /* interface.beta_s is there */
+    bool switch_given;          /* interface.activation or .onset is there */
+    const rg_node *law_library; /* interface.library; NULL: not there, or not good */
     rg_material_check material;
 } rg_check;
 
@@ -82,7 +83,8 @@ void rg_parameters_rule(rg_check *ck);
 void rg_flaw_rule(rg_check *ck);
 void rg_material_name_rule(rg_check *ck, const rg_node *node);
 void rg_anisotropic_rule(rg_check *ck); /* anisotropic.c: which keys go together, stable, axes */
-void rg_user_rule(rg_check *ck, const rg_node *parameters); /* user.c: what its library makes of it */
+void rg_user_rule(rg_check *ck, const rg_node *parameters);     /* user.c: what its library makes of it */
+void rg_user_law_rule(rg_check *ck, const rg_node *parameters); /* ... and of a law */
 void rg_fields_rule(rg_check *ck, const rg_key *key, const rg_node *node);
 /* Reports output times after the end of the run. */
 void rg_times_rule(rg_check *ck, const rg_node *node);

@@ -101,11 +101,28 @@ static const rg_user_input *user_of(const rg_key *key, const void *base) {
     return &((const rg_material_input *)(const void *)((const char *)base + key->input))->user;
 }
 
-static void write_parameters(FILE *out, const rg_user_input *user) {
-    const rg_user_facts *facts = user->is.library->facts;
-    for (int i = 0; i < facts->parameters; i++) {
-        fprintf(out, "%s%s: ", i == 0 ? "{" : ", ", facts->parameter[i].name);
-        write_numbers(out, &(rg_key){.type = RG_KEY_REAL, .count = 1}, &user->is.parameter[i]);
+/* Parameters of a library and their values; returns how many. */
+static int parameters_of(const rg_key *key, const void *base, const rg_user_parameter **list,
+                         const double **value) {
+    if (key->of_material) {
+        const rg_user_values *is = &user_of(key, base)->is;
+        *list = is->library->facts->parameter;
+        *value = is->parameter;
+        return is->library->facts->parameters;
+    }
+    const rg_case *c = base;
+    *list = c->interface.user.is->facts->parameter;
+    *value = c->interface.shape[RG_LAW_USER];
+    return c->interface.user.is->facts->parameters;
+}
+
+static void write_parameters(FILE *out, const rg_key *key, const void *base) {
+    const rg_user_parameter *list = NULL;
+    const double *value = NULL;
+    int count = parameters_of(key, base, &list, &value);
+    for (int i = 0; i < count; i++) {
+        fprintf(out, "%s%s: ", i == 0 ? "{" : ", ", list[i].name);
+        write_numbers(out, &(rg_key){.type = RG_KEY_REAL, .count = 1}, &value[i]);
     }
     fputc('}', out);
 }
@@ -149,10 +166,10 @@ void rg_key_write(FILE *out, const rg_key *as_model, const void *base) {
         break;
     case RG_KEY_LIBRARY:
         write_text(out, rg_pointer_get(value));
-        fprintf(out, " # %016" PRIx64, user_of(key, base)->hash);
+        fprintf(out, " # %016" PRIx64, ((const rg_library_input *)value)->hash);
         break;
     case RG_KEY_PARAMETERS:
-        write_parameters(out, user_of(key, base));
+        write_parameters(out, key, base);
         break;
     case RG_KEY_TABLES:
         rg_tables_write(out, value);
@@ -185,7 +202,9 @@ bool rg_key_present(const rg_key *as_model, const void *base) {
         return has_interval(base);
     }
     if (key->type == RG_KEY_PARAMETERS) {
-        return user_of(key, base)->is.library->facts->parameters > 0;
+        const rg_user_parameter *list = NULL;
+        const double *values = NULL;
+        return parameters_of(key, base, &list, &values) > 0;
     }
     if (key->type == RG_KEY_TEXT || key->type == RG_KEY_EXPR || key->type == RG_KEY_LIBRARY) {
         return rg_pointer_get(value) != NULL;

@@ -24,8 +24,8 @@ typedef enum {
                        number also double */
     RG_KEY_BOOL,    /* bool */
     RG_KEY_INTERVAL,   /* output.interval: steps or seconds, by the kind of number */
-    RG_KEY_LIBRARY,    /* rg_user_input: path of a library, kept with a hash of what it holds */
-    RG_KEY_PARAMETERS, /* rg_user_input: mapping of names, which its library knows, to numbers */
+    RG_KEY_LIBRARY,    /* rg_library_input: path of a library, kept with a hash of what it holds */
+    RG_KEY_PARAMETERS, /* of the library before it: mapping of names, which its library knows, to numbers */
     RG_KEY_TABLES,     /* rg_curves: mapping of names to tables */
     RG_KEY_LIST,       /* array of mappings with the keys of `entry` */
 } rg_key_type;

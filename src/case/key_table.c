@@ -54,12 +54,12 @@ static const char *const laws[] = {
 #define RG_LAW(NAME, name, word, ...) word,
 #include "laws.h"
 #undef RG_LAW
-    "none", NULL};
+    "none", "user", NULL};
 static const char *const laws_meaning[] = {
 #define RG_LAW(NAME, name, word, meaning, ...) meaning,
 #include "laws.h"
 #undef RG_LAW
-    "faces never break"};
+    "faces never break", "your own, of a library that rhegma material compiles"};
 #define SENSOR_WORD(NAME, word, meaning)    word,
 #define SENSOR_MEANING(NAME, word, meaning) meaning,
 static const char *const sensor_values[] = {RG_SENSOR_VALUE(SENSOR_WORD) NULL};
@@ -254,6 +254,10 @@ static const rg_key case_keys[] = {
      .law = RG_LAW_##NAME, CASE(interface.shape[RG_LAW_##NAME][index]), MEANS(words)},
 #include "laws.h"
 #undef RG_LAW_PARAMETER
+    {.name = "interface.library", .type = RG_KEY_LIBRARY, REQUIRED, GROUP(LAW), .law = RG_LAW_USER, CASE(interface.user.library),
+     MEANS("path of what rhegma material --law compiled, relative to the case file")},
+    {.name = "interface.parameters", .type = RG_KEY_PARAMETERS, ELSE("its defaults"), GROUP(LAW), .law = RG_LAW_USER, CASE(interface.user.is),
+     MEANS("of it, by the names that it declares")},
     {.name = "interface.rise.rate", .unit = "Pa/s", REAL, ABOVE(0), ELSE("strengths do not rise"), GROUP(SWITCH),
      CASE(interface.rise.rate),
      MEANS("rate of stress r_0 beyond which strengths rise: times (r/r_0)^exponent, r the mean rate since half of the strength; the energy stays")},

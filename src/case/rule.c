@@ -111,7 +111,7 @@ const char *rg_why_unused(rg_key_group group, const rg_case *c) {
 static void laws_for(const demand *d, char *text, size_t size) {
     snprintf(text, size, "with %s", d->words);
     const char *join = ": ";
-    for (int law = 0; law <= (int)RG_LAWS; law++) {
+    for (int law = 0; law <= (int)RG_LAW_USER; law++) {
         if (fits(d, (rg_law)law)) {
             rg_text_add(text, size, "%s%s", join, rg_law_word((rg_law)law));
             join = ", ";

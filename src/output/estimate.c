@@ -192,7 +192,8 @@ void rg_estimate_warn(const rg_case *c, const rg_estimate *e) {
 static void print_user(const rg_user_input *user, FILE *out) {
     const rg_user_facts *facts = user->is.library->facts;
     const rg_user_report *r = &user->report;
-    fprintf(out, "library        %s of %s (%016" PRIx64 ")\n", facts->name, user->library, user->hash);
+    fprintf(out, "library        %s of %s (%016" PRIx64 ")\n", facts->name, user->library.path,
+            user->library.hash);
     fprintf(out, "checked        stress ");
     if (r->energetic) {
         fprintf(out, "the derivative of the energy to %.1e, ", r->energy);
@@ -361,6 +362,14 @@ void rg_estimate_print(const rg_solver *s, const rg_estimate *e, FILE *out) {
                 "have just "
                 "switched; the energy will show it\n",
                 c->interface.onset, steady_safety(c));
+    }
+    if (c->interface.law == RG_LAW_USER) {
+        const rg_user_law_input *user = &c->interface.user;
+        fprintf(out,
+                "law            %s of %s (%016" PRIx64
+                "): opening takes %.6g of the energy, %.1e of which its "
+                "stored and dissipated work leave out\n",
+                user->is->facts->name, user->library.path, user->library.hash, user->share, user->closed);
     }
     if (isfinite(e->cohesive_zone)) {
         double ratio = e->cohesive_zone / e->zone_edge;

@@ -54,6 +54,7 @@ rg_cohesive rg_law_make(const rg_case *c) {
                        .sliding = has_friction(c) ? RG_SLIDING_COULOMB : RG_SLIDING_FREE,
                        .friction = c->interface.friction,
                        .rise = c->interface.rise};
+    law.user = c->interface.user.is;
     memcpy(law.shape, c->interface.shape[law.law], sizeof law.shape);
     rg_law_facts facts = facts_of(&law);
     if ((facts.forms & RG_NORMAL_MEASURE) != 0) {

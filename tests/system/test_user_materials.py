@@ -11,6 +11,7 @@ from test_restart import go_on
 
 SOURCES = ROOT / "tests/inputs/user"
 double_only = pytest.mark.skipif(SINGLE, reason="J2 plasticity needs double precision")
+LAWS = ("linear", "plateau")
 SOLID = {"density": 3690, "young": 260e9, "poisson": 0.21}
 METAL = {**SOLID, "hardening": 20e9}
 
@@ -29,8 +30,8 @@ def library(tmp_path_factory):
     def make(name):
         if name not in made:
             made[name] = folder / f"{name}.so"
-            source = example("user-material.yaml").with_name("softening.c") if name == "softening" else SOURCES / f"{name}.c"
-            assert f"{name.replace('_', '-')}" in compiled(source, made[name])
+            source = example("user-material.yaml").with_name(f"{name}.c") if name in ("softening", "plateau") else SOURCES / f"{name}.c"
+            assert name.replace("_", "-") in compiled(source, made[name], *(["--law"] if name in LAWS else []))
         return made[name]
 
     return make
@@ -76,6 +77,45 @@ def test_a_restart_wants_the_same_library(run, library, tmp_path):
     process = launch("run", "--restart", tmp_path / "out", "-q")
     assert process.returncode == 2 and process.stderr.count("mine.so") == 2, process.stderr
     assert "the case is not that of the checkpoint" in process.stderr and "material.library: " in process.stderr
+
+
+def user_law(library, **parameters):
+    return {"interface.law": "user", "interface.library": str(library), "interface.parameters": parameters, "interface.activation": "continuous",
+            "interface.contact": "potential", "interface.friction": 0.3, "interface.beta_s": 2}
+
+
+@pytest.mark.parametrize("ranks, threads", [(1, 1), (2, 1), (1, 2)])
+def test_a_copy_of_a_law_gives_its_bits(run, library, ranks, threads):
+    sets = {**FRAGMENTS, "time.end": 0.15e-6, "interface.sets": [{"where": "x > 0", "energy": 20, "strength": 3e8}]}
+    mine = user_law(library("linear"))
+    one = run(CASES / "fragments.yaml", sets={**sets, **{key: value for key, value in mine.items() if key[10:] not in ("law", "library", "parameters")}})
+    other = run(CASES / "fragments.yaml", ranks=ranks, threads=threads, sets={**sets, **mine})
+    assert one.summary["failed_area_m2"] > 0
+    assert_same_bits(one, other)
+
+
+def test_a_law_goes_through_a_restart(run, library, tmp_path):
+    sets = {**FRAGMENTS, "time.end": 0.15e-6, "checkpoint.steps": 20, **user_law(library("plateau"), plateau=0.2)}
+    one = run(CASES / "fragments.yaml", sets=sets)
+    before = run(CASES / "fragments.yaml", ranks=2, sets={**sets, "time.steps": 70})
+    assert 0 < before.summary["broken_area_m2"]
+    folder = shutil.copytree(before.dir, tmp_path / "out")
+    for last in folder.glob("checkpoints/step-*70.h5"):
+        last.unlink()
+    again = go_on(folder, "--set", "time.steps=100000")
+    assert again.summary["restarted_from_step"] == 60
+    assert_same_bits(one, again)
+
+
+def test_laws_that_do_not_fit(library):
+    said = check(user_law(library("plateau"), plateau=0.5)).stdout
+    assert "law            plateau of " in said and "opening takes 1 of the energy, " in said
+    assert "interface.plateau: 0.95: out of range" in refused(user_law(library("plateau"), plateau=0.95))
+    assert "interface.platau: unknown parameter of plateau; did you mean 'plateau'?" in refused(user_law(library("plateau"), platau=0.5))
+    assert "linear: what it dissipates and stores differs from the work of opening by 0.1 of the energy" in refused(user_law(library("linear"), wrong=1.1))
+    assert "of a material, not of a law" in refused(user_law(library("neo_hookean")))
+    assert "of a law, not of a material" in refused(user(library("linear"), **SOLID))
+    assert "needs a law that starts rigid" in refused({**user_law(library("plateau")), "interface.activation": "conserving"})
 
 
 def check(sets):

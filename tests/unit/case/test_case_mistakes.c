@@ -33,7 +33,7 @@
 static const mistake mistakes[] = {
     /* missing, unknown, repeated keys */
     {"  cells: [2, 2, 4]\n", "", ":2:3: mesh.cells: missing; " CELLS},
-    {"  law: linear\n", "", ":10:3: interface.law: missing; allowed: $LAWS, none\n"},
+    {"  law: linear\n", "", ":10:3: interface.law: missing; allowed: $LAWS, none, user\n"},
     {"  strength: 400e6\n", "", ":10:3: interface.strength: missing; " STRENGTH},
     {"strength: 400e6", "strength: -4", ":11:13: interface.strength: -4: out of range; " STRENGTH},
     {"strength: 400e6", "strength: .inf", ":11:13: interface.strength: .inf: not finite; " STRENGTH},
@@ -95,7 +95,7 @@ static const mistake mistakes[] = {
      ":5:10: material.model: neohookean: not one of the allowed words; allowed: $MODELS; did you mean "
      "'neo-hookean'?\n"},
     {"linear", "lnear",
-     ":10:8: interface.law: lnear: not one of the allowed words; allowed: $LAWS, none; did you mean "
+     ":10:8: interface.law: lnear: not one of the allowed words; allowed: $LAWS, none, user; did you mean "
      "'linear'?\n"},
     {"linear", "none", ":11:3: interface.strength: 400e6" UNUSED ":12:3: interface.energy: 34" UNUSED},
     {"  law: linear\n  strength: 400e6\n  energy: 34\n", "  law: none\n  contact: flux\n",
@@ -105,7 +105,7 @@ static const mistake mistakes[] = {
      "allowed: " INTRINSIC},
     {"  law: linear\n", "  law: bilinear\n",
      ":10:8: interface.law: bilinear: starts with a slope, which only form intrinsic can use; "
-     "allowed: with form variational or incomplete: $RIGID_LAWS, none\n"},
+     "allowed: with form variational or incomplete: $RIGID_LAWS, none, user\n"},
     {"  law: linear\n", "  law: exponential\n  form: intrinsic\n  contact: flux\n  penalty: elastic\n",
      ":12:12: interface.contact: flux: brings DG terms back, which form intrinsic does not have; "
      "allowed: with form intrinsic: penalty\n"
@@ -130,7 +130,7 @@ static const mistake mistakes[] = {
      ":12:3: interface.penalty: elastic" JOINED ":13:3: interface.strength: 1e9" UNUSED},
     {"  law: linear\n", "  law: exponential\n  form: continuous\n  faces: abs(z) < 1e-6\n",
      ":10:8: interface.law: exponential: starts with a slope, which only form intrinsic can use; "
-     "allowed: with form continuous: $RIGID_LAWS, none\n"},
+     "allowed: with form continuous: $RIGID_LAWS, none, user\n"},
     {"  law: linear\n", "  law: linear\n  faces: abs(z) < 1e-6\n",
      ":11:3: interface.faces: abs(z) < 1e-6: not used, because interface.form is not continuous\n"},
     {"  law: linear\n", "  law: linear\n  form: continuous\n  faces: t\n",
@@ -158,7 +158,7 @@ static const mistake mistakes[] = {
     {"  law: linear\n", "  law: exponential\n  form: incomplete\n  activation: conserving\n",
      ":10:8: interface.law: exponential: starts with a slope, which only form intrinsic can use; allowed: "
      "with "
-     "form variational or incomplete: $RIGID_LAWS, none\n"
+     "form variational or incomplete: $RIGID_LAWS, none, user\n"
      ":12:15: interface.activation: conserving: counts the energy of the lift, which form variational "
      "alone has; allowed: with this form: continuous, total\n"
      ":12:15: interface.activation: conserving: needs a law that starts rigid, and interface.law is "

@@ -219,7 +219,7 @@ static const mistake law_and_form[] = {
      "expression in x, "
      "y, z, nx, ny, nz\n"},
     {"  law: linear\n",
-     "  law: rubber\n"
+     "  law: jelly\n"
      "  form: intrinsc\n"
      "  penalty: elastic\n"
      "  beta: 2\n"
@@ -227,13 +227,13 @@ static const mistake law_and_form[] = {
      "  activation: conserving\n"
      "  onset: 0.5\n"
      "  contact: flux\n",
-     ":10:8: interface.law: rubber: not one of the allowed words; allowed: $LAWS, none\n"
+     ":10:8: interface.law: jelly: not one of the allowed words; allowed: $LAWS, none, user\n"
      ":11:9: interface.form: intrinsc: not one of the allowed words; allowed: variational, incomplete, "
      "intrinsic, continuous; did you mean 'intrinsic'?\n"},
     {"  law: linear\n",
-     "  law: rubber\n"
+     "  law: jelly\n"
      "  bilinear: {ascent: 2}\n",
-     ":10:8: interface.law: rubber: not one of the allowed words; allowed: $LAWS, none\n"
+     ":10:8: interface.law: jelly: not one of the allowed words; allowed: $LAWS, none, user\n"
      ":11:22: interface.bilinear.ascent: 2: out of range; allowed: number >= 1e-06 and <= 0.999\n"},
     {"  law: linear\n",
      "  law: exponential\n"
@@ -434,7 +434,7 @@ static const mistake materials[] = {
      "  name: [a]\n"
      "materials:\n"
      "  - {name: material, where: 1, model: neo-hookean, young: 1, poisson: 0.25, density: 1}\n"
-     "  - {name: \"x y\", where: 1, model: rubber, young: 1, poisson: 0.25, density: 1, shear: 3, "
+     "  - {name: \"x y\", where: 1, model: jelly, young: 1, poisson: 0.25, density: 1, shear: 3, "
      "yield_stress: 2}\n"
      "  - {name: ok, where: .nan, model: neo-hookean, young: 1, poisson: 0.25, density: 1, name: ok}\n"
      "  - {model: linear-elastic, where: 1, young: 1, poisson: 0.25, density: 1, yield_stress: 3}\n",
@@ -442,7 +442,7 @@ static const mistake materials[] = {
      ":11:12: materials[0].name: material: the name of an earlier material; allowed: letters, digits, _ and "
      "-; unique among materials\n"
      ":12:12: materials[1].name: x y: not a name; allowed: letters, digits, _ and -; unique among materials\n"
-     ":12:36: materials[1].model: rubber: not one of the allowed words; allowed: $MODELS\n"
+     ":12:36: materials[1].model: jelly: not one of the allowed words; allowed: $MODELS\n"
      ":13:23: materials[2].where: .nan: not finite; allowed: number or expression in x, y, z\n"
      ":13:86: materials[2].name: given twice, first at line 13 column 6\n"
      ":14:5: materials[3].name: missing; allowed: text\n"
@@ -503,25 +503,25 @@ static const mistake materials[] = {
      "initial, start, "
      "boundary, loads, bodies, time, output, checkpoint\n"},
     {"  model: neo-hookean\n",
-     "  model: rubber\n"
+     "  model: jelly\n"
      "  shear: 3\n"
      "  yield_stress: x\n",
-     ":5:10: material.model: rubber: not one of the allowed words; allowed: $MODELS\n"
+     ":5:10: material.model: jelly: not one of the allowed words; allowed: $MODELS\n"
      ":7:17: material.yield_stress: x: not a number; allowed: number > 0 (Pa)\n"},
-    {"  model: neo-hookean\n", "  model: rubber\n",
-     ":5:10: material.model: rubber: not one of the allowed words; allowed: $MODELS\n"},
+    {"  model: neo-hookean\n", "  model: jelly\n",
+     ":5:10: material.model: jelly: not one of the allowed words; allowed: $MODELS\n"},
     {"model: neo-hookean\n"
      "  young: 260e9\n"
      "  poisson: 0.21\n"
      "  density: 3690\n"
      "interface:\n",
-     "model: rubber\n"
+     "model: jelly\n"
      "  young: 260e9\n"
      "  poisson: 0.21\n"
      "  density: 3690\n"
      "output: {fields: [damage]}\n"
      "interface:\n",
-     ":5:10: material.model: rubber: not one of the allowed words; allowed: $MODELS\n"
+     ":5:10: material.model: jelly: not one of the allowed words; allowed: $MODELS\n"
      ":18:1: output: given twice, first at line 9 column 1\n"},
 };
 
