@@ -107,7 +107,11 @@ bool rg_case_opens(const rg_case *c) {
 }
 
 bool rg_case_rubs(const rg_case *c) {
-    return c->contact.model == RG_CONTACT_GENERAL && c->contact.static_friction > 0;
+    bool rubs = c->contact.static_friction > 0;
+    for (int i = 0; i < c->contact.pairs; i++) {
+        rubs = rubs || fmax(c->contact.pair[i].friction, c->contact.pair[i].static_friction) > 0;
+    }
+    return c->contact.model == RG_CONTACT_GENERAL && rubs;
 }
 
 bool rg_face_set_is_any(const rg_face_set *set) {

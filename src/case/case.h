@@ -160,6 +160,14 @@ typedef struct {
 /* Most materials in a case, `material` included. */
 enum { RG_MAX_MATERIALS = UINT16_MAX + 1 }; /* they have numbers of 16 bits */
 
+/* Friction of fragments of two materials (of one that is named twice): the last entry that has both counts.
+ */
+typedef struct {
+    int names;
+    char **between;
+    double friction, static_friction; /* the latter 0: as the former */
+} rg_contact_friction;
+
 /* Faces with properties of their own: those that `set`, `where` and `between` (NULL: no such condition)
  * select. */
 typedef struct {
@@ -340,6 +348,8 @@ typedef struct {
         rg_contact_model model;
         double penalty; /* stiffness times h/(lambda + 2 mu), h the height of an element over its face */
         double friction, static_friction; /* coefficients while faces slide, until they do */
+        int pairs;
+        rg_contact_friction *pair; /* in place of those */
     } contact;
     rg_mass mass;
     struct {

@@ -111,6 +111,11 @@ void rg_criterion_rule(rg_check *ck, const rg_node *node);
 
 /* Friction acts on faces that slide, which contact `flux` does not let them. */
 void rg_static_friction_rule(rg_check *ck, const rg_node *node);
+void rg_contact_friction_rule(rg_check *ck, const rg_node *list, int i, const char *path, bool good);
+
+/* Names of materials in `between`: two, or (any) the word "any". */
+void rg_between_rule(rg_check *ck, const rg_node *node, int count, char *const between[], bool any,
+                     const char *path);
 void rg_contact_model_rule(rg_check *ck, const rg_node *node);
 void rg_friction_rule(rg_check *ck, const rg_node *node);
 

@@ -5,8 +5,7 @@
 #include "case/entry.h"
 
 /* "alumina, steel" */
-static void list_names(const rg_case *c, char *text, size_t size) {
-    const char *join = "any, or names of two materials, or one twice: ";
+static void list_names(const rg_case *c, const char *join, char *text, size_t size) {
     text[0] = '\0';
     for (int m = 0; m <= c->others; m++) {
         rg_text_add(text, size, "%s%s", join, rg_case_material_name(c, m));
@@ -14,21 +13,25 @@ static void list_names(const rg_case *c, char *text, size_t size) {
     }
 }
 
-static void check_between(rg_check *ck, const rg_node *node, const rg_face_set *set, const char *path) {
+void rg_between_rule(rg_check *ck, const rg_node *node, int count, char *const between[], bool any,
+                     const char *path) {
     char allowed[256], *key = rg_text_format("%s.between", path), value[64];
     const char **names = RG_NEW(const char *, (size_t)ck->c->others + 2); /* ends with NULL */
     for (int m = 0; m <= ck->c->others; m++) {
         names[m] = rg_case_material_name(ck->c, m);
     }
-    list_names(ck->c, allowed, sizeof allowed);
+    list_names(ck->c,
+               any ? "any, or names of two materials, or one twice: "
+                   : "names of two materials, or one twice: ",
+               allowed, sizeof allowed);
     rg_subject subject = {.key = key, .value = rg_node_line(node, value, sizeof value), .allowed = allowed};
-    if (set->names != 2 && !rg_face_set_is_any(set)) {
+    if (count != 2 && !(any && count == 1 && strcmp(between[0], "any") == 0)) {
         rg_problem_add(ck->problems, node->at, &subject, "wrong number of entries");
     }
-    for (int k = 0; k < set->names && set->names == 2; k++) {
-        if (rg_case_find_material(ck->c, set->between[k]) < 0) {
-            subject.value = set->between[k];
-            subject.nearest = rg_nearest(set->between[k], names);
+    for (int k = 0; k < count && count == 2; k++) {
+        if (rg_case_find_material(ck->c, between[k]) < 0) {
+            subject.value = between[k];
+            subject.nearest = rg_nearest(between[k], names);
             rg_problem_add(ck->problems, node->child[k].at, &subject, "no such material");
         }
     }
@@ -125,7 +128,7 @@ void rg_face_set_rule(rg_check *ck, const rg_node *list, int i, const char *path
         rg_subject subject = {.key = path, .allowed = "set, where, between, or several of them"};
         rg_problem_add(ck->problems, item->at, &subject, "missing set, where or between");
     } else if (between != NULL && good) {
-        check_between(ck, between, set, path);
+        rg_between_rule(ck, between, set->names, set->between, true, path);
     }
     if (good) {
         check_breaking(ck, item, set, path);

@@ -285,6 +285,8 @@ static const rg_key case_keys[] = {
      MEANS("Coulomb's coefficient of faces that slide on each other; their heat is `friction` in energy.csv")},
     {.name = "contact.static_friction", REAL, FROM(0), DEFAULT_OF(static_friction), GROUP(CONTACT),
      CASE(contact.static_friction), MEANS("until they slide; not less than `friction`")},
+    {.name = "contact.pairs", .type = RG_KEY_LIST, ELSE("none"), GROUP(CONTACT), CASE(contact.pair), .entry = &rg_contact_friction_table,
+     .offset_count = offsetof(rg_case, contact.pairs), MEANS("friction between materials, in place of those; the last entry that has both counts")},
 
     {.name = "viscosity.linear", REAL, FROM(0), DEFAULT(0), CASE(viscosity.linear),
      MEANS("b1 of the bulk viscosity rho h (b1 c (-div v) + b2^2 h (div v)^2), against ringing behind shocks, as 0.06")},
@@ -354,6 +356,14 @@ static const rg_key case_keys[] = {
      MEANS("every so much time of the clock")},
     {.name = "checkpoint.keep", INTEGER, FROM_TO(1, 1000), DEFAULT(2), MAY_CHANGE, CASE(checkpoint.keep),
      MEANS("so many stay, the last ones")},
+};
+
+static const rg_key contact_friction_keys[] = {
+    {.name = "between", .type = RG_KEY_TEXTS, REQUIRED, .offset = offsetof(rg_contact_friction, between),
+     .offset_count = offsetof(rg_contact_friction, names), MEANS("names of two materials, or one twice")},
+    {.name = "friction", REAL, FROM(0), REQUIRED, .offset = offsetof(rg_contact_friction, friction), MEANS("as contact.friction")},
+    {.name = "static_friction", REAL, FROM(0), ELSE("friction"), .offset = offsetof(rg_contact_friction, static_friction),
+     MEANS("as contact.static_friction")},
 };
 
 static const rg_key face_set_keys[] = {
@@ -572,6 +582,7 @@ static const rg_key sensor_keys[] = {
 
 const rg_key_table rg_case_table = TABLE(case_keys, rg_case);
 const rg_key_table rg_material_table = TABLE(other_material_keys, rg_other_material);
+const rg_key_table rg_contact_friction_table = TABLE(contact_friction_keys, rg_contact_friction);
 const rg_key_table rg_face_set_table = TABLE(face_set_keys, rg_face_set);
 const rg_key_table rg_boundary_table = TABLE(boundary_keys, rg_boundary);
 const rg_key_table rg_load_table = TABLE(load_keys, rg_load_input);

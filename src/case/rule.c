@@ -224,6 +224,24 @@ void rg_static_friction_rule(rg_check *ck, const rg_node *node) {
     }
 }
 
+void rg_contact_friction_rule(rg_check *ck, const rg_node *list, int i, const char *path, bool good) {
+    const rg_contact_friction *pair = &ck->c->contact.pair[i];
+    const rg_node *item = &list->child[i];
+    if (!good) {
+        return;
+    }
+    const rg_node *given = rg_node_find(item, "static_friction", strlen("static_friction"));
+    rg_between_rule(ck, rg_node_find(item, "between", strlen("between")), pair->names, pair->between, false,
+                    path);
+    if (given != NULL && pair->static_friction < pair->friction) {
+        char *key = rg_text_format("%s.static_friction", path);
+        rg_subject subject = {.key = key, .value = given->text, .allowed = "number >= friction"};
+        rg_problem_add(ck->problems, given->at, &subject,
+                       "faces at rest hold at least as well as sliding ones");
+        rg_free(key);
+    }
+}
+
 void rg_friction_rule(rg_check *ck, const rg_node *node) {
     if (ck->c->interface.friction > 0 && ck->c->interface.contact == RG_CONTACT_FLUX) {
         rg_subject subject = {

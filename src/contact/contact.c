@@ -41,6 +41,12 @@ typedef struct {
     int side;
 } touch;
 
+/* Friction of a pair of materials. */
+typedef struct {
+    int material[2];
+    double friction[2];
+} special;
+
 struct rg_contacts {
     const rg_domain *domain;
     const rg_material *material;
@@ -69,7 +75,9 @@ struct rg_contacts {
     touch *touch;
     double *force, *energy, *depth; /* of the pairs */
     bool rubs;
-    double friction[2];  /* Coulomb's coefficient until a pair slides, while it does */
+    double friction[2]; /* Coulomb's coefficient until a pair slides, while it does */
+    int specials;
+    special *special;    /* of pairs of materials; the last one counts */
     double *grip, *heat; /* of the pairs: what friction remembers, and took; NULL without it */
     rg_grips kept;       /* from before the search */
 };
@@ -140,6 +148,14 @@ rg_contacts *rg_contacts_make(const rg_case *input, const rg_domain *d, const rg
     rg_contacts *c = RG_NEW(rg_contacts, 1);
     *c = (rg_contacts){.domain = d, .material = m, .comm = comm, .penalty = input->contact.penalty};
     c->rubs = rg_case_rubs(input);
+    c->specials = input->contact.pairs;
+    c->special = RG_NEW(special, (size_t)c->specials + 1);
+    for (int i = 0; i < c->specials; i++) {
+        const rg_contact_friction *p = &input->contact.pair[i];
+        c->special[i] = (special){
+            {rg_case_find_material(input, p->between[0]), rg_case_find_material(input, p->between[1])},
+            {fmax(p->friction, p->static_friction), p->friction}};
+    }
     c->friction[0] = input->contact.static_friction;
     c->friction[1] = input->contact.friction;
     MPI_Comm_rank(comm, &c->rank);
@@ -301,6 +317,7 @@ static rg_exposed_face *expose(rg_contacts *c, const uint8_t *exposed, const rg_
                                  .rank = c->rank,
                                  .row = (int32_t)i,
                                  .former = f->interface != NO_INTERFACE,
+                                 .material = d->material[slot / RG_LANES],
                                  .modulus = rg_material_modulus(m),
                                  .shear = m->mu,
                                  .height = rg_surface_height(d, slot, f->face)};
@@ -460,7 +477,15 @@ static void set_friction(const rg_contacts *c, const rg_candidate *from, rg_cont
     double mu = from->face[0].shear + from->face[1].shear,
            all = from->face[0].modulus + from->face[1].modulus;
     memcpy(pair->friction, c->friction, sizeof c->friction);
-    pair->shear = c->rubs ? pair->stiffness * mu / all : 0;
+    for (int i = 0; i < c->specials; i++) {
+        const special *e = &c->special[i];
+        for (int k = 0; k < 2; k++) {
+            if (e->material[k] == from->face[0].material && e->material[1 - k] == from->face[1].material) {
+                memcpy(pair->friction, e->friction, sizeof e->friction);
+            }
+        }
+    }
+    pair->shear = pair->friction[0] > 0 ? pair->stiffness * mu / all : 0;
 }
 
 void rg_contacts_search(rg_contacts *c, const uint8_t *exposed, const rg_real *u) {
@@ -745,6 +770,7 @@ void rg_contacts_free(rg_contacts *c) {
     if (c != NULL) {
         forget(c);
         rg_grips_clear(&c->kept);
+        rg_free(c->special);
         rg_free(c->tile_begin);
         rg_free(c->tile_omega2);
         rg_free(c->tile_touching);

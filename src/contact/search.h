@@ -16,7 +16,8 @@
 typedef struct {
     rg_gid id; /* 4 * element + local face */
     int32_t rank, row;
-    int32_t former;   /* not 0: it was an interface */
+    int32_t former; /* not 0: it was an interface */
+    int32_t material;
     double modulus;   /* lambda + 2 mu (Pa) */
     double shear;     /* mu (Pa) */
     double height;    /* of its element over it (m) */

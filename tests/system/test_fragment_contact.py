@@ -100,7 +100,8 @@ def test_block_slides_to_rest(run, figure, case):
                 f'initial: {{velocity: {{x: "z > {H} ? {speed} : 0"}}}}\n'
                 f'loads: [{{where: "z > {H}", acceleration: {{z: "-{weight}*(t < {rise} ? (1 - cos(pi*t/{rise}))/2 : 1)"}}}}]\n'
                 f'time: {{end: {1.3 * rest}}}\noutput: {{interval: {rest / 20}, fields: [], sensors: [{{name: block, where: "z > {H}", values: [ux, vx]}}]}}\n')
-    result = run(path, sets={"contact.friction": mu})
+    result = run(path, sets={"contact.friction": 0.1, "materials": [{"name": "sled", "model": "linear-elastic", "where": f"z > {H}", "density": DENSITY, "young": YOUNG, "poisson": 0.2}],
+                             "contact.pairs": [{"between": ["material", "sled"], "friction": mu}]})
     time, way = result.history["time"], result.history["block_ux_mean"]
     left = speed - mu * weight * rise / 2  # once all of the weight is there
     theory = speed * rise - mu * weight * rise**2 * (1 / 4 - 1 / np.pi**2) + left**2 / (2 * mu * weight)

@@ -147,6 +147,23 @@ static const mistake mistakes[] = {
     {"  energy: 34\n", "  energy: 34\n  contact: penalty\ncontact: {model: general}\n",
      ":14:18: contact.model: general: the contact of interfaces must fade where faces slide off each other; "
      "allowed: with interface.contact potential: general\n"},
+    {"  energy: 34\n", "  energy: 34\ncontact: {model: general, friction: 0.3, static_friction: 0.2}\n",
+     ":13:59: contact.static_friction: 0.2: faces at rest hold at least as well as sliding ones; allowed: "
+     "number >= contact.friction\n"},
+    {"  energy: 34\n",
+     "  energy: 34\ncontact:\n  model: general\n  pairs:\n    - {between: [material, stel], friction: 0.3}\n"
+     "    - {between: any, friction: 0}\n    - {between: [material], friction: 0.1}\n"
+     "    - {between: [material, material], friction: 0.3, static_friction: 0.1}\n",
+     ":16:28: contact.pairs[0].between: stel: no such material; allowed: names of two materials, or one "
+     "twice: "
+     "material\n"
+     ":17:17: contact.pairs[1].between: any: wrong number of entries; allowed: names of two materials, or "
+     "one twice: material\n"
+     ":18:17: contact.pairs[2].between: [material]: wrong number of entries; allowed: names of two "
+     "materials, "
+     "or one twice: material\n"
+     ":19:71: contact.pairs[3].static_friction: 0.1: faces at rest hold at least as well as sliding ones; "
+     "allowed: number >= friction\n"},
     {"  energy: 34\n", "  energy: 34\ncontact: {penalty: 3}\n",
      ":13:11: contact.penalty: 3: not used, because contact.model is interfaces\n"},
     {"  law: linear\n", "  law: linear\n  activation: continuous\n  onset: 0.2\n",
@@ -282,9 +299,9 @@ static const mistake mistakes[] = {
      ":24:22: bodies[8].shape: ball: not one of the allowed words; allowed: sphere, plane, cylinder, none\n"
      ":24:36: bodies[8].motion: loose: not one of the allowed words; allowed: free, prescribed\n"
      ":24:43: bodies[8].colour: unknown key; allowed: name, shape, motion, at, radius, normal, axis, "
-     "density, length, mass, inertia, velocity, spin, faces, tied, penalty\n"
+     "density, length, mass, inertia, velocity, spin, faces, tied, tied_where, tied_until, penalty\n"
      ":25:5: bodies[9]: 3: not a mapping of keys; allowed: list of {name, shape, motion, at, radius, normal, "
-     "axis, density, length, mass, inertia, velocity, spin, faces, tied, penalty}\n"},
+     "axis, density, length, mass, inertia, velocity, spin, faces, tied, tied_where, tied_until, penalty}\n"},
     {"output:\n", "output:\n  times: [1e-7, 1e-7]\n",
      ":18:10: output.times: [1e-7, 1e-7]: not ascending; allowed: ascending list, each number >= 0 (s)\n"},
     {"output:\n", "output:\n  times: [1e-7, 2e-6]\n",
