@@ -42,6 +42,7 @@ typedef struct {
     rg_real *history;         /* of the material, in/out; NULL if it has none */
     size_t history_stride;    /* values from one block's history to the next: its own, or more where other
                                  blocks are of a material with a longer one */
+    rg_real *thermal;         /* [block][RG_THERMAL][lane], in/out: of solids that heat expands; or NULL */
     bool advance;             /* history goes on by the step that ends here; else it stays as it is */
     rg_real *force;           /* out: internal nodal force of the bulk, -dW/du (N) */
     rg_real *traction;        /* out: area-weighted corner tractions area_f P N_outward (N) */

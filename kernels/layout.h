@@ -141,6 +141,15 @@ enum { /* values per row, and per block */
        RG_PRESTRESS_BLOCK = RG_PRESTRESS * RG_LANES,
 };
 
+enum {                           /* of an element that heat expands, values at its four points */
+       RG_THERMAL_EXPANSION = 0, /* e, by which lengths have grown */
+       RG_THERMAL_LAST = 4,      /* at the end of the last step */
+       RG_THERMAL_FORCE = 8,     /* dW/de there (J/m^3) */
+       RG_THERMAL_WORK = 12,     /* that heat has brought in (J) */
+       RG_THERMAL = 13,
+       RG_THERMAL_BLOCK = RG_THERMAL * RG_LANES,
+};
+
 /* Nodes of local face f in the order both neighbours share. */
 static const int rg_face_node[RG_FACES][RG_FNODES] = {
     {1, 2, 3, 5, 9, 8}, {0, 2, 3, 6, 9, 7}, {0, 1, 3, 4, 8, 7}, {0, 1, 2, 4, 5, 6}};

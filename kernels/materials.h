@@ -116,6 +116,12 @@ typedef enum {
     RG_MATERIAL_BIT_##NAME = 1 << RG_MATERIAL_##NAME,
 enum { RG_MATERIALS(RG_MATERIAL_BIT) RG_MATERIAL_BIT_USER = 1 << RG_MATERIAL_USER };
 
+/* Models that heat may expand: not those whose constants lie elsewhere (rg_material). */
+enum {
+    RG_EXPANDING = ((1 << RG_MATERIAL_MODELS) - 1) &
+                   ~((int)RG_MATERIAL_BIT_ANISOTROPIC | (int)RG_MATERIAL_BIT_DESHPANDE_EVANS)
+};
+
 /* What a parameter may be. */
 typedef enum {
     RG_NEEDED,   /* given, > 0 */
@@ -126,6 +132,8 @@ typedef enum {
 /* Parameters besides density, elastic constants and those of the ceramic alone: name of the enum, key in the
  * block of a material, unit, range, models that use it, meaning. */
 #define RG_MATERIAL_PARAMETERS(X)                                                                            \
+    X(EXPANSION, "expansion", "1/K", RG_FROM_0, RG_EXPANDING,                                                \
+      "by which lengths grow per kelvin above temperature.free; goes with temperature.value")                \
     X(YIELD_STRESS, "yield_stress", "Pa", RG_NEEDED,                                                         \
       RG_MATERIAL_BIT_J2 | RG_MATERIAL_BIT_DESHPANDE_EVANS | RG_MATERIAL_BIT_JOHNSON_COOK,                   \
       "yield stress before any plastic strain")                                                              \

@@ -45,22 +45,78 @@ RG_INLINE void store_released(rg_real *to, const rg_vec released[RG_RELEASED]) {
     }
 }
 
+/* Solids that heat expands by e = expansion times the rise of temperature. With F = (1 + e) Fe the stored
+ * energy is W(Fe) per volume of reference, P = Pe/(1 + e), and the expansion feels the force dW/de = -P:F/(1
+ * + e). What heat brings in is the sum of that times de, by the trapezoidal rule, whose end points are those
+ * of the steps. */
+RG_INLINE rg_real *thermal_of(const rg_bulk_args *args, size_t block, int lane) {
+    return args->thermal == NULL ? NULL : args->thermal + block * RG_THERMAL_BLOCK + lane;
+}
+
+/* H of Fe from that of F. */
+RG_INLINE void take_expansion(const rg_real *thermal, int g, rg_vec H[3][3]) {
+    rg_vec e = rg_load(thermal + (RG_THERMAL_EXPANSION + g) * RG_LANES), part = 1.0 / (1.0 + e);
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 3; j++) {
+            H[i][j] = (i == j ? H[i][j] - e : H[i][j]) * part;
+        }
+    }
+}
+
+RG_INLINE rg_vec grown_volume(const rg_real *thermal, int g) {
+    rg_vec length = 1.0 + rg_load(thermal + (RG_THERMAL_EXPANSION + g) * RG_LANES);
+    return length * length * length;
+}
+
+/* P of F and `stiffening` from those of Fe, whose H is given; the force dW/de. */
+RG_INLINE rg_vec put_expansion(const rg_real *thermal, int g, rg_vec H[3][3], rg_vec P[3][3],
+                               rg_vec *stiffening) {
+    rg_vec e = rg_load(thermal + (RG_THERMAL_EXPANSION + g) * RG_LANES), part = 1.0 / (1.0 + e), power = {0};
+    for (int i = 0; i < 3; i++) {
+        power += P[i][i] + rg_dot(P[i], H[i]);
+        for (int j = 0; j < 3; j++) {
+            P[i][j] *= part;
+        }
+    }
+    *stiffening *= part * part;
+    return -part * power;
+}
+
+/* The work of a step that ends with this force at point g, unless none has led here. */
+RG_INLINE rg_vec expansion_work(rg_real *thermal, int g, rg_vec force, bool advance) {
+    rg_real *now = thermal + (RG_THERMAL_EXPANSION + g) * RG_LANES;
+    rg_real *last = thermal + (RG_THERMAL_LAST + g) * RG_LANES;
+    rg_real *before = thermal + (RG_THERMAL_FORCE + g) * RG_LANES;
+    rg_vec work = 0.5 * (force + rg_load(before)) * (rg_load(now) - rg_load(last));
+    rg_store(last, rg_load(now));
+    rg_store(before, force);
+    return advance ? work : rg_splat(0.0);
+}
+
 RG_INLINE void bulk_vector(const rg_bulk_args *args, size_t block, int lane, rg_gradient gradient) {
     element e;
     load_element(&e, args, block, lane, gradient);
     vec3 common[4], q[4][RG_GAUSS], Q[4] = {{{0}}};
     common_derivatives(&e, gradient, common);
     rg_real *past = history_of(args, block, lane);
-    rg_vec stiffening = {0}, bad = {0}, weight = 0.25 * e.volume, released[RG_RELEASED] = {{0}};
+    rg_real *thermal = thermal_of(args, block, lane);
+    rg_vec stiffening = {0}, bad = {0}, weight = 0.25 * e.volume, released[RG_RELEASED] = {{0}}, heated = {0};
     for (int first = 0; first < RG_GAUSS; first += RG_TOGETHER) {
-        rg_vec H[RG_TOGETHER][3][3], P[RG_TOGETHER][3][3], history[RG_TOGETHER][HISTORY_VALUES];
+        rg_vec H[RG_TOGETHER][3][3] = {{{{0}}}}, P[RG_TOGETHER][3][3], history[RG_TOGETHER][HISTORY_VALUES];
         rg_point point[RG_TOGETHER];
         for (int i = 0; i < RG_TOGETHER; i++) {
             displacement_gradient(&e, gradient, common, first + i, H[i]);
+            if (thermal != NULL) {
+                take_expansion(thermal, first + i, H[i]);
+            }
             load_history(past, first + i, history[i]);
         }
         material_steps(args, H, history, P, point);
         for (int i = 0; i < RG_TOGETHER; i++) {
+            if (thermal != NULL) {
+                rg_vec force = put_expansion(thermal, first + i, H[i], P[i], &point[i].stiffening);
+                heated += weight * expansion_work(thermal, first + i, force, args->advance);
+            }
             stiffening = rg_max(stiffening, point[i].stiffening);
             bad += 0.0 * point[i].stiffening; /* a maximum forgets what is not a number */
             if (RG_HISTORY > 0 && args->advance) {
@@ -74,6 +130,10 @@ RG_INLINE void bulk_vector(const rg_bulk_args *args, size_t block, int lane, rg_
     }
     if (RG_HISTORY > 0 && args->advance) {
         store_released(past, released);
+    }
+    if (thermal != NULL) {
+        rg_real *work = thermal + RG_THERMAL_WORK * RG_LANES;
+        rg_store(work, rg_load(work) + heated);
     }
     store_force(q, Q, args->force + block * RG_NODE_BLOCK + lane, false);
     store_traction(q, Q, args->traction + (block * RG_LANES + (size_t)lane) * RG_TRACTION_ROW);
@@ -110,17 +170,21 @@ RG_INLINE void state_vector(const rg_bulk_state_args *args, size_t block, size_t
     load_element(&e, args->bulk, block, lane, gradient);
     vec3 common[4];
     common_derivatives(&e, gradient, common);
-    const rg_real *past = history_of(args->bulk, block, lane);
+    const rg_real *past = history_of(args->bulk, block, lane), *thermal = thermal_of(args->bulk, block, lane);
     rg_vec energy = {0};
     for (int g = 0; g < RG_GAUSS; g++) {
         rg_vec H[3][3], history[RG_HISTORY + 1];
         rg_point_state s;
         size_t at = row * RG_GAUSS + (size_t)g;
         displacement_gradient(&e, gradient, common, g, H);
+        if (thermal != NULL) {
+            take_expansion(thermal, g, H);
+        }
         load_history(past, g, history);
         material_state(&args->bulk->material, H, history, args->cauchy != NULL, &s);
         energy += 0.25 * e.volume * s.energy;
         if (args->cauchy != NULL) {
+            s.J *= thermal == NULL ? rg_splat(1.0) : grown_volume(thermal, g); /* P F^T = Pe Fe^T */
             store_cauchy(args->cauchy + at * 6 * RG_LANES + lane, H, &s);
         }
         for (int k = 0; RG_HISTORY > 0 && args->internal != NULL && k < RG_INTERNAL; k++) {

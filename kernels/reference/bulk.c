@@ -167,6 +167,37 @@ static rg_reference_point material(const rg_bulk_args *args, bool advance, size_
     return point;
 }
 
+/* Value `row` of what heat does to element e. */
+static rg_real *thermal(const rg_bulk_args *args, size_t e, int row) {
+    return &args->thermal[e / RG_LANES * RG_THERMAL_BLOCK + (size_t)row * RG_LANES + e % RG_LANES];
+}
+
+/* The same of a solid that heat has expanded by s - 1: W(F/s); `step`: with the work of the expansion. */
+static rg_reference_point heated(const rg_bulk_args *args, bool step, bool advance, size_t e, int g,
+                                 double volume, double f[3][3], double p[3][3]) {
+    if (args->thermal == NULL)
+        return material(args, advance, e, g, f, p);
+    double s = 1 + *thermal(args, e, RG_THERMAL_EXPANSION + g), elastic[3][3], force = 0;
+    for (int k = 0; k < 9; k++)
+        elastic[k / 3][k % 3] = f[k / 3][k % 3] / s;
+    rg_reference_point point = material(args, advance, e, g, elastic, p);
+    for (int k = 0; k < 9; k++) {
+        p[k / 3][k % 3] /= s;
+        force -= p[k / 3][k % 3] * f[k / 3][k % 3] / s;
+    }
+    point.stiffening /= s * s;
+    if (step) {
+        rg_real *last = thermal(args, e, RG_THERMAL_LAST + g),
+                *before = thermal(args, e, RG_THERMAL_FORCE + g);
+        if (args->advance)
+            *thermal(args, e, RG_THERMAL_WORK) +=
+                (rg_real)(volume / 4 * (force + *before) / 2 * (s - 1 - *last));
+        *last = *thermal(args, e, RG_THERMAL_EXPANSION + g);
+        *before = (rg_real)force;
+    }
+    return point;
+}
+
 static void release(const rg_bulk_args *args, size_t e, double volume, const rg_reference_point *point) {
     int n = rg_material_history(args->material.model);
     for (int k = 0; n > 0 && args->advance && k < RG_RELEASED; k++)
@@ -180,7 +211,7 @@ static void bulk_element(const rg_bulk_args *args, size_t e) {
     for (int g = 0; g < RG_GAUSS; g++) {
         double f[3][3], p[3][3];
         deformation(&el, g, f);
-        rg_reference_point point = material(args, args->advance, e, g, f, p);
+        rg_reference_point point = heated(args, true, args->advance, e, g, el.volume, f, p);
         release(args, e, el.volume, &point);
         add_force(&el, g, p, force);
         add_traction(&el, g, p, traction);
@@ -219,7 +250,7 @@ void rg_reference_bulk_state(const rg_bulk_state_args *args, size_t begin, size_
             double f[3][3], p[3][3], s[6];
             size_t at = row * RG_GAUSS + (size_t)g;
             deformation(&el, g, f);
-            rg_reference_point point = material(args->bulk, false, e, g, f, p);
+            rg_reference_point point = heated(args->bulk, false, false, e, g, el.volume, f, p);
             energy += el.volume / 4 * point.energy;
             cauchy_stress(p, f, s);
             for (size_t k = 0; args->cauchy && k < 6; k++)

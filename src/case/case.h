@@ -355,6 +355,10 @@ typedef struct {
     struct {
         double linear, quadratic; /* b1, b2 */
     } viscosity;
+    struct {
+        rg_expr *value; /* K; NULL: all is at `free` */
+        double free;    /* at which nothing is expanded (K) */
+    } temperature;
     rg_initial initial;
     rg_start start;
     int initial_sets;

@@ -198,6 +198,9 @@ static const char *why_unused(const scan *s, const rg_key *key, char *text, size
     if (key->group == RG_GROUP_RISE) {
         return "not used without interface.rise.rate";
     }
+    if (key->group == RG_GROUP_HEAT) {
+        return "not used without temperature.value";
+    }
     if (key->group == RG_GROUP_CONTACT) {
         return "not used, because contact.model is interfaces";
     }
@@ -375,6 +378,8 @@ static void learn(rg_check *ck, const rg_key *key, const rg_node *node, bool goo
         ck->usage[RG_GROUP_WEIBULL] = node == NULL ? RG_UNUSED : good ? RG_USED : RG_UNSURE;
     } else if (key->offset == offsetof(rg_case, interface.rise.rate)) {
         ck->usage[RG_GROUP_RISE] = node == NULL ? RG_UNUSED : good ? RG_USED : RG_UNSURE;
+    } else if (key->offset == offsetof(rg_case, temperature.value)) {
+        ck->usage[RG_GROUP_HEAT] = node == NULL ? RG_UNUSED : good ? RG_USED : RG_UNSURE;
     } else if (key->offset == offsetof(rg_case, mesh.file) && node != NULL) {
         ck->usage[RG_GROUP_BOX] = RG_UNUSED;
         ck->box = false;
@@ -426,6 +431,7 @@ void rg_case_check(rg_check *ck, const rg_node *root) {
             rg_rotation_rule(&whole, "initial.", &ck->c->initial);
             rg_start_rule(&whole);
             rg_stress_rule(&whole);
+            rg_temperature_rule(&whole);
         }
     } else if (root->kind != RG_NODE_BAD) {
         char value[64];

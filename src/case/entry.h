@@ -20,8 +20,10 @@ void rg_entry_wrong(const rg_entry *e, const char *key, rg_place at, rg_subject 
  * (case/initial.c). */
 void rg_rotation_rule(const rg_entry *e, const char *prefix, const rg_initial *is);
 
-/* What a static start cannot be found for (case/initial.c). */
+/* What a static start cannot be found for, what a stress before any deformation and what a temperature need
+ * (case/initial.c). */
 void rg_start_rule(const rg_entry *e);
 void rg_stress_rule(const rg_entry *e);
+void rg_temperature_rule(const rg_entry *e);
 
 #endif

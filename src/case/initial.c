@@ -80,6 +80,24 @@ void rg_stress_rule(const rg_entry *e) {
     }
 }
 
+/* Something has to expand; and what is stored in it would be taken for that of a crack. */
+void rg_temperature_rule(const rg_entry *e) {
+    const rg_case *c = e->ck->c;
+    bool expands = false;
+    for (int i = 0; i <= c->others; i++) {
+        expands = expands || rg_case_material(c, i)->parameter[RG_PARAMETER_EXPANSION] > 0;
+    }
+    if (c->temperature.value != NULL && !expands) {
+        rg_entry_wrong(e, "temperature.value", e->item->at, (rg_subject){0},
+                       "has no use: no material has an expansion");
+    } else if (c->temperature.value != NULL && c->output.crack_fronts > 0) {
+        rg_entry_wrong(
+            e, "temperature.value", e->item->at, (rg_subject){0},
+            "not with output.crack_fronts: the energy that a crack sets free is not known in a field "
+            "of temperature");
+    }
+}
+
 void rg_start_rule(const rg_entry *e) {
     const rg_case *c = e->ck->c;
     unsigned inside = 0;

@@ -130,17 +130,16 @@ const char *rg_key_allowed(const rg_key *key, char *text, size_t size) {
 
 void rg_models_words(const rg_key *key, char *text, size_t size) {
     const char *join = "";
-    unsigned others = ((1U << RG_MATERIAL_MODELS) - 1) & ~key->models;
+    unsigned all = (1U << RG_MATERIAL_MODELS) - 1, others = all & ~key->models;
+    unsigned rest = others & (others - 1); /* without the first one */
+    bool few = others != 0 && (rest & (rest - 1)) == 0 && key->models != 0;
     text[0] = '\0';
-    for (int m = 0; m < RG_MATERIAL_MODELS && others != 0; m++) {
-        if (others == 1U << m) {
-            rg_text_add(text, size, "all but %s%s", rg_material_word((rg_material_model)m),
-                        (key->models & RG_MATERIAL_BIT_USER) == 0 ? ", user" : "");
-            return;
-        }
+    if (few) { /* one or two are not among them */
+        join = "all but ";
+        others |= ~key->models & RG_MATERIAL_BIT_USER;
     }
     for (int m = 0; m <= RG_MATERIAL_USER; m++) {
-        if ((key->models >> m & 1U) != 0) {
+        if (((few ? others : key->models) >> m & 1U) != 0) {
             rg_text_add(text, size, "%s%s", join, rg_material_word((rg_material_model)m));
             join = ", ";
         }
@@ -245,6 +244,8 @@ bool rg_key_used(const rg_key *key, const void *base) {
         return ((const rg_case *)base)->interface.weibull.modulus > 0;
     case RG_GROUP_RISE:
         return ((const rg_case *)base)->interface.rise.rate > 0;
+    case RG_GROUP_HEAT:
+        return ((const rg_case *)base)->temperature.value != NULL;
     case RG_GROUP_CONTACT:
         return ((const rg_case *)base)->contact.model == RG_CONTACT_GENERAL;
     case RG_GROUP_LAW:

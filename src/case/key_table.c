@@ -293,6 +293,10 @@ static const rg_key case_keys[] = {
     {.name = "viscosity.quadratic", REAL, FROM(0), DEFAULT(0), CASE(viscosity.quadratic),
      MEANS("b2, in compression alone, as 1.2")},
 
+    {.name = "temperature.value", .unit = "K", .type = RG_KEY_EXPR, ELSE("temperature.free"), CASE(temperature.value),
+     MEANS("of the solid, as given: it expands materials with an expansion, and nothing is conducted; tables make it one of measured times")},
+    {.name = "temperature.free", .unit = "K", REAL, FROM(0), DEFAULT(293), GROUP(HEAT), CASE(temperature.free), MEANS("at which nothing is expanded")},
+
     {.name = "mass", EXPLAINED(masses), DEFAULT(RG_MASS_CONSISTENT), CASE(mass), MEANS("mass matrix")},
 
     INITIAL_KEYS("initial.", offsetof(rg_case, initial))

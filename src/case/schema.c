@@ -410,6 +410,8 @@ static void put_conditions(writer *w, const rg_key_table *table, const char *sec
         put_presence(w, section, "modulus", RG_GROUP_WEIBULL, true);
     } else if (strcmp(section, "interface.rise.") == 0) {
         put_presence(w, section, "rate", RG_GROUP_RISE, true);
+    } else if (strcmp(section, "temperature.") == 0) {
+        put_presence(w, section, "value", RG_GROUP_HEAT, true);
     }
     if (material || interface) {
         close_group(w, ']');

@@ -84,6 +84,14 @@ static rg_exact_sum *parts_of_block(rg_exact_sum *sum, const rg_solver *s, size_
     return parts_of(sum, s, s->domain->material[block]);
 }
 
+/* What heat has brought in is work from outside. */
+static void add_heat(rg_exact_sum *sum, const rg_solver *s, size_t slot) {
+    if (s->thermal != NULL) {
+        size_t at = slot / RG_LANES * RG_THERMAL_BLOCK + RG_THERMAL_WORK * RG_LANES + slot % RG_LANES;
+        rg_exact_add(&sum[EXTERNAL], s->thermal[at]);
+    }
+}
+
 static void add_released(rg_exact_sum *sum, const rg_solver *s, size_t slot) {
     int history = rg_material_values(rg_material_of(s, slot));
     for (size_t k = 0; history > 0 && k < RG_RELEASED; k++) {
@@ -142,6 +150,7 @@ static void element_energies(rg_solver *s, const rg_tile *t, const rg_workspace 
     for (size_t slot = t->begin * RG_LANES; slot < t->end * RG_LANES; slot++) {
         if (s->domain->id[slot] >= 0) {
             add_released(sum, s, slot);
+            add_heat(sum, s, slot);
             if (s->heat != NULL) {
                 rg_exact_add(&sum[VISCOUS], s->heat[slot]);
                 rg_exact_add(&parts_of_block(sum, s, slot / RG_LANES)[PART_DISSIPATED], s->heat[slot]);

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "base/vector.h"
+#include "quadrature.h"
 
 /* Ends of each node: a corner is both ends of itself. */
 const int rg_node_end[RG_NODES][2] = {{0, 0}, {1, 1}, {2, 2}, {3, 3}, {0, 1},
@@ -18,6 +19,15 @@ void rg_node_position(const double *corner, int node, double x[3]) {
 static double triple(const double a[3], const double b[3], const double c[3]) {
     return a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) +
            a[2] * (b[0] * c[1] - b[1] * c[0]);
+}
+
+void rg_gauss_position(const double *corner, int g, double x[3]) {
+    for (int c = 0; c < 3; c++) {
+        x[c] = 0;
+        for (int i = 0; i < 4; i++) {
+            x[c] += (i == g ? RG_GAUSS_B : RG_GAUSS_A) * corner[3 * i + c];
+        }
+    }
 }
 
 void rg_barycentric(const double *corner, const double x[3], double l[4]) {

@@ -12,6 +12,9 @@ extern const int rg_node_end[RG_NODES][2];
 /* Reference position of a node from the four corners [4][3] (m). */
 void rg_node_position(const double *corner, int node, double x[3]);
 
+/* Reference position of quadrature point g (m). */
+void rg_gauss_position(const double *corner, int g, double x[3]);
+
 /* Barycentric coordinates of point x in the element with the given corners [4][3]. */
 void rg_barycentric(const double *corner, const double x[3], double l[4]);
 

@@ -315,7 +315,7 @@ rg_equilibrium rg_equilibrium_find(rg_solver *s, FILE *out) {
                "what `boundary` prescribes at t = 0 does not hold the body: it can still move or turn");
     }
     q.coarse = rg_coarse_make(s);
-    double stress = s->prestress != NULL ? rg_initial_stress_scale(s) : 0;
+    double stress = fmax(s->prestress != NULL ? rg_initial_stress_scale(s) : 0, rg_heating_scale(s));
     double loads = fmax(load_norm(&q), stress), scale = loads, residual = find_residual(&q, &scale),
            last = INFINITY;
     for (int k = 0; k < NEWTON_STEPS && residual > tolerance() * scale; k++) {

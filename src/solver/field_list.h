@@ -28,6 +28,8 @@
     X(history, REAL, ELEMENT, s->model->history_stride / RG_LANES, s->model->history_stride > 0, "history")  \
     /* of an element before anything is displaced (kernels/element/prestress.c) */                           \
     X(prestress, REAL, ELEMENT, RG_PRESTRESS, rg_case_has_stress(s->input), "prestress")                     \
+    /* expansion by heat, and its work (kernels/layout.h) */                                                 \
+    X(thermal, REAL, ELEMENT, RG_THERMAL, s->input->temperature.value != NULL, "thermal")                    \
     /* dissipated by bulk viscosity (J) */                                                                   \
     X(heat, DOUBLE, ELEMENT, 1, is_viscous(s->input), "heat")                                                \
     /* contact between fragments: 0 of an interface that holds, 1 from when it was found to have separated,  \

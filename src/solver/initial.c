@@ -136,15 +136,6 @@ static size_t stress_index(size_t slot, int g, int k) {
     return slot / RG_LANES * RG_PRESTRESS_BLOCK + (size_t)(g * 6 + k) * RG_LANES + slot % RG_LANES;
 }
 
-static void point_position(const double *corner, int g, double x[3]) {
-    for (int c = 0; c < 3; c++) {
-        x[c] = 0;
-        for (int i = 0; i < 4; i++) {
-            x[c] += (i == g ? RG_GAUSS_B : RG_GAUSS_A) * corner[3 * i + c];
-        }
-    }
-}
-
 /* Ends the run: value `part` of initial, of its set or of itself (-1), is not finite at a place. */
 _Noreturn static void refuse_value(const rg_solver *s, int set, const char *part, const rg_expr *value,
                                    const rg_first_bad *bad) {
@@ -168,7 +159,7 @@ static void fill_stress(rg_solver *s, const int16_t *set) {
         const rg_initial *is = set[slot] < 0 ? &s->input->initial : &s->input->initial_set[set[slot]].is;
         double x[3], value = 0;
         if (s->domain->id[slot] >= 0 && is->stress[k] != NULL) {
-            point_position(s->domain->corner + 12 * slot, g, x);
+            rg_gauss_position(s->domain->corner + 12 * slot, g, x);
             value = rg_expr_value(is->stress[k], x, 0);
             if (!isfinite(value)) {
                 rg_first_bad_note(&bad, 6 * (set[slot] + 1) + k, x, value);

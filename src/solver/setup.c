@@ -122,6 +122,7 @@ static rg_solver *make(const rg_case *input, rg_part *part, MPI_Comm comm) {
     if (part->original == NULL) {
         s->contacts = rg_contacts_make(input, s->domain, model->material, comm);
     }
+    s->heating = rg_heating_make(s);
     allocate(s);
     rg_law_start(s);
     return s;
@@ -196,6 +197,7 @@ void rg_solver_free(rg_solver *s) {
         rg_absorbing_free(s->absorbing);
         rg_account_free(s->account);
         rg_contacts_free(s->contacts);
+        rg_heating_free(s->heating);
         rg_assembly_free(s->assembly);
         rg_conforming_faces_free((rg_conforming_faces *)s->conforming_faces);
         rg_domain_free((rg_domain *)s->domain);

@@ -27,6 +27,7 @@
 #include "solver/constraint.h"
 #include "solver/field_list.h"
 #include "solver/load.h"
+#include "solver/heat.h"
 #include "solver/model.h"
 #include "solver/phases.h"
 #include "solver/tie.h"
@@ -82,6 +83,7 @@ struct rg_solver {
     rg_account *account; /* of what acts from outside */
     rg_loads *loads;
     rg_absorbing *absorbing;
+    rg_heating *heating;   /* NULL: no temperature is prescribed */
     rg_contacts *contacts; /* between fragments; NULL: not computed */
     int64_t contacts_most; /* most pairs of faces that touched at a time */
     double contact_omega2; /* most that they added to the squared frequency (1/s^2) */

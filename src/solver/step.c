@@ -123,6 +123,9 @@ static void element_sweep(rg_solver *s, size_t tile, const rg_workspace *w, cons
     rg_interface_args interface = interfaces_of(s, t, w, p);
     rg_trace_args traces = rg_tile_traces(s, t, w, false);
     rg_ahead_of_elements(s, t);
+    if (p->constrain) {
+        rg_heating_tile(s, tile);
+    }
     if (p->apart) {
         memset(p->velocity + t->begin * RG_NODE_BLOCK, 0, blocks * RG_NODE_BLOCK * sizeof *p->velocity);
     }
@@ -528,6 +531,7 @@ void rg_solver_settle(rg_solver *s) {
 
 void rg_solver_start(rg_solver *s) {
     rg_initial_fill(s);
+    rg_heating_start(s);
     rg_ties_start(s->ties, s->u, s->velocity);
     rg_solver_settle(s);
 }

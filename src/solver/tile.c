@@ -42,6 +42,7 @@ rg_bulk_args rg_tile_bulk(const rg_solver *s, const rg_tile *t, const rg_workspa
                           .unlinked = s->unlinked + t->ibegin * RG_LANES,
                           .history = history_of(s, t),
                           .history_stride = s->model->history_stride,
+                          .thermal = s->thermal == NULL ? NULL : s->thermal + t->begin * RG_THERMAL_BLOCK,
                           .force = w->force,
                           .traction = w->traction,
                           .stiffening = s->stiffening + t->begin * RG_LANES};

@@ -132,6 +132,7 @@ VARIANTS = {  # test_checkpoint.c has more, on one rank
     **EVERYWHERE,
     "plain": {"output.fields": [], "output.probes": [], "boundary": []},
 }
+VARIANTS["hot"] = {"material.expansion": 2e-5, "temperature.value": "293 + 40*cos(pi*x/1e-3)*sin(2*pi*t/1e-7)"}
 if not SINGLE:  # solids whose history grows, heats and relaxes; copper flows at the rate of the last step
     VARIANTS["flowing"] = {"interface.strength": 60e6, "material": {"preset": "copper-ofhc", "yield_stress": 120e6, "density": 3000},
                            "materials": [{"name": "glass", "where": "z > 5e-4", "preset": "float-glass-jh2", "density": 3000, "intact_strength": 0.05},

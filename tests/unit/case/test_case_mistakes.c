@@ -15,7 +15,8 @@
     "allowed: list from displacement, velocity, stress, mean_stress, principal_stress, crack, "              \
     "damage, regime, plastic_strain, triaxiality, rank, fragment, material"
 #define BLOCKS                                                                                               \
-    "allowed: defaults, tables, mesh, material, materials, interface, contact, viscosity, mass, initial, "   \
+    "allowed: defaults, tables, mesh, material, materials, interface, contact, viscosity, temperature, "     \
+    "mass, initial, "                                                                                        \
     "start, "                                                                                                \
     "boundary, "                                                                                             \
     "loads, "                                                                                                \

@@ -221,7 +221,7 @@ static const mistake keys[] = {
      ": 4\n"
      "mesh:\n",
      ":1:1: unknown key; allowed: defaults, tables, mesh, material, materials, interface, contact, "
-     "viscosity, mass, "
+     "viscosity, temperature, mass, "
      "initial, start, "
      "boundary, loads, bodies, time, output, checkpoint\n"
      ":2:3: a key must be a single word\n"},
