@@ -22,6 +22,8 @@ enum {
  * order 11 22 33 23 13 12 with shear strains 2 e_23, 2 e_13, 2 e_12. */
 enum { RG_STIFFNESS = 21 };
 
+enum { RG_OGDEN_TERMS = 3 }; /* of the energy of material/ogden.h, at most */
+
 /* History of a point of material/j2.h. Zero is the virgin material. */
 enum {
     RG_J2_STRAIN = 0, /* ep, accumulated equivalent plastic strain */
@@ -81,6 +83,7 @@ enum {
 #define RG_MATERIALS_DOUBLE(X)                                                                               \
     X(mooney_rivlin, MOONEY_RIVLIN, "mooney-rivlin", "rubber: Mooney and Rivlin's, compressible", 0,         \
       RG_TAKES_BULK)                                                                                         \
+    X(ogden, OGDEN, "ogden", "rubber: Ogden's, of powers of the principal stretches", 0, RG_TAKES_BULK)      \
     X(deshpande_evans, DESHPANDE_EVANS, "deshpande-evans",                                                   \
       "a ceramic with growing microcracks and plastic flow", RG_DE_HISTORY,                                  \
       RG_HAS_DAMAGE | RG_HAS_REGIME | RG_HAS_PLASTIC)                                                        \
@@ -144,7 +147,17 @@ typedef enum {
       "saturation_rate")                                                                                     \
     X(SATURATION_RATE, "saturation_rate", NULL, RG_FROM_0, RG_MATERIAL_BIT_J2,                               \
       "how fast it goes there: as 1 - exp(-saturation_rate times plastic strain)")                           \
-    X(BULK, "bulk", "Pa", RG_NEEDED, RG_MATERIAL_BIT_MOONEY_RIVLIN, "bulk modulus K")                        \
+    X(BULK, "bulk", "Pa", RG_NEEDED, RG_MATERIAL_BIT_MOONEY_RIVLIN | RG_MATERIAL_BIT_OGDEN,                  \
+      "bulk modulus K")                                                                                      \
+    X(MU_1, "mu_1", "Pa", RG_ANY_SIGN, RG_MATERIAL_BIT_OGDEN,                                                \
+      "of the energy mu_1/alpha_1 (l1^alpha_1 + l2^alpha_1 + l3^alpha_1 - 3), l the stretches without what " \
+      "the volume does; as each term of the sign of alpha_1. The shear modulus at rest is half of the sum "  \
+      "of mu alpha")                                                                                         \
+    X(MU_2, "mu_2", "Pa", RG_ANY_SIGN, RG_MATERIAL_BIT_OGDEN, "of a second term")                            \
+    X(MU_3, "mu_3", "Pa", RG_ANY_SIGN, RG_MATERIAL_BIT_OGDEN, "of a third term")                             \
+    X(ALPHA_1, "alpha_1", NULL, RG_ANY_SIGN, RG_MATERIAL_BIT_OGDEN, "power of the first term")               \
+    X(ALPHA_2, "alpha_2", NULL, RG_ANY_SIGN, RG_MATERIAL_BIT_OGDEN, "power of the second term")              \
+    X(ALPHA_3, "alpha_3", NULL, RG_ANY_SIGN, RG_MATERIAL_BIT_OGDEN, "power of the third term")               \
     X(C10, "c10", "Pa", RG_NEEDED, RG_MATERIAL_BIT_MOONEY_RIVLIN,                                            \
       "coefficient of the first invariant; the shear modulus at rest is 2 (c10 + c01)")                      \
     X(C01, "c01", "Pa", RG_FROM_0, RG_MATERIAL_BIT_MOONEY_RIVLIN, "coefficient of the second invariant")     \

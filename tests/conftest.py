@@ -71,7 +71,8 @@ SINGLE = "single precision" in subprocess.run([PROGRAM, "--version"], env={**os.
 
 
 if not SINGLE:
-    EVERYWHERE["continuous"]["materials"] = [{"name": "rubber", "where": "x > 0 && z > 0", "model": "mooney-rivlin", "density": 3690, "bulk": 150e9, "c10": 40e9, "c01": 14e9}]
+    EVERYWHERE["continuous"]["materials"] = [{"name": "rubber", "where": "x > 0 && z > 0", "model": "mooney-rivlin", "density": 3690, "bulk": 150e9, "c10": 40e9, "c01": 14e9},
+                                            {"name": "ogden", "where": "x < 0 && z > 0", "model": "ogden", "density": 3690, "bulk": 150e9, "mu_1": 60e9, "alpha_1": 1.3, "mu_2": -60e9, "alpha_2": -2}]
 
 
 def rounding(double, single):

@@ -20,6 +20,7 @@ typedef struct {
 #define LINEAR    RG_MATERIAL_LINEAR_ELASTIC
 #define KIRCHHOFF RG_MATERIAL_ST_VENANT_KIRCHHOFF
 #define CRYSTAL   RG_MATERIAL_ANISOTROPIC
+#define OGDEN     RG_MATERIAL_OGDEN
 #define RUBBER    RG_MATERIAL_MOONEY_RIVLIN
 #define J2        RG_MATERIAL_J2
 #define COOK      RG_MATERIAL_JOHNSON_COOK
@@ -39,6 +40,7 @@ static const kernel_case cases[] = {
      BENCH_ROUGH},
     {"anisotropic", RG_COST_BULK, 0, {.gradient = RG_GRADIENT_LIFTED, .model = CRYSTAL}, BENCH_ROUGH},
     {"Mooney-Rivlin", RG_COST_BULK, 0, {.gradient = RG_GRADIENT_LIFTED, .model = RUBBER}, BENCH_ROUGH},
+    {"Ogden", RG_COST_BULK, 0, {.gradient = RG_GRADIENT_LIFTED, .model = OGDEN}, BENCH_ROUGH},
     {"J2 elastic",
      RG_COST_BULK,
      0,

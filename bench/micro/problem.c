@@ -156,6 +156,10 @@ static rg_material make_material(rg_material_model model) {
     } else {
         memcpy(m.of.parameter, rg_cost_parameters, sizeof rg_cost_parameters);
         m.of.parameter[RG_PARAMETER_BULK] = LAMBDA + 2 * MU / 3;
+        for (int p = 0; p < RG_OGDEN_TERMS; p++) {
+            m.of.parameter[RG_PARAMETER_MU_1 + p] = MU / 3;
+            m.of.parameter[RG_PARAMETER_ALPHA_1 + p] = 2;
+        }
         m.of.parameter[RG_PARAMETER_C10] = 0.3 * MU;
         m.of.parameter[RG_PARAMETER_C01] = 0.2 * MU;
     }

@@ -82,6 +82,22 @@ enum {
                     (1 + 2 * FMA + 2 + FMA + 2 * FMA + FMA + 1) + (1 + 2 * FMA) + (1 + FMA) + FMA,
 };
 
+/* Ogden, three terms: a rotation; stretches and their logarithms; of each term powers, sum, tau, energy,
+ * largest; P; bound. */
+enum {
+    OGDEN_ROTATION =
+        (1 + 1 + 1 + FMA + 1 + 1) + 1 + (FMA + 2) + 1 + 1 + 2 + 2 * (1 + FMA) + 3 * 2 * (1 + FMA),
+    OGDEN_STRAIN =
+        VOLUME_CHANGE + 6 * (1 + DOT + 2) + 15 * OGDEN_ROTATION + 3 * FMA + 1 + 3 * (1 + HENCKY_LOG1P + FMA),
+    OGDEN_TERM = 3 * (1 + HENCKY_EXPM1 + FMA) + 2 + 3 * 2 * FMA,
+    OGDEN_TERMS = RG_OGDEN_TERMS * OGDEN_TERM,
+    OGDEN_PIOLA = 3 * (2 + 6 * (1 + FMA)) + 9 * (1 + DOT),
+    OGDEN_MEAN = 3,
+    OGDEN_STIFFENING =
+        RG_OGDEN_TERMS * FMA + 1 + (1 + 1 + 2 * FMA + 1) + 3 + 1 + (1 + 1 + FMA + 1 + FMA) + 2 + 1 + FMA,
+    OGDEN_ENERGY = RG_OGDEN_TERMS * FMA + 1 + 2 * FMA,
+};
+
 /* Viscoelastic: six components of E; a stress; F S; constants of a step, once for the points of an element.
  */
 enum {
@@ -123,6 +139,8 @@ static double point_flops(const rg_cost_variant *v) {
         return JACOBIAN + VOIGT_STRAIN + VOIGT_STRESS + VOIGT_PIOLA + VOIGT_STIFFENING + VALID + FMA;
     case RG_MATERIAL_MOONEY_RIVLIN:
         return MOONEY_STRAIN + MOONEY_STRESS + MOONEY_STIFFENING + FMA;
+    case RG_MATERIAL_OGDEN:
+        return OGDEN_STRAIN + OGDEN_TERMS + OGDEN_PIOLA + OGDEN_MEAN + OGDEN_STIFFENING + FMA;
     case RG_MATERIAL_DESHPANDE_EVANS:
         return rg_ceramic_flops(v) + FMA + released;
     case RG_MATERIAL_J2:
@@ -151,6 +169,9 @@ static double state_flops(const rg_cost_variant *v) {
         return VOIGT_STRAIN + VOIGT_STRESS + VOIGT_ENERGY + (v->cauchy ? JACOBIAN + VOIGT_PIOLA + CAUCHY : 0);
     case RG_MATERIAL_MOONEY_RIVLIN:
         return MOONEY_STRAIN + MOONEY_ENERGY + (v->cauchy ? MOONEY_STRESS + CAUCHY : 0);
+    case RG_MATERIAL_OGDEN:
+        return OGDEN_STRAIN + OGDEN_TERMS + OGDEN_ENERGY + FMA +
+               (v->cauchy ? OGDEN_PIOLA + OGDEN_MEAN + CAUCHY : 0);
     case RG_MATERIAL_DESHPANDE_EVANS:
         return rg_ceramic_state_flops(v) + FMA + (v->cauchy ? 3 + CAUCHY : 0);
     case RG_MATERIAL_J2:

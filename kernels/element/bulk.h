@@ -106,14 +106,14 @@ RG_INLINE void bulk_vector(const rg_bulk_args *args, size_t block, int lane, rg_
         rg_point point[RG_TOGETHER];
         for (int i = 0; i < RG_TOGETHER; i++) {
             displacement_gradient(&e, gradient, common, first + i, H[i]);
-            if (thermal != NULL) {
+            if (__builtin_expect(thermal != NULL, 0)) {
                 take_expansion(thermal, first + i, H[i]);
             }
             load_history(past, first + i, history[i]);
         }
         material_steps(args, H, history, P, point);
         for (int i = 0; i < RG_TOGETHER; i++) {
-            if (thermal != NULL) {
+            if (__builtin_expect(thermal != NULL, 0)) {
                 rg_vec force = put_expansion(thermal, first + i, H[i], P[i], &point[i].stiffening);
                 heated += weight * expansion_work(thermal, first + i, force, args->advance);
             }
@@ -131,7 +131,7 @@ RG_INLINE void bulk_vector(const rg_bulk_args *args, size_t block, int lane, rg_
     if (RG_HISTORY > 0 && args->advance) {
         store_released(past, released);
     }
-    if (thermal != NULL) {
+    if (__builtin_expect(thermal != NULL, 0)) {
         rg_real *work = thermal + RG_THERMAL_WORK * RG_LANES;
         rg_store(work, rg_load(work) + heated);
     }
@@ -177,7 +177,7 @@ RG_INLINE void state_vector(const rg_bulk_state_args *args, size_t block, size_t
         rg_point_state s;
         size_t at = row * RG_GAUSS + (size_t)g;
         displacement_gradient(&e, gradient, common, g, H);
-        if (thermal != NULL) {
+        if (__builtin_expect(thermal != NULL, 0)) {
             take_expansion(thermal, g, H);
         }
         load_history(past, g, history);

@@ -147,6 +147,30 @@ static void check_cone(rg_check *ck) {
     }
 }
 
+/* Each term of Ogden's solid stiffens it; there is one. */
+static void check_ogden(rg_check *ck) {
+    const rg_material_check *m = &ck->material;
+    bool some = false, good = true;
+    if (m->of->model != RG_MATERIAL_OGDEN) {
+        return;
+    }
+    for (int p = 0; p < RG_OGDEN_TERMS; p++) {
+        int mu = RG_PARAMETER_MU_1 + p, alpha = RG_PARAMETER_ALPHA_1 + p;
+        double product = m->of->parameter[mu] * m->of->parameter[alpha];
+        const rg_node *given = m->given[mu] != NULL ? m->given[mu] : m->given[alpha];
+        good = good && !m->bad[mu] && !m->bad[alpha];
+        some = some || product > 0;
+        if (given != NULL && good && product <= 0) {
+            wrong(ck, given->key_at, parameter_key[mu], NULL, "not a number of the sign of %s%s, neither 0",
+                  m->path, parameter_key[alpha]);
+            good = false;
+        }
+    }
+    if (!some && good && m->block != NULL) {
+        wrong(ck, m->block->at, "mu_1", NULL, "missing, and %smu_2 and %smu_3 too", m->path, m->path);
+    }
+}
+
 void rg_parameters_rule(rg_check *ck) {
     const rg_material_check *m = &ck->material;
     for (size_t k = 0; k < sizeof pairs / sizeof *pairs; k++) {
@@ -165,6 +189,7 @@ void rg_parameters_rule(rg_check *ck) {
         }
     }
     check_cone(ck);
+    check_ogden(ck);
 }
 
 void rg_flaw_rule(rg_check *ck) {

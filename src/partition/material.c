@@ -109,6 +109,12 @@ static rg_material make(const rg_material_input *in, const rg_material *like) {
         memcpy(m.of.parameter, in->parameter, sizeof m.of.parameter);
         m.mu = 2 * (in->parameter[RG_PARAMETER_C10] + in->parameter[RG_PARAMETER_C01]);
         m.lambda = in->parameter[RG_PARAMETER_BULK] - 2 * m.mu / 3;
+    } else if (m.model == RG_MATERIAL_OGDEN) {
+        memcpy(m.of.parameter, in->parameter, sizeof m.of.parameter);
+        for (int p = 0; p < RG_OGDEN_TERMS; p++) {
+            m.mu += 0.5 * in->parameter[RG_PARAMETER_MU_1 + p] * in->parameter[RG_PARAMETER_ALPHA_1 + p];
+        }
+        m.lambda = in->parameter[RG_PARAMETER_BULK] - 2 * m.mu / 3;
     } else if ((rg_material_inside(m.model) & RG_TAKES_YOUNG) != 0) {
         set_young(&m, in->young, in->poisson);
         memcpy(m.of.parameter, in->parameter, sizeof m.of.parameter);

@@ -1,11 +1,12 @@
-/* Points of the linear elastic, the St. Venant-Kirchhoff and the Mooney-Rivlin solid against theory: stress
- * by hand, what a rotation does, the bound on the acoustic tensor. (test_reference.c differentiates their
- * energies, test_kernels.c holds the kernels against these points.) */
+/* Points of the linear elastic, the St. Venant-Kirchhoff, the Mooney-Rivlin and the Ogden solid against
+ * theory: stress by hand, what a rotation does, the bound on the acoustic tensor. (test_reference.c
+ * differentiates their energies, test_kernels.c holds the kernels against these points.) */
 #include <stdarg.h>
 #include <stddef.h>
 #include <setjmp.h>
 #include <cmocka.h>
 #include <math.h>
+#include <string.h>
 
 #include "reference/material.h"
 #include "support/acoustic.h"
@@ -23,17 +24,24 @@ typedef struct {
 static const solid solids[] = {{rg_reference_point_neo_hookean, "neo-Hookean"},
                                {rg_reference_point_linear_elastic, "linear"},
                                {rg_reference_point_st_venant_kirchhoff, "St. Venant-Kirchhoff"},
-                               {rg_reference_point_mooney_rivlin, "Mooney-Rivlin"}};
-enum { NEO_HOOKEAN, LINEAR, KIRCHHOFF, MOONEY, SOLIDS };
+                               {rg_reference_point_mooney_rivlin, "Mooney-Rivlin"},
+                               {rg_reference_point_ogden, "Ogden"}};
+enum { NEO_HOOKEAN, LINEAR, KIRCHHOFF, MOONEY, OGDEN, SOLIDS };
 #define C10 (0.35 * MU)
 #define C01 (0.15 * MU)
 
-static const rg_material elastic = {
-    .lambda = LAMBDA,
-    .mu = MU,
-    .density = 3690,
-    .of.parameter = {
-        [RG_PARAMETER_BULK] = LAMBDA + 2 * MU / 3, [RG_PARAMETER_C10] = C10, [RG_PARAMETER_C01] = C01}};
+static const rg_material elastic = {.lambda = LAMBDA,
+                                    .mu = MU,
+                                    .density = 3690,
+                                    .of.parameter = {[RG_PARAMETER_BULK] = LAMBDA + 2 * MU / 3,
+                                                     [RG_PARAMETER_C10] = C10,
+                                                     [RG_PARAMETER_C01] = C01,
+                                                     [RG_PARAMETER_MU_1] = 0.5 * MU,
+                                                     [RG_PARAMETER_ALPHA_1] = 1.3,
+                                                     [RG_PARAMETER_MU_2] = 0.1 * MU,
+                                                     [RG_PARAMETER_ALPHA_2] = 5,
+                                                     [RG_PARAMETER_MU_3] = -0.425 * MU,
+                                                     [RG_PARAMETER_ALPHA_3] = -2}};
 
 static rg_reference_point point(int which, double F[3][3], double P[3][3]) {
     rg_reference_point out = {0};
@@ -99,9 +107,62 @@ static void test_rubber_by_hand(void **state) {
     }
 }
 
+static rg_reference_point rubber(rg_reference_point_law *law, const double parameter[RG_PARAMETERS],
+                                 double F[3][3], double P[3][3]) {
+    rg_material m = {.lambda = LAMBDA, .mu = MU};
+    rg_reference_point out = {0};
+    memcpy(m.of.parameter, parameter, sizeof m.of.parameter);
+    law(&m, false, F, NULL, P, &out);
+    return out;
+}
+
+/* Ogden's solid where it keeps its volume, stretched by l along one axis: tau_1 - tau_2 = sum mu (l^alpha -
+ * l^(-alpha/2)), two stretches alike. */
+static void test_ogden_by_hand(void **state) {
+    const double mu[3] = {0.5 * MU, 0.1 * MU, -0.425 * MU}, alpha[3] = {1.3, 5, -2};
+    const solid *s = &solids[OGDEN];
+    (void)state;
+    for (int n = 0; n < 10; n++) {
+        const double l = 0.5 + 0.25 * n, across = 1 / sqrt(l);
+        double F[3][3] = {{across, 0, 0}, {0, l, 0}, {0, 0, across}}, P[3][3], expected = 0, energy = 0;
+        rg_reference_point r = point(OGDEN, F, P);
+        for (int p = 0; p < 3; p++) {
+            expected += mu[p] * (pow(l, alpha[p]) - pow(l, -alpha[p] / 2));
+            energy += mu[p] / alpha[p] * (pow(l, alpha[p]) + 2 * pow(l, -alpha[p] / 2) - 3);
+        }
+        assert_near(s, P[1][1] * l - P[0][0] * across, expected, 1e-13 * MU * (1 + fabs(expected) / MU));
+        assert_near(s, P[2][2], P[0][0], 1e-13 * MU * (1 + fabs(P[0][0]) / MU));
+        assert_near(s, r.energy, energy, 1e-13 * MU * (1 + energy / MU));
+    }
+}
+
 static void random_gradient(dice *d, double size, double F[3][3]) {
     for (int k = 0; k < 9; k++)
         F[k / 3][k % 3] = (k % 4 == 0) + size * dice_sign(d);
+}
+
+/* Two terms of the powers 2 and -2 are Mooney and Rivlin's solid, and the first one alone is that without
+ * c01. */
+static void test_ogden_is_mooney_rivlin(void **state) {
+    dice d = {8, 0};
+    (void)state;
+    for (int n = 0; n < 1000; n++) {
+        const double c10 = 0.35 * MU, c01 = n % 2 == 0 ? 0.15 * MU : 0, K = LAMBDA + 2 * MU / 3;
+        const double mooney[RG_PARAMETERS] = {
+            [RG_PARAMETER_BULK] = K, [RG_PARAMETER_C10] = c10, [RG_PARAMETER_C01] = c01};
+        const double ogden[RG_PARAMETERS] = {[RG_PARAMETER_BULK] = K,
+                                             [RG_PARAMETER_MU_1] = 2 * c10,
+                                             [RG_PARAMETER_ALPHA_1] = 2,
+                                             [RG_PARAMETER_MU_2] = -2 * c01,
+                                             [RG_PARAMETER_ALPHA_2] = c01 > 0 ? -2 : 0};
+        double F[3][3], P[3][3], other[3][3];
+        random_gradient(&d, 0.3, F);
+        rg_reference_point one = rubber(rg_reference_point_mooney_rivlin, mooney, F, P);
+        rg_reference_point two = rubber(rg_reference_point_ogden, ogden, F, other);
+        for (int k = 0; k < 9; k++)
+            assert_near(&solids[OGDEN], other[k / 3][k % 3], P[k / 3][k % 3], 3e-14 * MU);
+        assert_near(&solids[OGDEN], two.energy, one.energy, 2e-14 * MU);
+    }
 }
 
 /* P(QF) = Q P(F) where the solid is objective. The linear one is not: a turn by 0.01 rad makes strains of
@@ -179,8 +240,9 @@ static void test_stiffening(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_by_hand),    cmocka_unit_test(test_rubber_by_hand),
-        cmocka_unit_test(test_rotation),   cmocka_unit_test(test_small_strains),
+        cmocka_unit_test(test_by_hand),       cmocka_unit_test(test_rubber_by_hand),
+        cmocka_unit_test(test_ogden_by_hand), cmocka_unit_test(test_ogden_is_mooney_rivlin),
+        cmocka_unit_test(test_rotation),      cmocka_unit_test(test_small_strains),
         cmocka_unit_test(test_stiffening),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

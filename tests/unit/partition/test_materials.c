@@ -55,6 +55,20 @@ static void test_rubber(void **state) {
     assert_memory_equal(m.of.parameter, in.parameter, sizeof in.parameter);
 }
 
+/* mu = sum mu alpha/2. */
+static void test_ogden(void **state) {
+    rg_material_input in = {.model = RG_MATERIAL_OGDEN, .density = 1100};
+    (void)state;
+    in.parameter[RG_PARAMETER_BULK] = 2e9;
+    in.parameter[RG_PARAMETER_MU_1] = 0.6e6;
+    in.parameter[RG_PARAMETER_ALPHA_1] = 1.3;
+    in.parameter[RG_PARAMETER_MU_3] = -0.01e6;
+    in.parameter[RG_PARAMETER_ALPHA_3] = -2;
+    rg_material m = rg_material_make(&in);
+    assert_near(rg_material_shear(&m), sqrt(0.4e6 / 1100));
+    assert_near(rg_material_dilatational(&m), sqrt((2e9 + 4 * 0.4e6 / 3) / 1100));
+}
+
 static void test_ceramic(void **state) {
     (void)state;
     for (int derived = 0; derived < 2; derived++) {
@@ -287,10 +301,10 @@ static void test_fields(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_elastic), cmocka_unit_test(test_isotropic),    cmocka_unit_test(test_axes),
-        cmocka_unit_test(test_faces),   cmocka_unit_test(test_grains),       cmocka_unit_test(test_rubber),
-        cmocka_unit_test(test_ceramic), cmocka_unit_test(test_plastic_wave), cmocka_unit_test(test_of_case),
-        cmocka_unit_test(test_fields),
+        cmocka_unit_test(test_elastic), cmocka_unit_test(test_isotropic), cmocka_unit_test(test_axes),
+        cmocka_unit_test(test_faces),   cmocka_unit_test(test_grains),    cmocka_unit_test(test_rubber),
+        cmocka_unit_test(test_ogden),   cmocka_unit_test(test_ceramic),   cmocka_unit_test(test_plastic_wave),
+        cmocka_unit_test(test_of_case), cmocka_unit_test(test_fields),
     };
     int failed = cmocka_run_group_tests_name("materials", tests, NULL, NULL);
     return failed + (rg_alloc_blocks() > 0); /* all is given back */

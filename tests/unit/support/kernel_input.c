@@ -360,6 +360,15 @@ void input_set_model(input *in, rg_material_model model) {
     double mu = in->material.mu, *parameter = in->material.of.parameter;
     if (model == RG_MATERIAL_ANISOTROPIC)
         set_stiffness(&in->material);
+    if (model == RG_MATERIAL_OGDEN) { /* of the same moduli at rest, of three terms */
+        parameter[RG_PARAMETER_BULK] = in->material.lambda + 2 * mu / 3;
+        parameter[RG_PARAMETER_MU_1] = 0.5 * mu;
+        parameter[RG_PARAMETER_ALPHA_1] = 1.3;
+        parameter[RG_PARAMETER_MU_2] = 0.1 * mu;
+        parameter[RG_PARAMETER_ALPHA_2] = 5;
+        parameter[RG_PARAMETER_MU_3] = -0.425 * mu;
+        parameter[RG_PARAMETER_ALPHA_3] = -2;
+    }
     if (model == RG_MATERIAL_MOONEY_RIVLIN) { /* of the same moduli at rest */
         parameter[RG_PARAMETER_BULK] = in->material.lambda + 2 * mu / 3;
         parameter[RG_PARAMETER_C10] = 0.3 * mu;
