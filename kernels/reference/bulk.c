@@ -308,3 +308,92 @@ void rg_reference_viscosity(const rg_viscosity_args *args, size_t begin, size_t 
     for (size_t e = begin * RG_LANES; e < end * RG_LANES; e++)
         viscous_element(args, e);
 }
+
+/* ---- Stress before any deformation ---- */
+
+/* S0 at point g of element e, from six components. */
+static void stress_before(const rg_real *stress, size_t e, int g, double s[3][3]) {
+    static const int component[3][3] = {{0, 5, 4}, {5, 1, 3}, {4, 3, 2}};
+    for (int r = 0; r < 3; r++)
+        for (int c = 0; c < 3; c++)
+            s[r][c] = stress[e / RG_LANES * RG_PRESTRESS_BLOCK +
+                             (size_t)(6 * g + component[r][c]) * RG_LANES + e % RG_LANES];
+}
+
+static void multiply(double a[3][3], double b[3][3], double out[3][3]) {
+    for (int r = 0; r < 3; r++)
+        for (int c = 0; c < 3; c++) {
+            out[r][c] = 0;
+            for (int k = 0; k < 3; k++)
+                out[r][c] += a[r][k] * b[k][c];
+        }
+}
+
+static double row_sum(double s[3][3]) {
+    double most = 0;
+    for (int r = 0; r < 3; r++)
+        most = fmax(most, fabs(s[r][0]) + fabs(s[r][1]) + fabs(s[r][2]));
+    return most;
+}
+
+void rg_reference_prestress(const rg_prestress_args *args, size_t begin, size_t end) {
+    const rg_bulk_args *bulk = args->bulk;
+    for (size_t e = begin * RG_LANES; e < end * RG_LANES; e++) {
+        element el;
+        double force[RG_NODES][3] = {{0}}, traction[RG_FACES][RG_FCORNERS][3] = {{{0}}}, worst = 0;
+        load(bulk, e, &el);
+        for (int g = 0; g < RG_GAUSS; g++) {
+            double f[3][3], s[3][3], p[3][3];
+            deformation(&el, g, f);
+            stress_before(args->stress, e, g, s);
+            multiply(f, s, p);
+            add_force(&el, g, p, force);
+            add_traction(&el, g, p, traction);
+            worst = fmax(worst, row_sum(s) / (bulk->material.lambda + 2 * bulk->material.mu));
+        }
+        for (int a = 0; a < RG_NODES; a++)
+            for (int c = 0; c < 3; c++)
+                bulk->force[rg_node_index(e, a, c)] += (rg_real)force[a][c];
+        for (int f = 0; f < RG_FACES; f++)
+            for (int i = 0; i < RG_FCORNERS; i++)
+                for (int c = 0; c < 3; c++)
+                    bulk->traction[rg_traction_index(e, f, i, c)] += (rg_real)traction[f][i][c];
+        bulk->stiffening[e] += (rg_real)worst;
+    }
+}
+
+/* S0:E, E = (F^T F - 1)/2, and S0:C^-1:S0/2 = ((1 + nu) S0:S0 - nu (tr S0)^2)/(2 young). */
+static double density_before(const rg_material *m, double f[3][3], double s[3][3]) {
+    double nu = m->lambda / (2 * (m->lambda + m->mu)), young = 2 * m->mu * (1 + nu), work = 0, square = 0;
+    double trace = s[0][0] + s[1][1] + s[2][2];
+    for (int r = 0; r < 3; r++)
+        for (int c = 0; c < 3; c++) {
+            double strain = -0.5 * (r == c);
+            for (int k = 0; k < 3; k++)
+                strain += 0.5 * f[k][r] * f[k][c];
+            work += s[r][c] * strain;
+            square += s[r][c] * s[r][c];
+        }
+    return work + ((1 + nu) * square - nu * trace * trace) / (2 * young);
+}
+
+void rg_reference_prestress_state(const rg_prestress_state_args *args, size_t begin, size_t end) {
+    const rg_bulk_state_args *state = args->state;
+    for (size_t e = begin * RG_LANES; e < end * RG_LANES; e++) {
+        element el;
+        size_t row = e / RG_LANES - begin;
+        load(state->bulk, e, &el);
+        for (int g = 0; g < RG_GAUSS; g++) {
+            double f[3][3], s[3][3], p[3][3], cauchy[6];
+            deformation(&el, g, f);
+            stress_before(args->stress, e, g, s);
+            multiply(f, s, p);
+            cauchy_stress(p, f, cauchy);
+            for (size_t k = 0; state->cauchy && k < 6; k++)
+                state->cauchy[((row * RG_GAUSS + (size_t)g) * 6 + k) * RG_LANES + e % RG_LANES] += cauchy[k];
+            if (state->energy)
+                state->energy[row * RG_LANES + e % RG_LANES] +=
+                    el.volume / 4 * density_before(&state->bulk->material, f, s);
+        }
+    }
+}

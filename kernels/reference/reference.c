@@ -32,4 +32,6 @@ const rg_kernels rg_kernels_reference = {
     .interface_state = rg_reference_interface_state,
     .viscosity = rg_reference_viscosity,
     .contact = rg_reference_contact,
+    .prestress = rg_reference_prestress,
+    .prestress_state = rg_reference_prestress_state,
 };

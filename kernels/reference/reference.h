@@ -31,6 +31,8 @@ void rg_reference_receive(const rg_trace_args *args, size_t begin, size_t end);
 void rg_reference_bulk(const rg_bulk_args *args, size_t begin, size_t end);
 void rg_reference_bulk_state(const rg_bulk_state_args *args, size_t begin, size_t end);
 void rg_reference_viscosity(const rg_viscosity_args *args, size_t begin, size_t end);
+void rg_reference_prestress(const rg_prestress_args *args, size_t begin, size_t end);
+void rg_reference_prestress_state(const rg_prestress_state_args *args, size_t begin, size_t end);
 void rg_reference_interface(const rg_interface_args *args, size_t begin, size_t end);
 void rg_reference_interface_state(const rg_interface_state_args *args, size_t begin, size_t end);
 void rg_reference_kick(const rg_kick_args *args, size_t begin, size_t end);
