@@ -22,14 +22,15 @@ __attribute__((format(printf, 3, 4))) static bool refuse(char *why, size_t size,
     return false;
 }
 
-/* The law at so large an opening, in lane `lane`, beside others. */
+/* The law at so large an opening, in lane `lane`, beside others, which `seed` decides. */
 static rg_user_law_point ask(const rg_cohesive *law, double strength, double opening, double largest,
-                             int lane) {
+                             int lane, int seed) {
     rg_user_law_point p[RG_LANES];
     for (int l = 0; l < RG_LANES; l++) {
         p[l] = (rg_user_law_point){.strength = strength,
                                    .opening = opening,
-                                   .largest = l == lane ? largest : opening * (1 + l) / RG_LANES};
+                                   .largest = l == lane ? largest
+                                                        : opening * (1 + (l + seed) % RG_LANES) / RG_LANES};
     }
     law->user->points(law, p);
     return p[lane];
@@ -43,7 +44,7 @@ bool rg_user_law_check(const rg_cohesive *law, double strength, double opening, 
                       end);
     }
     double energy = declared * strength * opening, step = end * opening / STEPS, work = 0, before = 0;
-    rg_user_law_point first = ask(law, strength, opening, 1e-9 * opening, 0), last = first;
+    rg_user_law_point first = ask(law, strength, opening, 1e-9 * opening, 0, 0), last = first;
     double start = first.secant * first.largest / strength;
     if (!(fabs(start - 1) <= 1e-4)) {
         return refuse(why, size, "starts at %.6g of the strength, where it must start at the strength",
@@ -52,8 +53,8 @@ bool rg_user_law_check(const rg_cohesive *law, double strength, double opening, 
     *closed = 0;
     for (int n = 1; n <= STEPS; n++) {
         double largest = n * step;
-        rg_user_law_point p = ask(law, strength, opening, largest, n % RG_LANES),
-                          again = ask(law, strength, opening, largest, (n + 1) % RG_LANES);
+        rg_user_law_point p = ask(law, strength, opening, largest, n % RG_LANES, n / RG_LANES),
+                          again = ask(law, strength, opening, largest, (n + 1) % RG_LANES, 0);
         double traction = p.secant * largest;
         if (memcmp(&p, &again, sizeof p) != 0) {
             return refuse(why, size, "the same opening gives another traction in another lane");
@@ -88,7 +89,7 @@ bool rg_user_law_check(const rg_cohesive *law, double strength, double opening, 
                       "more than %g",
                       *closed, CLOSES);
     }
-    rg_user_law_point beyond = ask(law, strength, opening, 2 * end * opening, 1);
+    rg_user_law_point beyond = ask(law, strength, opening, 2 * end * opening, 1, 0);
     if (!(beyond.secant * end * opening <= EXACT * strength &&
           fabs(beyond.dissipated - last.dissipated) <= CLOSES * energy)) {
         return refuse(why, size,
