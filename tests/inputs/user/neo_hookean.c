@@ -37,7 +37,7 @@ RG_INLINE void material_state(const rg_material *m, rg_vec H[3][3], rg_vec histo
     (void)history;
     rg_volume_change v;
     rg_neo_hookean_volume(H, &v);
-    out->energy = rg_neo_hookean_energy(m, H, &v) * m->of.user.parameter[WRONG];
+    out->energy = rg_neo_hookean_energy(m, H, &v) * rg_splat(m->of.user.parameter[WRONG]);
     out->J = v.J;
     if (stress) {
         rg_neo_hookean_stress(m, H, &v, out->P);
