@@ -4,7 +4,7 @@ import re
 
 import numpy as np
 import pytest
-from conftest import launch
+from conftest import SINGLE, launch
 from test_fragment_contact import H, HELD, SPEED, YOUNG, deck, material
 from test_restart import assert_same_results, checkpoints, copy, go_on
 
@@ -150,6 +150,7 @@ def pressed(folder, name, traction, more=""):
     return path
 
 
+@pytest.mark.skipif(SINGLE, reason="bounds of a static start in double precision")
 def test_a_crack_opens_and_presses_shut(run, figure, notched):
     """Its twin is the block whose nodes were merged, which stretches and shrinks by the stress over Young's modulus."""
     stress = 1e6
@@ -161,6 +162,7 @@ def test_a_crack_opens_and_presses_shut(run, figure, notched):
     assert there["crack", 1] > 3 * whole
 
 
+@pytest.mark.skipif(SINGLE, reason="bounds of a static start in double precision")
 def test_a_crack_is_the_same_on_any_layout_and_in_other_words(run, notched):
     """As the mesh brings it, and as the case names it; in words that take it back it is glued."""
     path = pressed(notched, "crack", 1e6)
