@@ -498,7 +498,7 @@ static const mistake materials[] = {
      ":18:11: output.fields: regime: no material has such a field\n"
      ":18:11: output.fields: plastic_strain: no material has such a field\n"
      ":20:1: x: unknown key; allowed: defaults, tables, mesh, material, materials, interface, contact, "
-     "viscosity, "
+     "viscosity, temperature, "
      "mass, "
      "initial, start, "
      "boundary, loads, bodies, time, output, checkpoint\n"},

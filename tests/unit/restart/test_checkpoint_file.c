@@ -280,7 +280,7 @@ static bool elements_good(hid_t file, const run *x, uint64_t seed) {
 static bool faces_good(hid_t file, const run *x, uint64_t seed, int64_t copies) {
     int64_t n = -1, elements = x->r.mesh->elements;
     int64_t *key = load(file, "face/key", H5T_NATIVE_INT64, &n, 1);
-    uint8_t *rows = load(file, "face/rows", H5T_NATIVE_UINT8, &elements, 1);
+    uint16_t *rows = load(file, "face/rows", H5T_NATIVE_UINT16, &elements, 1);
     uint8_t *broken = load(file, "face/broken", H5T_NATIVE_UINT8, &n, 1);
     int columns = (int)(x->r.solver->model->crack_stride / RG_LANES);
     double *crack = load(file, "face/crack", H5T_NATIVE_DOUBLE, &n, columns);

@@ -102,13 +102,13 @@ static void change_keys(hid_t file, const char *path, int64_t which, int64_t val
 
 static void change_count(hid_t file, const char *path, int64_t by) {
     int64_t n = -1;
-    uint8_t *rows = load(file, path, H5T_NATIVE_UINT8, &n, 1);
+    uint16_t *rows = load(file, path, H5T_NATIVE_UINT16, &n, 1);
     int64_t e = 0;
     while (rows[e] == 0) {
         e++;
     }
-    rows[e] = (uint8_t)(rows[e] + by);
-    put_rows(file, path, H5T_NATIVE_UINT8, n, 1, rows);
+    rows[e] = (uint16_t)(rows[e] + by);
+    put_rows(file, path, H5T_NATIVE_UINT16, n, 1, rows);
     rg_free(rows);
 }
 
@@ -116,11 +116,11 @@ static void change_count(hid_t file, const char *path, int64_t by) {
 static void shorten_list(hid_t file) {
     int64_t n = -1, *key = load(file, "constraint/key", H5T_NATIVE_INT64, &n, 1);
     double *value = load(file, "constraint/constraint", H5T_NATIVE_DOUBLE, &n, 42);
-    uint8_t *rows;
+    uint16_t *rows;
     int64_t elements = 144;
-    rows = load(file, "constraint/rows", H5T_NATIVE_UINT8, &elements, 1);
+    rows = load(file, "constraint/rows", H5T_NATIVE_UINT16, &elements, 1);
     rows[key[0] / 4]--;
-    put_rows(file, "constraint/rows", H5T_NATIVE_UINT8, elements, 1, rows);
+    put_rows(file, "constraint/rows", H5T_NATIVE_UINT16, elements, 1, rows);
     put_rows(file, "constraint/key", H5T_NATIVE_INT64, n - 1, 1, key + 1);
     put_rows(file, "constraint/constraint", H5T_NATIVE_DOUBLE, n - 1, 42, value + 42);
     rg_free(key);
