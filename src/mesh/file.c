@@ -317,8 +317,7 @@ static void read_header(rg_mesh_file *f) {
         read_combinations(f, &rg_rows_volume_combinations, &h->volume);
     }
     if (version > 3) {
-        int64_t all = h->elements < INT32_MAX ? h->elements : INT32_MAX;
-        h->parts = (int32_t)read_count(f, "parts", 0, all);
+        h->parts = (int32_t)read_count(f, "parts", 0, INT32_MAX);
         h->crack = (int32_t)read_count(f, "crack", 0, h->surface.count);
     }
     check_datasets(f);
@@ -480,12 +479,11 @@ static void check_vertices(reading *r) {
 static void check_parts(reading *r) {
     const rg_mesh_slab *slab = r->slab;
     int32_t parts = r->file->head.parts;
-    for (rg_gid e = 0; e < slab->elements && slab->part != NULL; e++) {
-        if (slab->part[e] < 0 || slab->part[e] >= parts) {
-            complain(r, slab->first + e, PART,
-                     "value %" PRId32 " of element %" PRId64 " is not between 0 and %" PRId32, slab->part[e],
+    for (rg_gid e = 0; e < slab->elements && slab->part != NULL && r->good; e++) {
+        int32_t p = slab->part[e];
+        if (p < 0 || p >= parts) {
+            complain(r, slab->first + e, PART, "value %d of element %" PRId64 " is not between 0 and %d", p,
                      slab->original[e], parts - 1);
-            return;
         }
     }
 }

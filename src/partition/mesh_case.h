@@ -4,9 +4,9 @@
 #include "case/case.h"
 #include "mesh/mesh.h"
 
-/* The crack that a mesh file brings (mesh/import/crack.h) as one more entry of interface.sets, open from the start,
- * unless one names it already. Ends the run with a message where the case has no faces that could be open.
- * Collective. */
+/* The crack that a mesh file brings (mesh/import/crack.h) as one more entry of interface.sets, open from the
+ * start, unless one names it already. Ends the run with a message where the case has no faces that could be
+ * open. Collective. */
 void rg_case_take_crack(rg_case *c, MPI_Comm comm);
 
 /* The mesh of a case: the built-in box or the one in mesh.file, sorted and connected. Ends the run with a
