@@ -29,8 +29,7 @@ static rg_solver *make_solver(rg_case *c) {
     c->interface.beta = 1;
     const double origin[3] = {0, 0, 0};
     rg_mesh *mesh = rank == 0 ? rg_mesh_box(cells, origin, size, 0, 1) : NULL;
-    rg_part *part =
-        rg_part_distribute(mesh, mesh == NULL ? 0 : rg_mesh_tile(mesh), MPI_COMM_WORLD);
+    rg_part *part = rg_part_distribute(mesh, mesh == NULL ? 0 : rg_mesh_tile(mesh), MPI_COMM_WORLD);
     rg_mesh_free(mesh);
     return rg_solver_make_from_part(c, part, MPI_COMM_WORLD);
 }

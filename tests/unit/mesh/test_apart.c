@@ -1,5 +1,6 @@
 /* Parts that are kept apart: which they are, where they touch, whether they overlap, and their file. */
 #include <math.h>
+#include <omp.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdbool.h>
@@ -281,6 +282,7 @@ int main(void) {
         cmocka_unit_test(test_random_boxes), cmocka_unit_test(test_neighbours_are_of_one_part),
         cmocka_unit_test(test_file),
     };
+    omp_set_num_threads(1); /* a child has none of its parent's threads */
     int failed = cmocka_run_group_tests_name("apart", tests, NULL, NULL);
     return failed + (rg_alloc_blocks() > 0); /* all is given back */
 }

@@ -210,9 +210,9 @@ static bool well_chosen(const rg_part *patch, const rg_part *part, const rg_mesh
     MPI_Allreduce(MPI_IN_PLACE, worse, (int)n, MPI_DOUBLE, MPI_MAX, MPI_COMM_WORLD);
     MPI_Allreduce(MPI_IN_PLACE, all, (int)(n * sizeof *all), MPI_BYTE, MPI_BOR, MPI_COMM_WORLD);
     n > RG_PATCH_MOST ? choose(&c) : (void)memset(c.in, 1, n);
-    bool good =
-        patch == NULL || (memcmp(patch->box, part->box, sizeof patch->box) == 0 &&
-                          patch->tile == rg_tile_elements(patch->total, RG_TILE) && patch->total == patch->elements);
+    bool good = patch == NULL ||
+                (memcmp(patch->box, part->box, sizeof patch->box) == 0 &&
+                 patch->tile == rg_tile_elements(patch->total, RG_TILE) && patch->total == patch->elements);
     rg_gid at = 0, sides = 0;
     for (rg_gid e = 0; patch != NULL && e < mesh->elements; e++) {
         if (c.in[e]) {
