@@ -80,6 +80,7 @@ def spent(run, crack, chosen=slice(None)):
     return run.summary["dissipated_J"] / weighted if weighted > 0 else math.nan
 
 
+@functools.cache
 def rayleigh_speed(material):
     """Root of 4 a b = (1 + b^2)^2, a^2 = 1 - (v/c_d)^2, b^2 = 1 - (v/c_s)^2, by halving."""
     cd, cs = material.dilatational_speed, material.shear_speed

@@ -28,6 +28,16 @@ typedef struct {
     char isa[32];         /* instruction set, as RHEGMA_ISA has it */
 } rg_user_head;
 
+/* The head of what is compiled here, of a kind. */
+#define RG_USER_HEAD(kind_)                                                                                  \
+    {                                                                                                        \
+        .magic = RG_USER_MAGIC, .kind = kind_, .abi = RG_USER_ABI, .layout = RG_USER_LAYOUT,                 \
+        .vector = RG_VBYTES, .real = sizeof(rg_real), .isa = RG_USER_ISA                                     \
+    }
+
+/* Parameters, as a file states them. */
+#define RG_USER_LIST(list) .parameter = (list), .parameters = (int)(sizeof(list) / sizeof *(list))
+
 /* A number that the case gives by name: required, or `fallback` where it does not. */
 typedef struct {
     const char *name, *unit, *meaning; /* unit: NULL if it has none */

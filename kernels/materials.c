@@ -32,22 +32,29 @@ int rg_material_exists(rg_material_model model) {
     return here[model];
 }
 
+static const double degree = 0.017453292519943295769;
+
 /* A cone through the compressive meridian of a Mohr-Coulomb solid: q = 6 (c cos phi + p sin phi)/(3 - sin
  * phi). */
 static double slope_of(double angle) {
     return 6 * sin(angle) / (3 - sin(angle));
 }
 
+double rg_dp_strength(const double parameter[]) {
+    double phi = parameter[RG_PARAMETER_FRICTION_ANGLE] * degree;
+    return 6 * parameter[RG_PARAMETER_COHESION] * cos(phi) / (3 - sin(phi));
+}
+
 /* n = (1, -slope) and g = (1, -dilation) in (q, p) make an angle w in the elastic metric, 3G and K: the
  * tangent D - (Dg)(Dn)/(n.Dg) has a symmetric part of at most (1 + (1/cos w - 1)/2) D. */
 static rg_dp_cone cone_of(const rg_material *m) {
     const double *given = m->of.parameter;
-    const double degree = 0.017453292519943295769, bulk = m->lambda + 2.0 / 3 * m->mu, shear = 3 * m->mu;
-    double phi = given[RG_PARAMETER_FRICTION_ANGLE] * degree, a = slope_of(phi);
+    const double bulk = m->lambda + 2.0 / 3 * m->mu, shear = 3 * m->mu;
+    double a = slope_of(given[RG_PARAMETER_FRICTION_ANGLE] * degree);
     double b = slope_of(given[RG_PARAMETER_DILATION_ANGLE] * degree);
     double size = sqrt((shear + a * a * bulk) * (shear + b * b * bulk));
     return (rg_dp_cone){
-        .strength = 6 * given[RG_PARAMETER_COHESION] * cos(phi) / (3 - sin(phi)),
+        .strength = rg_dp_strength(given),
         .slope = a,
         .dilation = b,
         .excess = 0.5 * (size / (shear + a * b * bulk) - 1),

@@ -302,4 +302,7 @@ int rg_material_exists(rg_material_model model);
 /* Readies a material, parameters set, for steps of `dt` (s), which is > 0: of a model that knows rates. */
 void rg_material_prepare(rg_material *m, double dt);
 
+/* Von Mises stress that Drucker and Prager's solid bears without pressure (Pa), of its parameters. */
+double rg_dp_strength(const double parameter[]);
+
 #endif

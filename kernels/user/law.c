@@ -37,13 +37,7 @@ static void points(const rg_cohesive *law, rg_user_law_point point[RG_LANES]) {
 
 extern const rg_user_law rg_user_here;
 __attribute__((visibility("default"))) const rg_user_law rg_user_here = {
-    .head = {.magic = RG_USER_MAGIC,
-             .kind = "law",
-             .abi = RG_USER_ABI,
-             .layout = RG_USER_LAYOUT,
-             .vector = RG_VBYTES,
-             .real = sizeof(rg_real),
-             .isa = RG_USER_ISA},
+    .head = RG_USER_HEAD("law"),
     .facts = &rg_user_facts_here,
     .interface = RG_ISA_NAME(rg_interface),
     .interface_state = RG_ISA_NAME(rg_interface_state),

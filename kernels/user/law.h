@@ -18,7 +18,6 @@
 #include "cohesive/cohesive.h"
 #include "library.h"
 
-#define RG_USER_LIST(list)  .parameter = (list), .parameters = (int)(sizeof(list) / sizeof *(list))
 #define RG_USER_LAW_IS(...) static const rg_user_law_facts rg_user_facts_here = {__VA_ARGS__};
 
 #endif

@@ -83,13 +83,7 @@ static void points(const rg_material *m, bool advance, rg_user_point point[RG_LA
 
 extern const rg_user_material rg_user_here;
 __attribute__((visibility("default"))) const rg_user_material rg_user_here = {
-    .head = {.magic = RG_USER_MAGIC,
-             .kind = "material",
-             .abi = RG_USER_ABI,
-             .layout = RG_USER_LAYOUT,
-             .vector = RG_VBYTES,
-             .real = sizeof(rg_real),
-             .isa = RG_USER_ISA},
+    .head = RG_USER_HEAD("material"),
     .facts = &rg_user_facts_here,
     .history = RG_HISTORY,
     .bulk = BULK_KERNEL(rg_bulk),

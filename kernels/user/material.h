@@ -21,7 +21,6 @@
 #include "library.h"
 #include "vec_math.h"
 
-#define RG_USER_LIST(list)    .parameter = (list), .parameters = (int)(sizeof(list) / sizeof *(list))
 #define RG_USER_MATERIAL(...) static const rg_user_facts rg_user_facts_here = {__VA_ARGS__};
 
 /* user/material.c calls them by these names. */

@@ -1,5 +1,4 @@
 /* Rules of the case file that the materials make. */
-#include <math.h>
 #include <stdarg.h>
 #include <string.h>
 
@@ -129,9 +128,7 @@ static void check_cone(rg_check *ck) {
     const double *given = m->of->parameter;
     const rg_node *dilation = m->given[RG_PARAMETER_DILATION_ANGLE],
                   *cap = m->given[RG_PARAMETER_CAP_PRESSURE];
-    double angle = given[RG_PARAMETER_FRICTION_ANGLE] * 0.017453292519943295769;
-    double least =
-        given[RG_PARAMETER_CAP_RATIO] * 6 * given[RG_PARAMETER_COHESION] * cos(angle) / (3 - sin(angle));
+    double least = given[RG_PARAMETER_CAP_RATIO] * rg_dp_strength(given);
     if (m->bad[RG_PARAMETER_FRICTION_ANGLE]) {
         return;
     }

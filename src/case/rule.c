@@ -28,17 +28,16 @@ char *rg_path_of_case(const rg_check *ck, const char *file) {
 }
 
 void rg_mesh_file_rule(rg_check *ck, const rg_node *node) {
-    char *file = ck->c->mesh.file;
-    char *path = rg_path_beside_case(ck, file);
+    char *file = ck->c->mesh.file, *path = rg_path_of_case(ck, file);
     if (access(path, R_OK) != 0) {
         rg_subject subject = {
             .key = "mesh.file", .value = file, .allowed = "path of a mesh file, relative to the case file"};
         rg_problem_add(ck->problems, node->at, &subject, "cannot be read: %s", strerror(errno));
+        rg_free(path);
     } else {
-        ck->c->mesh.file = rg_path_of_case(ck, file);
+        ck->c->mesh.file = path;
         rg_free(file);
     }
-    rg_free(path);
 }
 
 void rg_times_rule(rg_check *ck, const rg_node *node) {
@@ -215,13 +214,19 @@ void rg_contact_model_rule(rg_check *ck, const rg_node *node) {
     }
 }
 
-void rg_static_friction_rule(rg_check *ck, const rg_node *node) {
-    if (ck->c->contact.static_friction < ck->c->contact.friction) {
-        rg_subject subject = {
-            .key = "contact.static_friction", .value = node->text, .allowed = "number >= contact.friction"};
+/* Of the static friction `key`, given at `node`, beside that of sliding. */
+static void check_hold(rg_check *ck, const rg_node *node, const char *key, const char *allowed, double hold,
+                       double sliding) {
+    if (hold < sliding) {
+        rg_subject subject = {.key = key, .value = node->text, .allowed = allowed};
         rg_problem_add(ck->problems, node->at, &subject,
                        "faces at rest hold at least as well as sliding ones");
     }
+}
+
+void rg_static_friction_rule(rg_check *ck, const rg_node *node) {
+    check_hold(ck, node, "contact.static_friction", "number >= contact.friction",
+               ck->c->contact.static_friction, ck->c->contact.friction);
 }
 
 void rg_contact_friction_rule(rg_check *ck, const rg_node *list, int i, const char *path, bool good) {
@@ -233,11 +238,9 @@ void rg_contact_friction_rule(rg_check *ck, const rg_node *list, int i, const ch
     const rg_node *given = rg_node_find(item, "static_friction", strlen("static_friction"));
     rg_between_rule(ck, rg_node_find(item, "between", strlen("between")), pair->names, pair->between, false,
                     path);
-    if (given != NULL && pair->static_friction < pair->friction) {
+    if (given != NULL) {
         char *key = rg_text_format("%s.static_friction", path);
-        rg_subject subject = {.key = key, .value = given->text, .allowed = "number >= friction"};
-        rg_problem_add(ck->problems, given->at, &subject,
-                       "faces at rest hold at least as well as sliding ones");
+        check_hold(ck, given, key, "number >= friction", pair->static_friction, pair->friction);
         rg_free(key);
     }
 }

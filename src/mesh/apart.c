@@ -9,6 +9,7 @@
 
 #include "base/input_errors.h"
 #include "base/mem.h"
+#include "base/union_find.h"
 #include "base/vector.h"
 #include "layout.h"
 #include "mesh/check.h"
@@ -25,32 +26,23 @@ static const double facing = 0.97;
 
 /* ---- which ---- */
 
-static rg_gid root_of(rg_gid *up, rg_gid v) {
-    while (up[v] != v) {
-        up[v] = up[up[v]];
-        v = up[v];
-    }
-    return v;
-}
-
 int32_t rg_mesh_keep_apart(rg_mesh *mesh) {
     int32_t parts = 0;
-    rg_gid *up = RG_NEW(rg_gid, (size_t)mesh->vertices);
-    int32_t *number = RG_NEW(int32_t, (size_t)mesh->vertices);
-    for (rg_gid v = 0; v < mesh->vertices; v++) {
+    size_t vertices = (size_t)mesh->vertices, *up = RG_NEW(size_t, vertices);
+    int32_t *number = RG_NEW(int32_t, vertices);
+    for (size_t v = 0; v < vertices; v++) {
         up[v] = v;
         number[v] = -1;
     }
     for (rg_gid e = 0; e < mesh->elements; e++) {
         for (int i = 1; i < 4; i++) {
-            rg_gid a = root_of(up, mesh->corner[4 * e]), b = root_of(up, mesh->corner[4 * e + i]);
-            up[a > b ? a : b] = a > b ? b : a;
+            rg_union_join(up, (size_t)mesh->corner[4 * e], (size_t)mesh->corner[4 * e + i]);
         }
     }
     rg_free(mesh->part);
     mesh->part = RG_NEW(int32_t, (size_t)mesh->elements);
     for (rg_gid e = 0; e < mesh->elements; e++) {
-        rg_gid root = root_of(up, mesh->corner[4 * e]);
+        size_t root = rg_union_root(up, (size_t)mesh->corner[4 * e]);
         number[root] = number[root] < 0 ? parts++ : number[root];
         mesh->part[e] = number[root];
     }

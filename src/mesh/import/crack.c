@@ -7,6 +7,7 @@
 
 #include "base/mem.h"
 #include "base/tet.h"
+#include "base/union_find.h"
 #include "base/vector.h"
 #include "layout.h"
 #include "mesh/import/merge.h"
@@ -101,21 +102,12 @@ static bool face_each_other(const rg_mesh *mesh, rg_gid one, rg_gid other) {
 
 /* ---- joining ---- */
 
-static rg_gid root_of(rg_gid *up, rg_gid v) {
-    while (up[v] != v) {
-        up[v] = up[up[v]];
-        v = up[v];
-    }
-    return v;
-}
-
 /* The vertices of two faces that are at the same places become the lower ones. */
-static void join_vertices(const rg_mesh *mesh, const size_t *place, rg_gid one, rg_gid other, rg_gid *up) {
+static void join_vertices(const rg_mesh *mesh, const size_t *place, rg_gid one, rg_gid other, size_t *up) {
     for (int k = 0; k < 9; k++) {
         rg_gid v = vertex_of(mesh, one, k / 3), w = vertex_of(mesh, other, k % 3);
         if (place[v] == place[w]) {
-            rg_gid a = root_of(up, v), b = root_of(up, w);
-            up[a > b ? a : b] = a > b ? b : a;
+            rg_union_join(up, (size_t)v, (size_t)w);
         }
     }
 }
@@ -148,10 +140,10 @@ static void renumber_tuples(rg_gid *vertex, size_t tuples, size_t width, const r
 }
 
 /* Vertices become those that stand for them, and close the ranks; returns the new number of each. */
-static rg_gid *renumber(rg_mesh *mesh, rg_gid *up) {
+static rg_gid *renumber(rg_mesh *mesh, size_t *up) {
     rg_gid kept = 0, *number = RG_NEW(rg_gid, (size_t)mesh->vertices);
     for (rg_gid v = 0; v < mesh->vertices; v++) { /* the root is the lowest */
-        rg_gid root = root_of(up, v);
+        rg_gid root = (rg_gid)rg_union_root(up, (size_t)v);
         if (root == v) {
             memmove(mesh->x + 3 * kept, mesh->x + 3 * v, 3 * sizeof *mesh->x);
         }
@@ -248,10 +240,10 @@ rg_mesh_crack rg_mesh_take_crack(rg_mesh *mesh, const char *name) {
     rg_mesh_crack crack = {.faces = 0};
     size_t count, *place = find_places(mesh);
     side *side_of = list_sides(mesh, place, &count);
-    rg_gid *up = RG_NEW(rg_gid, (size_t)mesh->vertices);
+    size_t *up = RG_NEW(size_t, (size_t)mesh->vertices);
     joined *list = RG_NEW(joined, count + 1);
     for (rg_gid v = 0; v < mesh->vertices; v++) {
-        up[v] = v;
+        up[v] = (size_t)v;
     }
     for (size_t i = 0; i < count; i += 2) {
         rg_gid one = side_of[i].slot, other = side_of[i + 1].slot;

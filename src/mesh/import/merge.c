@@ -6,6 +6,7 @@
 #include <stdlib.h>
 
 #include "base/mem.h"
+#include "base/union_find.h"
 #include "base/vector.h"
 
 struct projected {
@@ -17,24 +18,6 @@ static int by_place(const void *a, const void *b) {
     const struct projected *p = a, *q = b;
     int order = (p->along > q->along) - (p->along < q->along);
     return order != 0 ? order : (p->row > q->row) - (p->row < q->row);
-}
-
-/* The row at the end of the chain, which becomes shorter. */
-static size_t end_of(size_t *twin, size_t row) {
-    while (twin[row] != row) {
-        twin[row] = twin[twin[row]];
-        row = twin[row];
-    }
-    return row;
-}
-
-static void join(size_t *twin, size_t a, size_t b) {
-    size_t low = end_of(twin, a), high = end_of(twin, b);
-    if (low > high) {
-        twin[low] = high;
-    } else {
-        twin[high] = low;
-    }
 }
 
 rg_merged rg_merge(size_t rows, const double *x, double reach, size_t *twin) {
@@ -54,7 +37,7 @@ rg_merged rg_merge(size_t rows, const double *x, double reach, size_t *twin) {
              j++) {
             double apart = sqrt(rg_vector_distance2(x + 3 * p[i].row, x + 3 * p[j].row));
             if (apart <= reach) {
-                join(twin, p[i].row, p[j].row);
+                rg_union_join(twin, p[i].row, p[j].row);
                 found.farthest = fmax(found.farthest, apart);
             }
         }
@@ -67,7 +50,7 @@ rg_merged rg_merge(size_t rows, const double *x, double reach, size_t *twin) {
     }
     rg_free(p);
     for (size_t n = 0; n < rows; n++) {
-        twin[n] = end_of(twin, n);
+        twin[n] = rg_union_root(twin, n);
     }
     return found;
 }
