@@ -13,6 +13,7 @@
 #include "base/mem.h"
 #include "h5_changes.h"
 #include "host.h"
+#include "mesh/apart.h"
 #include "mesh/file.h"
 #include "mesh/info.h"
 #include "mesh/rows.h"
@@ -41,7 +42,36 @@ static const rg_rows partition = {"partition_2", RG_ROWS_INT32, 1};
 
 /* ---- the good files ---- */
 
-/* `apart`: as a mesh with a part that is kept apart. */
+/* The box cut in two at x = 1/2: each half has vertices of its own there, so that they only touch. Of an
+ * element of the lower half those corners are the last ones, so that the new numbers, the highest, keep them
+ * in order. */
+static void cut_in_two(rg_mesh *mesh) {
+    rg_gid *other = RG_NEW(rg_gid, (size_t)mesh->vertices), vertices = mesh->vertices;
+    mesh->x = rg_realloc(mesh->x, 2 * (size_t)vertices, 3 * sizeof(double));
+    for (rg_gid v = 0; v < vertices; v++) {
+        const double *x = mesh->x + 3 * v;
+        other[v] = v;
+        if (x[0] > 0.5 - 1e-6 && x[0] < 0.5 + 1e-6) {
+            other[v] = mesh->vertices++;
+            memcpy(mesh->x + 3 * other[v], x, 3 * sizeof *x);
+        }
+    }
+    for (rg_gid e = 0; e < mesh->elements; e++) {
+        rg_gid *corner = mesh->corner + 4 * e;
+        double middle = 0;
+        for (int c = 0; c < 4; c++) {
+            middle += mesh->x[3 * corner[c]] / 4;
+        }
+        for (int c = 0; c < 4 && middle < 0.5; c++) {
+            corner[c] = other[corner[c]];
+        }
+    }
+    rg_free(other);
+    rg_mesh_connect(mesh);
+    rg_fuzz_require(rg_mesh_keep_apart(mesh) == 2, "two parts");
+}
+
+/* `apart`: in two parts that are kept apart. */
 static void write_good(const char *path, const int64_t cells[3], bool apart) {
     static const double origin[3] = {0, 0, 0}, size[3] = {1, 2, 3};
     rg_mesh *mesh = rg_mesh_box(cells, origin, size, 0, 1);
@@ -52,7 +82,9 @@ static void write_good(const char *path, const int64_t cells[3], bool apart) {
     }
     mesh->region = RG_NEW(int32_t, (size_t)mesh->elements);
     rg_sets_add(&mesh->volume, "all");
-    mesh->part = apart ? RG_NEW(int32_t, (size_t)mesh->elements) : NULL;
+    if (apart) {
+        cut_in_two(mesh);
+    }
     rg_mesh_file_write(path, mesh, 1, &(rg_tile_partition){2, owner});
     rg_mesh_free(mesh);
     rg_free(owner);
@@ -235,7 +267,7 @@ static void body(const uint8_t *data, size_t size) {
 static void make_file(const base *b, const uint8_t *data, size_t size) {
     const uint8_t *change = data + 2, *end = change;
     bool later = false;
-    uint8_t *image = malloc(IMAGE);
+    static uint8_t image[IMAGE];
     memcpy(image, b->image, b->size);
     for (size_t n = 0; end + CHANGE <= data + size && n < MOST_CHANGES; end += CHANGE, n++) {
         change_value(b, image, end);
@@ -254,7 +286,6 @@ static void make_file(const base *b, const uint8_t *data, size_t size) {
         damage(image, &length, c);
     }
     write_image(image, length);
-    free(image);
 }
 
 static void make_bases(const uint8_t *data, size_t size) {
