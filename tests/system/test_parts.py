@@ -4,7 +4,8 @@ import re
 
 import numpy as np
 import pytest
-from conftest import SINGLE, launch
+from conftest import SINGLE, launch, rounding
+from figures import ROUNDING
 from test_fragment_contact import H, HELD, SPEED, YOUNG, deck, material
 from test_restart import assert_same_results, checkpoints, copy, go_on
 
@@ -113,6 +114,20 @@ def test_nodes_are_merged_before_parts_are_kept_apart(scratch):
     third = ((H, -0.9 * H, 0.3 * H), (2 * H, 1.8 * H, (LENGTH - 0.5) * H), (1, 3, 3))
     said = make(scratch, "both", [*bars(1), third], "--merge", "1e-9", "--apart").stdout
     assert "parts 1 and 2 touch: 60 and 18 faces" in said and "parts 2 and 3" not in said
+
+
+def test_merged_parts_are_glued_by_a_law_between_them(run, figure, scratch):
+    """`between: any` finds the faces where nodes were merged: pulled, the bars part there and nowhere else."""
+    text = deck(bars(1)).replace("\n*NSET", f"\n*ELSET, ELSET=lower, GENERATE\n1, {6 * LENGTH}\n*ELSET, ELSET=upper, GENERATE\n{6 * LENGTH + 1}, {12 * LENGTH}\n*NSET", 1)
+    (scratch / "glued.inp").write_text(text)
+    assert launch("mesh", scratch / "glued.inp", "-o", scratch / "glued-bars.h5", "--merge", "1e-9").returncode == 0
+    pull = ", ".join(f"{{set: z{side}, component: z, velocity: {v}}}" for side, v in (("low", -5), ("high", 5)))
+    (scratch / "glued-bars.yaml").write_text(
+        f"mesh: {{file: glued-bars.h5}}\n{material()}interface: {{law: linear, strength: 1e12, energy: 1e6, sets: [{{between: any, strength: 1e5, energy: 1e-3}}]}}\n"
+        f"{HELD.rstrip(']' + chr(10))}, {pull}]\ntime: {{end: {1.2 * LENGTH * H / SPEED}}}\noutput: {{interval: {LENGTH * H / SPEED}, fields: []}}\n")
+    summary = run(scratch / "glued-bars.yaml", ranks=2).summary
+    figure("area that breaks where merged parts are glued", summary["broken_area_m2"], theory=4 * H * H, bound=rounding(1e-14, 1e-6), unit="m2", relative=True, why=ROUNDING)
+    assert summary["fragments"] == 2
 
 
 # ---- Cracks of no width ----
