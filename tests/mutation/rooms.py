@@ -8,7 +8,7 @@ import fnmatch
 ROOMS = {
     "kernels": (["kernels/*"],
                 """kernels mixed_mode interface tile_faces reference laws friction viscosity elastic j2 johnson_cook johnson_holmquist
-                drucker_prager thermal test_thermal.py
+                drucker_prager thermal prestress rise test_thermal.py test_user_materials.py
                 viscoelastic bulk_history anisotropic contact
                 deshpande_evans deshpande_evans_kernel cost_model material step test_invariance.py test_contact.py
                 test_friction.py test_viscosity.py test_laws.py test_ceramic.py test_solids.py test_ledger.py
@@ -24,7 +24,7 @@ ROOMS = {
                   """tiles part part_read patch material materials material_map anisotropic spectrum step verify
                   test_mesh_faults.py test_bimaterials.py test_partition.py test_meshes.py test_cli.py
                   test_continuous.py test_crystals.py test_parallel.py"""),
-    "contact": (["src/contact/*"], "search contact_twin contact balance test_fragment_contact.py test_parallel.py test_restart.py"),
+    "contact": (["src/contact/*"], "grip search contact_twin contact balance test_fragment_contact.py test_parallel.py test_restart.py"),
     "domain": (["src/domain/*"],
                """domain assembly slab patch step spectrum fragment verify fragment_twin ledger snapshot
                test_invariance.py test_contact.py test_bodies.py test_continuous.py test_fragments.py

@@ -1,6 +1,6 @@
 /* Contact of debris drawn at random, against all pairs of faces of the whole mesh, with the faces that stand
- * for them by quadrature and the forces by their virtual work, on any number of ranks. Prints TAP from rank
- * 0. */
+ * for them by quadrature and the forces by their virtual work, on any number of ranks; with friction, from
+ * one state to the next, over searches and a checkpoint. Prints TAP from rank 0. */
 #include <inttypes.h>
 #include <math.h>
 #include <string.h>
@@ -47,6 +47,8 @@ typedef struct {
 
 typedef double nodal[RG_NODES][3];
 
+typedef double grip[RG_GRIP];
+
 typedef struct {
     int faces, pairs, touching;
     body_face *face;
@@ -54,6 +56,8 @@ typedef struct {
     double *pressed;               /* [face]: largest stiffness of pairs that touch (Pa/m) */
     nodal *force;                  /* [element] (N) */
     double *felt;                  /* [element]: sum of the sizes (N) */
+    grip *grips;                   /* [face][face], or NULL: no friction */
+    double *heat;                  /* [element] (J) */
     char words[200];
 } twin;
 
@@ -81,6 +85,17 @@ static void twice_area(const double a[3], const double b[3], const double c[3], 
     rg_reference_cross(p, q, out);
 }
 
+/* Which state it is, and how far elements have got since the first (m). */
+static int moves;
+
+static double moved_u(rg_gid e, int node, int c) {
+    double u = drawn_u(SEED, e, node, c);
+    for (int i = 1; i <= moves; i++) {
+        u = (double)(rg_real)(u + 1e-6 * drawn(SEED + (uint64_t)i, DRAW_OTHER, e, 10 + c));
+    }
+    return u;
+}
+
 /* Corners by ascending place in the element, the last two exchanged where they would run round the inward
  * normal. */
 static body_face make_face(const random_state *r, rg_gid e, int k) {
@@ -88,7 +103,11 @@ static body_face make_face(const random_state *r, rg_gid e, int k) {
     mesh_corners(r->mesh, e, x);
     rg_gid inner = face_key(r->mesh, e, k);
     const rg_material *m = &r->solver->model->material[mesh_material(r, e)];
-    body_face f = {.is = {.id = 4 * e + k, .former = inner >= 0, .modulus = rg_material_modulus(m)},
+    body_face f = {.is = {.id = 4 * e + k,
+                          .former = inner >= 0,
+                          .modulus = rg_material_modulus(m),
+                          .material = mesh_material(r, e),
+                          .shear = m->mu},
                    .newly = inner >= 0 && drawn_exposure(inner) == RG_NEWLY_EXPOSED,
                    .sunk = inner >= 0 ? drawn_sunk(4 * e + k) : 0,
                    .order = {0, 1, 2}};
@@ -109,7 +128,7 @@ static body_face make_face(const random_state *r, rg_gid e, int k) {
         for (int c = 0; c < 3; c++) {
             double sum = 0;
             for (int n = 0; n < RG_FNODES; n++) {
-                sum += f.mean[n][f.order[i]] * drawn_u(SEED, e, node[n], c);
+                sum += f.mean[n][f.order[i]] * moved_u(e, node[n], c);
             }
             f.is.rest[3 * i + c] = x[node[f.order[i]]][c];
             f.is.corner[3 * i + c] = f.is.rest[3 * i + c] + sum;
@@ -145,9 +164,19 @@ static void feel(twin *t, const body_face *f, const double force[9]) {
     t->felt[e] += sqrt(rg_reference_dot(sum, sum));
 }
 
+/* Coulomb's coefficients of glass (0) and steel (1), as the case below has them, until a pair slides and
+ * while it does. */
+static const double FRICTION[2][2][2] = {{{0.3, 0.1}, {0.2, 0.05}}, {{0.2, 0.05}, {0, 0}}};
+
 static void meet(twin *t, int a, int b, rg_contact_pair *pair) {
     const body_face *f[2] = {&t->face[a], &t->face[b]};
-    double corner[18], box[12], sunk[2] = {f[0]->sunk, f[1]->sunk}, force[18], energy, depth;
+    double corner[18], box[12], sunk[2] = {f[0]->sunk, f[1]->sunk}, force[18], energy, depth, heat = 0;
+    const double *friction = FRICTION[f[0]->is.material][f[1]->is.material];
+    if (friction[0] > 0) {
+        memcpy(pair->friction, friction, sizeof pair->friction);
+        pair->shear =
+            pair->stiffness * (f[0]->is.shear + f[1]->is.shear) / (f[0]->is.modulus + f[1]->is.modulus);
+    }
     memcpy(corner, f[0]->is.corner, sizeof f[0]->is.corner);
     memcpy(corner + 9, f[1]->is.corner, sizeof f[1]->is.corner);
     rg_contact_box(corner, box);
@@ -160,8 +189,12 @@ static void meet(twin *t, int a, int b, rg_contact_pair *pair) {
                             .pair = pair,
                             .force = force,
                             .energy = &energy,
-                            .depth = &depth};
+                            .depth = &depth,
+                            .grip = t->grips == NULL ? NULL : t->grips[a * t->faces + b],
+                            .heat = &heat};
     rg_reference_contact(&args, 0, 1);
+    t->heat[f[0]->is.id / 4] += 0.5 * heat;
+    t->heat[f[1]->is.id / 4] += 0.5 * heat;
     t->depth_of[a] = fmax(t->depth_of[a], depth - pair->skin);
     t->depth_of[b] = fmax(t->depth_of[b], depth - pair->skin);
     if (!(energy > 0)) {
@@ -183,10 +216,16 @@ static void meet(twin *t, int a, int b, rg_contact_pair *pair) {
     feel(t, f[1], force + 9);
 }
 
-static twin make_twin(const random_state *r) {
+/* grips: as twin.grips, in and out; *grips is made where it is NULL. */
+static twin make_twin(const random_state *r, grip **grips) {
     twin t = {0};
     size_t elements = (size_t)r->mesh->elements;
     list_faces(r, &t);
+    if (grips != NULL && *grips == NULL) {
+        *grips = RG_NEW(grip, (size_t)(t.faces * t.faces));
+    }
+    t.grips = grips == NULL ? NULL : *grips;
+    t.heat = RG_NEW(double, elements);
     t.depth_of = RG_NEW(double, (size_t)t.faces);
     t.pressed = RG_NEW(double, (size_t)t.faces);
     t.force = RG_NEW(nodal, elements);
@@ -210,6 +249,7 @@ static void free_twin(twin *t) {
     rg_free(t->pressed);
     rg_free(t->force);
     rg_free(t->felt);
+    rg_free(t->heat);
 }
 
 /* ---- The solver's ---- */
@@ -249,7 +289,7 @@ static void draw_side(const random_state *r, rg_real *sunk, size_t interface, rg
     r->solver->exposed[interface] = drawn_exposure(face_key(r->mesh, side / 4, (int)(side % 4)));
 }
 
-static void place(const random_state *r) {
+static void place(const random_state *r, bool rub) {
     const rg_solver *s = r->solver;
     for (size_t t = 0; t < s->domain->tiles; t++) {
         rg_contacts_place(s->contacts, t, s->u, s->contact_sunk);
@@ -259,7 +299,7 @@ static void place(const random_state *r) {
     rg_halo_start(halo);
     rg_halo_finish(halo);
 #pragma omp parallel
-    rg_contacts_meet(s->contacts, s->kernels, false);
+    rg_contacts_meet(s->contacts, s->kernels, rub);
 }
 
 typedef struct {
@@ -335,17 +375,31 @@ static bool impulse_good(const random_state *r, const twin *t, const double *imp
     return good;
 }
 
-static void check_forces(const random_state *r, const twin *t) {
+static bool heat_good(const random_state *r, const twin *t, const double *heat) {
+    const rg_domain *d = r->solver->domain;
+    bool good = true;
+    for (size_t slot = 0; good && slot < d->blocks * RG_LANES; slot++) {
+        rg_gid e = d->id[slot];
+        good = e < 0 || near(heat[slot], t->heat[e], ROUNDED * (t->felt[e] + 1) * 1e-6);
+    }
+    return good;
+}
+
+static void check_forces(const random_state *r, const twin *t, const char *of) {
     const rg_solver *s = r->solver;
     size_t slots = s->domain->blocks * RG_LANES, values = 3 * RG_NODES * slots;
     rg_real *v = RG_NEW(rg_real, values), *w = RG_NEW(rg_real, values);
-    double *impulse = RG_NEW(double, slots);
+    double *impulse = RG_NEW(double, slots), *heat = t->grips == NULL ? NULL : RG_NEW(double, slots);
     rg_push push = {.dt = DT, .dt_now = DT_NOW, .velocity = v, .step_velocity = w};
     for (size_t n = 0; n < s->domain->tiles; n++) {
-        rg_contacts_push(s->contacts, n, &push, DT, impulse, NULL, s->contact_sunk);
+        rg_contacts_push(s->contacts, n, &push, DT, impulse, heat, s->contact_sunk);
     }
-    report(pushed_well(r, t, v, DT) && pushed_well(r, t, w, DT_NOW), "contact", "forces on elements");
-    report(impulse_good(r, t, impulse), "contact", "impulse");
+    report(pushed_well(r, t, v, DT) && pushed_well(r, t, w, DT_NOW), of, "forces on elements");
+    report(impulse_good(r, t, impulse), of, "impulse");
+    if (heat != NULL) {
+        report(heat_good(r, t, heat), of, "heat of friction");
+    }
+    rg_free(heat);
     rg_free(impulse);
     rg_free(v);
     rg_free(w);
@@ -425,7 +479,7 @@ static void check_moved(const random_state *r, const twin *t) {
                 s->u[rg_node_index(slot, n, 1)] += (rg_real)(0.1 * t->fat);
             }
         }
-        place(r);
+        place(r, false);
         good = near(rg_contacts_moved(s->contacts), 0.1 * pass + 2 * 0.1, 1e-10) && good;
     }
     report(good, "contact", "knows how far faces have moved");
@@ -435,14 +489,14 @@ static void check(void) {
     const char *change[] = {"contact={model: general, penalty: 4}", "bodies=[]"};
     random_state r = random_state_make(2, change, MPI_COMM_WORLD);
     random_state_draw(&r, SEED);
-    twin t = make_twin(&r);
+    twin t = make_twin(&r, NULL);
     visit(&r, draw_side, NULL);
     rg_contacts_search(r.solver->contacts, r.solver->exposed, r.solver->u);
-    place(&r);
+    place(&r, false);
     sides of = {&t, true, true};
     check_sums(&r, &t);
     check_frequencies(&r, &t);
-    check_forces(&r, &t);
+    check_forces(&r, &t, "contact");
     visit(&r, judge_pushed, &of);
     rg_contacts_sink(r.solver->contacts, r.solver->exposed, r.solver->contact_sunk);
     visit(&r, judge_newly, &of);
@@ -451,6 +505,120 @@ static void check(void) {
     check_moved(&r, &t);
     free_twin(&t);
     random_state_free(&r);
+}
+
+/* ---- Friction ---- */
+
+/* The elements go on, each as a whole. */
+static void move(const random_state *r) {
+    const rg_solver *s = r->solver;
+    moves++;
+    for (size_t slot = 0; slot < s->domain->blocks * RG_LANES; slot++) {
+        for (int k = 0; s->domain->id[slot] >= 0 && k < 3 * RG_NODES; k++) {
+            s->u[rg_node_index(slot, k / 3, k % 3)] = (rg_real)moved_u(s->domain->id[slot], k / 3, k % 3);
+        }
+    }
+}
+
+/* The rows of all ranks, back to each of them. */
+static void save_and_load(const random_state *r) {
+    int64_t *key, *all_keys;
+    double *value, *all;
+    int rows = (int)rg_contacts_grips(r->solver->contacts, &key, &value), ranks, count[8], begin[9] = {0};
+    MPI_Comm_size(MPI_COMM_WORLD, &ranks);
+    MPI_Allgather(&rows, 1, MPI_INT, count, 1, MPI_INT, MPI_COMM_WORLD);
+    for (int i = 0; i < ranks; i++) {
+        begin[i + 1] = begin[i] + count[i];
+    }
+    MPI_Datatype row;
+    MPI_Type_contiguous(RG_GRIP_ROW, MPI_DOUBLE, &row);
+    MPI_Type_commit(&row);
+    all_keys = RG_NEW(int64_t, (size_t)begin[ranks] + 1);
+    all = RG_NEW(double, RG_GRIP_ROW *((size_t)begin[ranks] + 1));
+    MPI_Allgatherv(key, rows, MPI_INT64_T, all_keys, count, begin, MPI_INT64_T, MPI_COMM_WORLD);
+    MPI_Allgatherv(value, rows, row, all, count, begin, row, MPI_COMM_WORLD);
+    MPI_Type_free(&row);
+    rg_contacts_take_grips(r->solver->contacts, (size_t)begin[ranks], all_keys, all);
+    rg_free(key);
+    rg_free(value);
+    rg_free(all_keys);
+    rg_free(all);
+}
+
+/* The spring of a pair that begins to slide ends where the forces attack: in a shallow overlap that is known
+ * less well than places are. */
+#define STRETCHED (6 * LENGTH)
+
+/* Both sides of each pair that grips have a row, once each. */
+static bool rows_good(const random_state *r, const twin *t) {
+    int64_t *key;
+    double *value;
+    int rows = (int)rg_contacts_grips(r->solver->contacts, &key, &value), wanted = 0;
+    bool good = true;
+    for (int i = 0; i < rows; i++) {
+        int a, b;
+        const double *row = value + RG_GRIP_ROW * i;
+        if (face_of(t, key[i], &a) == NULL || face_of(t, (rg_gid)row[0], &b) == NULL) {
+            good = false;
+            continue;
+        }
+        const double *of = t->grips[a < b ? a * t->faces + b : b * t->faces + a];
+        good = good && of[RG_GRIP_STIFFNESS] > 0 && row[1 + RG_GRIP_SLIDES] == of[RG_GRIP_SLIDES];
+        good = good && near(row[1 + RG_GRIP_STIFFNESS], of[RG_GRIP_STIFFNESS], 1e-9 * of[RG_GRIP_STIFFNESS]);
+        good = good && near(row[1 + RG_GRIP_STRETCH], of[RG_GRIP_STRETCH], STRETCHED);
+    }
+    for (int i = 0; i < t->faces * t->faces; i++) {
+        wanted += 2 * (t->grips[i][RG_GRIP_STIFFNESS] > 0);
+    }
+    rg_free(key);
+    rg_free(value);
+    MPI_Allreduce(MPI_IN_PLACE, &rows, 1, MPI_INT, MPI_SUM, MPI_COMM_WORLD);
+    return good && rows == wanted;
+}
+
+/* How many pairs hold and slide, in the twin. */
+static void count_grips(const twin *t, int pressing[2]) {
+    for (int i = 0; i < t->faces * t->faces; i++) {
+        pressing[t->grips[i][RG_GRIP_SLIDES] > 0] += t->grips[i][RG_GRIP_STIFFNESS] > 0;
+    }
+}
+
+static void check_friction(void) {
+    const char *change[] = {
+        "contact={model: general, penalty: 4, friction: 0.1, static_friction: 0.3, pairs: ["
+        "{between: [glass, steel], friction: 0.9}, {between: [steel, steel], friction: 0}, "
+        "{between: [steel, glass], friction: 0.05, static_friction: 0.2}]}",
+        "bodies=[]"};
+    static const char *const of[] = {"friction, first", "friction, a step on", "friction, after a search",
+                                     "friction, after a restart"};
+    random_state r = random_state_make(2, change, MPI_COMM_WORLD);
+    rg_solver *s = r.solver;
+    grip *grips = NULL;
+    int pressing[2] = {0, 0};
+    random_state_draw(&r, SEED);
+    visit(&r, draw_side, NULL);
+    for (int i = 0; i < 4; i++) {
+        if (i > 0) {
+            move(&r);
+        }
+        if (i == 3) {
+            save_and_load(&r);
+        }
+        if (i != 1) {
+            rg_contacts_search(s->contacts, s->exposed, s->u);
+        }
+        twin t = make_twin(&r, &grips);
+        visit(&r, draw_side, NULL);
+        place(&r, true);
+        check_forces(&r, &t, of[i]);
+        report(rows_good(&r, &t), of[i], "rows of a checkpoint");
+        count_grips(&t, pressing);
+        free_twin(&t);
+    }
+    report(pressing[0] > 100 && pressing[1] > 100, "friction", "pairs hold, and slide");
+    rg_free(grips);
+    random_state_free(&r);
+    moves = 0;
 }
 
 /* ---- Which faces are exposed ---- */
@@ -502,6 +670,7 @@ int main(int argc, char **argv) {
     MPI_Init(&argc, &argv);
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);
     check();
+    check_friction();
     check_exposure("interface={law: linear, strength: 400e6, energy: 34}");
     check_exposure(
         "interface={form: intrinsic, law: needleman, strength: 400e6, energy: 34, contact: potential}");
