@@ -14,11 +14,11 @@ ROOMS = {
                 test_friction.py test_viscosity.py test_laws.py test_ceramic.py test_solids.py test_ledger.py
                 test_crystals.py test_fragment_contact.py test_spall.py"""),
     "mesh/import": (["src/mesh/import/*"],
-                    """frame gmsh_errors inp inp_nodes inp_sets inp_split import unpack vtk test_inputs.py sets mesh mesh_file mesh_command
+                    """crack apart near frame gmsh_errors inp inp_nodes inp_sets inp_split import unpack vtk test_inputs.py sets mesh mesh_file mesh_command
                     fuzz-inp fuzz-vtk test_abaqus.py test_gmsh.py test_mesh_faults.py test_meshes.py"""),
     "mesh/improve": (["src/mesh/improve/*"], "improve test_meshes.py"),
     "mesh": (["src/mesh/*"],
-             """sets mesh mesh_check mesh_command mesh_damage mesh_info mesh_file tiles part part_read domain
+             """apart near sets mesh mesh_check mesh_command mesh_damage mesh_info mesh_file tiles part part_read domain
              fuzz-mesh test_mesh_faults.py test_meshes.py test_invariance.py test_partition.py test_cli.py"""),
     "partition": (["src/partition/*"],
                   """tiles part part_read patch material materials material_map anisotropic spectrum step verify

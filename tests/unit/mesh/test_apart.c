@@ -222,6 +222,191 @@ static void test_random_boxes(void **state) {
     assert_true(found > 5 && touching > 5);
 }
 
+/* ---- many ---- */
+
+/* Eight blocks around a point, whose common sides have the same cells; each side of a block is beside two or
+ * none of the others. The upper ones hang `gap` above the lower ones. */
+enum { AROUND = 8 };
+static const int64_t around_cells[3][2] = {{2, 1}, {1, 3}, {2, 2}};
+static const double around_size[3][2] = {{1.1, 0.7}, {0.8, 1.3}, {1.2, 0.9}};
+
+static void set_around(double gap, box b[AROUND]) {
+    for (int k = 0; k < AROUND; k++) {
+        for (int c = 0; c < 3; c++) {
+            int side = k >> c & 1;
+            b[k].cells[c] = around_cells[c][side];
+            b[k].size[c] = around_size[c][side];
+            b[k].origin[c] = side == 0 ? -around_size[c][0] : c == 2 ? gap : 0;
+        }
+    }
+}
+
+/* Block of each part, by where its first element is. */
+static void blocks_of(const rg_mesh *m, int block[AROUND]) {
+    rg_gid begin[AROUND + 1] = {0};
+    for (int k = 0; k < AROUND; k++) {
+        rg_gid vertices = 1;
+        for (int c = 0; c < 3; c++) {
+            vertices *= around_cells[c][k >> c & 1] + 1;
+        }
+        begin[k + 1] = begin[k] + vertices;
+    }
+    for (rg_gid e = 0; e < m->elements; e++) {
+        for (int k = 0; k < AROUND; k++) {
+            if (m->corner[4 * e] >= begin[k] && m->corner[4 * e] < begin[k + 1]) {
+                block[m->part[e]] = k;
+            }
+        }
+    }
+}
+
+/* The one axis along which two blocks are beside each other, and share a side; -1: there is none. */
+static int axis_between(int a, int b) {
+    return (a ^ b) == 1 ? 0 : (a ^ b) == 2 ? 1 : (a ^ b) == 4 ? 2 : -1;
+}
+
+static void test_many_touch(void **state) {
+    (void)state;
+    static const double turn[3][3] = {{0.36, 0.48, -0.8}, {-0.8, 0.6, 0}, {0.48, 0.64, 0.6}}; /* as in make */
+    const double gap = 3e-4;
+    box b[AROUND];
+    size_t count, i = 0;
+    int block[AROUND];
+    set_around(gap, b);
+    rg_mesh *m = make(b, AROUND);
+    assert_int_equal(rg_mesh_keep_apart(m), AROUND);
+    blocks_of(m, block);
+    rg_touch *t = rg_mesh_touches(m, &count);
+    assert_int_equal(count, 12);
+    for (int k = 0; k < AROUND * AROUND; k++) {
+        int p = k / AROUND, q = k % AROUND, axis = axis_between(block[p], block[q]);
+        if (p >= q || axis < 0) {
+            continue;
+        }
+        double area = 1, middle[3] = {0}, wanted = axis == 2 ? gap : 0;
+        int64_t faces = 2;
+        for (int c = 0; c < 3; c++) {
+            int side = block[p] >> c & 1;
+            if (c != axis) {
+                area *= around_size[c][side];
+                faces *= around_cells[c][side];
+                middle[c] = b[block[p]].origin[c] + 0.5 * around_size[c][side];
+            } else if (c == 2 && side == 1) {
+                middle[c] = gap; /* on the face of the lower number */
+            }
+        }
+        assert_int_equal(t[i].part[0], p);
+        assert_int_equal(t[i].part[1], q);
+        assert_int_equal(t[i].faces[0], faces);
+        assert_int_equal(t[i].faces[1], faces);
+        assert_true(fabs(t[i].area - area) < 1e-12);
+        assert_true(fabs(t[i].gap[0] - wanted) < 1e-12 && fabs(t[i].gap[1] - wanted) < 1e-12);
+        for (int c = 0; c < 3; c++) {
+            double at = turn[c][0] * middle[0] + turn[c][1] * middle[1] + turn[c][2] * middle[2];
+            assert_true(fabs(t[i].place[c] - at) < 1e-12);
+        }
+        i++;
+    }
+    rg_free(t);
+    rg_mesh_free(m);
+}
+
+/* The blocks, larger than there is room for, with every vertex moved a little. */
+static rg_mesh *make_crowd(void) {
+    box b[AROUND];
+    dice d = {.seed = 11};
+    set_around(0, b);
+    for (int k = 0; k < AROUND; k++) {
+        for (int c = 0; c < 3; c++) {
+            double more = 0.05 + 0.1 * dice_unit(&d);
+            b[k].origin[c] -= (k >> c & 1) == 1 ? more : 0;
+        }
+    }
+    rg_mesh *m = make(b, AROUND);
+    for (rg_gid i = 0; i < 3 * m->vertices; i++) {
+        m->x[i] += 0.02 * dice_sign(&d);
+    }
+    rg_mesh_keep_apart(m);
+    return m;
+}
+
+static void check_crowd(void) {
+    rg_mesh *m = make_crowd();
+    rg_mesh_check_overlaps(m, "crowd");
+    rg_mesh_free(m);
+}
+
+static void minus(const double *a, const double *b, double out[3]) {
+    for (int c = 0; c < 3; c++) {
+        out[c] = a[c] - b[c];
+    }
+}
+
+/* The shortest way by which element i leaves j: along all normals of planes through an edge of one that are
+ * parallel to an edge of any of the two. */
+static double way_out(const rg_mesh *m, rg_gid i, rg_gid j) {
+    static const int end[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
+    double edge[12][3], way = INFINITY;
+    for (int k = 0; k < 12; k++) {
+        const rg_gid *corner = m->corner + 4 * (k < 6 ? i : j);
+        minus(m->x + 3 * corner[end[k % 6][1]], m->x + 3 * corner[end[k % 6][0]], edge[k]);
+    }
+    for (int k = 0; k < 144; k++) {
+        const double *a = edge[k / 12], *b = edge[k % 12];
+        double n[3] = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+        double length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]), most[2] = {-INFINITY, -INFINITY},
+               least[2] = {INFINITY, INFINITY};
+        for (int v = 0; v < 8 && k / 12 < k % 12; v++) {
+            const double *x = m->x + 3 * m->corner[4 * (v < 4 ? i : j) + v % 4];
+            double at = (n[0] * x[0] + n[1] * x[1] + n[2] * x[2]) / length;
+            most[v / 4] = fmax(most[v / 4], at);
+            least[v / 4] = fmin(least[v / 4], at);
+        }
+        if (k / 12 < k % 12 && length > 1e-6) {
+            way = fmin(way, fmin(most[0] - least[1], most[1] - least[0]));
+        }
+    }
+    return way;
+}
+
+/* Each two of eight parts lie in each other: the deepest of all pairs of elements is told, those of the
+ * lowest numbers where several are as deep, in the order of the parts, ten of them. */
+static void test_many_overlap(void **state) {
+    (void)state;
+    static char said[1 << 14], words[1 << 14];
+    rg_mesh *m = make_crowd();
+    size_t length = 0;
+    int told = 0;
+    assert_int_equal(rg_mesh_apart(m), AROUND);
+    for (int k = 0; k < AROUND * AROUND; k++) {
+        rg_gid deepest[2] = {-1, -1};
+        double depth = 1e-3;
+        for (rg_gid i = 0; i < m->elements; i++) {
+            for (rg_gid j = 0; j < m->elements && m->part[i] == k / AROUND; j++) {
+                double way = m->part[j] == k % AROUND && k / AROUND < k % AROUND ? way_out(m, i, j) : 0;
+                if (way > depth * (1 + 1e-9)) {
+                    depth = way;
+                    deepest[0] = i;
+                    deepest[1] = j;
+                }
+            }
+        }
+        if (deepest[0] >= 0 && told++ < 10) {
+            const double *x = m->x + 3 * m->corner[4 * deepest[0]];
+            length += (size_t)snprintf(words + length, sizeof words - length,
+                                       "rhegma: crowd: parts %d and %d lie in each other: elements %" PRId64
+                                       " and %" PRId64 " by %.3g m, at (%.9g, %.9g, %.9g) m\n",
+                                       k / AROUND + 1, k % AROUND + 1, rg_mesh_original(m, deepest[0]),
+                                       rg_mesh_original(m, deepest[1]), depth, x[0], x[1], x[2]);
+        }
+    }
+    snprintf(words + length, sizeof words - length, "rhegma: crowd: and %d more\n", told - 10);
+    rg_mesh_free(m);
+    assert_true(told > 20);
+    assert_int_equal(run_child(check_crowd, said, sizeof said), RG_USAGE);
+    assert_string_equal(said, words);
+}
+
 /* ---- checks and file ---- */
 
 static bool spoilt;
@@ -279,6 +464,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_numbers),      cmocka_unit_test(test_a_shared_vertex),
         cmocka_unit_test(test_touching),     cmocka_unit_test(test_overlaps),
+        cmocka_unit_test(test_many_touch),   cmocka_unit_test(test_many_overlap),
         cmocka_unit_test(test_random_boxes), cmocka_unit_test(test_neighbours_are_of_one_part),
         cmocka_unit_test(test_file),
     };
