@@ -90,7 +90,7 @@ bool rg_initial_has_stress(const rg_initial *is) {
 }
 
 bool rg_case_has_stress(const rg_case *c) {
-    bool has = rg_initial_has_stress(&c->initial);
+    bool has = c->stress_of.run != NULL || rg_initial_has_stress(&c->initial);
     for (int i = 0; i < c->initial_sets; i++) {
         has = has || rg_initial_has_stress(&c->initial_set[i].is);
     }

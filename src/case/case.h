@@ -360,6 +360,10 @@ typedef struct {
         double free;    /* at which nothing is expanded (K) */
     } temperature;
     rg_initial initial;
+    struct {
+        char *run; /* results of a run, as an absolute path, with the stress of the start; NULL: `initial` */
+        int64_t frame; /* of its fields; -1: the last */
+    } stress_of;
     rg_start start;
     int initial_sets;
     rg_initial_set *initial_set; /* the last one that has an element counts */

@@ -201,6 +201,9 @@ static const char *why_unused(const scan *s, const rg_key *key, char *text, size
     if (key->group == RG_GROUP_HEAT) {
         return "not used without temperature.value";
     }
+    if (key->group == RG_GROUP_STRESS_RUN) {
+        return "not used without initial.stress.run";
+    }
     if (key->group == RG_GROUP_CONTACT) {
         return "not used, because contact.model is interfaces";
     }
@@ -380,6 +383,11 @@ static void learn(rg_check *ck, const rg_key *key, const rg_node *node, bool goo
         ck->usage[RG_GROUP_RISE] = node == NULL ? RG_UNUSED : good ? RG_USED : RG_UNSURE;
     } else if (key->offset == offsetof(rg_case, temperature.value)) {
         ck->usage[RG_GROUP_HEAT] = node == NULL ? RG_UNUSED : good ? RG_USED : RG_UNSURE;
+    } else if (key->offset == offsetof(rg_case, stress_of.run)) {
+        ck->usage[RG_GROUP_STRESS_RUN] = node == NULL ? RG_UNUSED : good ? RG_USED : RG_UNSURE;
+        if (node != NULL && good) {
+            rg_stress_run_rule(ck);
+        }
     } else if (key->offset == offsetof(rg_case, mesh.file) && node != NULL) {
         ck->usage[RG_GROUP_BOX] = RG_UNUSED;
         ck->box = false;

@@ -72,6 +72,10 @@ char *rg_path_of_case(const rg_check *ck, const char *path);
  * read. */
 void rg_mesh_file_rule(rg_check *ck, const rg_node *node);
 
+/* Makes initial.stress.run a path that holds anywhere. Whether it can be read is seen when it is: a restart
+ * does without it. */
+void rg_stress_run_rule(rg_check *ck);
+
 /* Rules of the materials (case/material.c), but for the last two of the block in ck->material: a model that
  * this build does not have; hardening that saturates, which needs a stress, not below the yield stress, and a
  * rate (at `node`); other parameters that go together, above or below each other; an initial damage that

@@ -66,6 +66,12 @@ static bool any_open(const rg_case *c) {
 /* Stress of what flows or is damaged would not know of one that is there before. */
 void rg_stress_rule(const rg_entry *e) {
     const rg_case *c = e->ck->c;
+    if (c->stress_of.run != NULL && rg_initial_has_stress(&c->initial)) {
+        const rg_node *run = rg_entry_given(e, "initial.stress.run");
+        rg_entry_wrong(e, "initial.stress.run", run->at, (rg_subject){.value = run->text},
+                       "not beside expressions for the same stress");
+        return;
+    }
     for (int i = 0; i <= c->others && rg_case_has_stress(c); i++) {
         rg_material_model model = rg_case_material(c, i)->model;
         if (rg_input_history(rg_case_material(c, i)) > 0 || model == RG_MATERIAL_ANISOTROPIC) {

@@ -156,7 +156,7 @@ static const char *const fragments_meaning[] = {
 #define INITIAL(name_, unit_, at_, words)                                                                    \
     {.name = (name_), .unit = (unit_), .type = RG_KEY_EXPR, ELSE("0"), .no_time = true, .offset = (at_), MEANS(words)},
 /* Of `initial`, and of each of its sets. */
-#define INITIAL_KEYS(path, at_)                                                                              \
+#define INITIAL_KEYS(path, at_, more)                                                                        \
     INITIAL(path "displacement.x", "m", (at_) + offsetof(rg_initial, displacement[0]), "displacement along x at the start") \
     INITIAL(path "displacement.y", "m", (at_) + offsetof(rg_initial, displacement[1]), "along y")            \
     INITIAL(path "displacement.z", "m", (at_) + offsetof(rg_initial, displacement[2]), "along z")            \
@@ -169,11 +169,19 @@ static const char *const fragments_meaning[] = {
     INITIAL(path "stress.yz", "Pa", (at_) + offsetof(rg_initial, stress[3]), "stress") \
     INITIAL(path "stress.xz", "Pa", (at_) + offsetof(rg_initial, stress[4]), "stress") \
     INITIAL(path "stress.xy", "Pa", (at_) + offsetof(rg_initial, stress[5]), "stress") \
+    more                                                                                                     \
     {.name = path "rotation.speed", .unit = "rad/s", REAL, ANY, ELSE("0"), .offset = (at_) + offsetof(rg_initial, spin),  \
      MEANS("angular velocity about an axis, of the displaced body, on top of that velocity")},               \
     {.name = path "rotation.axis", REAL3, ANY, ELSE("required with a speed"), .offset = (at_) + offsetof(rg_initial, axis), \
      MEANS("about which it turns, by the right hand: of any length")},                                       \
     {.name = path "rotation.at", .unit = "m", REAL3, ANY, ELSE("0, 0, 0"), .offset = (at_) + offsetof(rg_initial, at), MEANS("a point of the axis")},
+
+/* Beside the expressions for stress, of `initial` alone. */
+#define STRESS_OF_RUN                                                                                        \
+    {.name = "initial.stress.run", .type = RG_KEY_TEXT, ELSE("those expressions"), CASE(stress_of.run),       \
+     MEANS("path of the results of an earlier run on this mesh, relative to the case file: its field `stress` (Cauchy's, the mean of each element), in place of expressions; of elements that initial.sets do not have")}, \
+    {.name = "initial.stress.frame", INTEGER, FROM(-1), DEFAULT(-1), GROUP(STRESS_RUN), CASE(stress_of.frame),  \
+     MEANS("which of its moments, from 0 on, as rhegma export lists them; -1: the last")},
 
 /* Of a material with axes. */
 #define OF_MATERIAL(member) .offset = offsetof(rg_material_input, anisotropic.member)
@@ -299,7 +307,7 @@ static const rg_key case_keys[] = {
 
     {.name = "mass", EXPLAINED(masses), DEFAULT(RG_MASS_CONSISTENT), CASE(mass), MEANS("mass matrix")},
 
-    INITIAL_KEYS("initial.", offsetof(rg_case, initial))
+    INITIAL_KEYS("initial.", offsetof(rg_case, initial), STRESS_OF_RUN)
     {.name = "initial.sets", .type = RG_KEY_LIST, ELSE("none"), CASE(initial_set), .entry = &rg_initial_set_table,
      .offset_count = offsetof(rg_case, initial_sets), MEANS("elements with values of their own in place of those of `initial`; the last one that has an element counts")},
 
@@ -526,7 +534,7 @@ static const rg_key initial_set_keys[] = {
     {.name = "material", .type = RG_KEY_TEXT, ELSE("where"), ONE_OF, PART(material), MEANS("name of a material")},
     {.name = "where", .type = RG_KEY_EXPR, ELSE("set"), ONE_OF, .no_time = true, PART(where),
      MEANS("elements at whose centroid it is not 0")},
-    INITIAL_KEYS("", offsetof(rg_initial_set, is))
+    INITIAL_KEYS("", offsetof(rg_initial_set, is), )
 };
 
 static const rg_key probe_keys[] = {

@@ -40,6 +40,12 @@ void rg_mesh_file_rule(rg_check *ck, const rg_node *node) {
     }
 }
 
+void rg_stress_run_rule(rg_check *ck) {
+    char *run = ck->c->stress_of.run;
+    ck->c->stress_of.run = rg_path_of_case(ck, run);
+    rg_free(run);
+}
+
 void rg_times_rule(rg_check *ck, const rg_node *node) {
     const rg_case *c = ck->c;
     int last = c->output.times - 1;

@@ -11,6 +11,7 @@
 #include "library.h"
 #include "mesh/info.h"
 #include "output/snapshot.h"
+#include "solver/initial.h"
 #include "partition/material.h"
 #include "solver/opening.h"
 
@@ -175,6 +176,7 @@ rg_estimate rg_estimate_run(const rg_solver *s) {
     e.frame_bytes = rg_snapshots_frame_bytes(c) * (double)e.written;
     e.seconds = 1.3 * s->pass_seconds * (double)e.steps; /* a step is a pass, the update and some output */
     find_worst_zone(s, &e);
+    e.initial_stress = rg_initial_stress_largest(s);
     e.of_material = count_materials(s); /* now that the memory has been counted */
     return e;
 }
@@ -317,6 +319,11 @@ void rg_estimate_print(const rg_solver *s, const rg_estimate *e, FILE *out) {
             rg_opening_describe(s, i, words, sizeof words);
             fprintf(out, "opening        %s\n", words);
         }
+    }
+    if (s->prestress != NULL) {
+        fprintf(out, "initial stress up to %.4g Pa%s%s\n", e->initial_stress,
+                c->stress_of.run != NULL ? ", of the fields of " : "",
+                c->stress_of.run != NULL ? c->stress_of.run : "");
     }
     if (c->start == RG_START_STATIC) {
         fprintf(out, "start          static: the run finds the equilibrium first, a pass over all forces an "

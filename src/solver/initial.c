@@ -11,6 +11,7 @@
 #include "case/problem.h"
 #include "domain/element.h"
 #include "quadrature.h"
+#include "solver/stress_of_run.h"
 
 /* ---- Which values ---- */
 
@@ -155,6 +156,9 @@ static void fill_stress(rg_solver *s, const int16_t *set) {
     rg_first_bad bad = {.which = RG_NOWHERE};
     for (size_t i = 0; i < s->domain->blocks * RG_LANES * RG_PRESTRESS; i++) {
         size_t slot = i / RG_PRESTRESS;
+        if (set[slot] < 0 && s->input->stress_of.run != NULL) {
+            continue; /* rg_stress_of_run has it */
+        }
         int g = (int)(i % RG_PRESTRESS) / 6, k = (int)(i % 6);
         const rg_initial *is = set[slot] < 0 ? &s->input->initial : &s->input->initial_set[set[slot]].is;
         double x[3], value = 0;
@@ -172,6 +176,15 @@ static void fill_stress(rg_solver *s, const int16_t *set) {
         const rg_initial *is = number < 0 ? &s->input->initial : &s->input->initial_set[number].is;
         refuse_value(s, number, part[k], is->stress[k], &bad);
     }
+}
+
+double rg_initial_stress_largest(const rg_solver *s) {
+    double most = 0;
+    for (size_t i = 0; s->prestress != NULL && i < s->domain->blocks * RG_PRESTRESS_BLOCK; i++) {
+        most = fmax(most, fabs((double)s->prestress[i]));
+    }
+    MPI_Allreduce(MPI_IN_PLACE, &most, 1, MPI_DOUBLE, MPI_MAX, s->comm);
+    return most;
 }
 
 double rg_initial_stress_scale(const rg_solver *s) {
@@ -219,6 +232,9 @@ void rg_initial_fill(rg_solver *s) {
         free_values(s->input, own);
     }
     if (s->prestress != NULL) {
+        if (s->input->stress_of.run != NULL) {
+            rg_stress_of_run(s, set);
+        }
         fill_stress(s, set);
     }
     rg_free(set);

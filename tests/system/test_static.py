@@ -109,6 +109,79 @@ def test_the_same_bits_on_any_layout_and_through_a_restart(run, bar, form):
     assert f'"state_hash": "{hash_of_all}"' in (shorter.dir / "summary.json").read_text()
 
 
+# ---- Stress from the fields of an earlier run ----
+
+PULLED = {"loads": [{"name": "pull", "set": "z+", "traction": {"z": 1e6}}], "material.poisson": 0.3, "output.fields": ["stress"]}
+# Eight tiles of two blocks and more
+LARGE = {**PULLED, "mesh": {"cells": [4, 4, 16], "size": [0.5e-3, 0.5e-3, 2e-3], "jitter": 0.1}, "output.probes": [], "time.steps": 40, "output.interval": 10}
+
+
+@pytest.fixture(scope="module")
+def earlier(run, bar):
+    return run(bar, ranks=2, sets={**LARGE, "time.steps": 2, "output.interval": 1, "output.precision": "single" if SINGLE else "double"})
+
+
+def test_a_bar_starts_from_the_stress_of_another(run, figure, bar, earlier):
+    """Which the same traction balances, but for Cauchy's stress by the other's strains."""
+    done = run(bar, sets={**LARGE, "start": "initial", "initial.stress.run": str(earlier.dir)})
+    strain = 1e6 / 70e9
+    figure("stress of an earlier run: out of balance", done.summary["stress_out_of_balance"], bound=rounding(1e-5, 1e-4), why="strains of 1.4e-5")
+    figure("stress of an earlier run: what it stores", done.energy["bulk"][0], theory=1e12 / (2 * 70e9) * 0.5e-9, bound=rounding(2e-5, 1e-4), unit="J", relative=True, why="strains of 1.4e-5")
+    assert done.energy["kinetic"].max() < max(10 * strain**2, rounding(0, 1e-8)) * done.energy["bulk"][0]
+    assert done.history["hold_force_z"][-1] == pytest.approx(-1e6 * 0.25e-6, rel=rounding(1e-4, 1e-2))
+
+
+def test_the_stress_of_a_run_has_the_same_bits_anywhere_and_in_a_restart(run, bar, earlier):
+    part = [{"where": "z > 1e-3", "stress": {"zz": "2e6*z/1e-3"}}]
+    sets = {**LARGE, "start": "initial", "initial": {"stress": {"run": str(earlier.dir), "frame": 1}, "sets": part}, "checkpoint.steps": 20}
+    one = run(bar, sets=sets)
+    for ranks, threads in ((1, 2), (3, 1)):
+        other = run(bar, ranks=ranks, threads=threads, sets=sets)
+        assert (one.summary["state_hash"], one.summary["stress_out_of_balance"]) == (other.summary["state_hash"], other.summary["stress_out_of_balance"])
+    assert one.summary["stress_out_of_balance"] > 0.01  # the part's
+    shorter = run(bar, ranks=2, sets={**sets, "time.steps": 25})
+    again = launch("run", "--restart", shorter.dir, "-q", "--set", "time.steps=40", ranks=3)
+    assert again.returncode == 0, again.stderr
+    assert f'"state_hash": "{one.summary["state_hash"]}"' in (shorter.dir / "summary.json").read_text()
+
+
+def test_each_component_of_a_run_comes_back(run, bar):
+    """On corners that are right-handed and others."""
+    given = {"xx": 1e6, "yy": -2e6, "zz": 3e6, "yz": 4e5, "xz": -5e5, "xy": 6e5}
+    sets = {"start": "initial", "loads": [], "time.steps": 1, "output.interval": 1, "output.fields": ["stress"]}
+    first = run(bar, sets={**sets, "initial.stress": given})
+    again = run(bar, ranks=3, sets={**sets, "initial.stress": {"run": str(first.dir), "frame": 0}})
+    for name, value in given.items():
+        assert again.history[f"end_s{name}"][0] == pytest.approx(value, rel=rounding(1e-13, 1e-6))
+    assert again.energy["bulk"][0] == pytest.approx(first.energy["bulk"][0], rel=rounding(1e-13, 1e-6))
+
+
+def test_check_tells_whose_stress_it_is(bar, earlier):
+    from conftest import overrides
+    told = launch("check", bar, *overrides({**LARGE, "initial.stress.run": str(earlier.dir)})).stdout
+    assert f"initial stress up to 1e+06 Pa, of the fields of {earlier.dir}\n" in told
+
+
+@pytest.mark.parametrize("change, message", [
+    ({"initial.stress.frame": 3}, "it has no frame 3; allowed: 0 to 2, or -1"),
+    ({"mesh": {**LARGE["mesh"], "jitter": 0}}, "its mesh is another one: element 0 at (0, 0, 0) is not there"),
+    ({"mesh": {**LARGE["mesh"], "cells": [4, 4, 15]}}, "its fields are not those of all elements of this mesh (another mesh, or output.region)"),
+    ({"initial.stress.run": "/nowhere"}, "initial.stress.run: /nowhere: there is no field output here (output.fields of that run)"),
+    ({"initial.sets": [{"where": 1, "velocity": {"x": 1}}]}, "no element takes its stress: all are of initial.sets"),
+    ({"initial.stress.xx": 1}, "not beside expressions for the same stress")])
+def test_a_run_whose_stress_is_refused(bar, earlier, change, message):
+    from conftest import overrides
+    said = launch("check", bar, *overrides({**LARGE, "initial.stress.run": str(earlier.dir), **change}))
+    assert said.returncode == 2 and message in said.stderr, said.stderr
+
+
+def test_a_run_without_stress_is_refused(run, bar):
+    from conftest import overrides
+    silent = run(bar, sets={**LARGE, "time.steps": 1, "output.fields": ["velocity"]})
+    said = launch("check", bar, *overrides({**LARGE, "initial.stress.run": str(silent.dir)}))
+    assert said.returncode == 2 and "its field `stress` is not there or cannot be read (output.fields of that run)" in said.stderr, said.stderr
+
+
 @pytest.mark.parametrize("change, status, message", [
     ({"boundary": SIDES[:2]}, 2, "start: static: what `boundary` prescribes at t = 0 does not hold the body: it can still move or turn"),
     ({"boundary": [SIDES[2], {"set": "z+", "component": "z", "displacement": 0}, {**SIDES[0], "from": 1e-9}, SIDES[1]]}, 2,
