@@ -1,5 +1,5 @@
-/* Floating-point operations that a call really executes: the call is single-stepped in a child process, and
- * each instruction it runs is looked up in the program's own disassembly. Exact for the object code at hand,
+/* Floating-point operations that a call really executes: a child process steps through it by the trap
+ * flag, and looks each instruction up in the program's own disassembly. Exact for the object code at hand,
  * with its branches and loops, whatever the source looks like. */
 #ifndef RG_INSTRUCTION_COUNT_H
 #define RG_INSTRUCTION_COUNT_H
@@ -14,7 +14,7 @@ typedef struct {
     int width;     /* of the widest vectors, in bytes */
 } instruction_count;
 
-/* Why nothing can be counted here (not x86-64 Linux, no objdump, tracing forbidden), or NULL. */
+/* Why nothing can be counted here (not x86-64 Linux, no objdump, no trap flag), or NULL. */
 const char *instruction_count_unavailable(void);
 
 /* Counts run(context), which runs in a child: it changes nothing in this process. */
