@@ -48,7 +48,7 @@ ROOMS = {
                    test_restart.py test_partition.py"""),
     "verify": (["src/verify/*"], "verify test_verify.py"),
     "case": (["src/case/*"],
-             """case user_check user_law_check test_user_materials.py case_anisotropic tables presets load case_text case_echo case_ranges
+             """case user user_check user_law_check test_user_materials.py case_anisotropic tables presets load case_text case_echo case_ranges
                 case_rules case_boundary case_values case_mistakes keys expressions numbers strength fuzz-case test_thermal.py
                 test_equilibrium.py test_keys.py test_output.py test_laws.py test_bodies.py test_cli.py test_sensors.py test_supports.py
                 test_static.py test_loads.py test_bimaterials.py test_continuous.py test_restart.py"""),
