@@ -53,7 +53,7 @@ ROOMS = {
                 test_equilibrium.py test_keys.py test_output.py test_laws.py test_bodies.py test_cli.py test_sensors.py test_supports.py
                 test_static.py test_loads.py test_bimaterials.py test_continuous.py test_restart.py"""),
     "base": (["src/*"],
-             """numbers apart mem stiffness exact_sum exchange error files interrupt run mesh_command h5_parallel rebalance slab checksum
+             """numbers material_command apart mem stiffness exact_sum exchange error files interrupt run mesh_command h5_parallel rebalance slab checksum
                 writer fragment verify checkpoint_file fragment_table fragment_twin ledger probe summary test_keys.py test_user_materials.py
                 test_output.py test_mesh_faults.py test_faults.py test_cli.py test_fragments.py test_meshes.py test_partition.py
                 test_restart.py"""),

@@ -141,6 +141,30 @@ static void test_touching(void **state) {
     rg_free(t);
 }
 
+/* Two blocks on one, whose faces both of them touch. */
+static void test_faces_that_touch_twice(void **state) {
+    (void)state;
+    static const box on_one[] = {{{1, 1, 1}, {0, 0, 0}, {2, 2, 1}},
+                                 {{1, 1, 1}, {0, 0.1, 1}, {1, 1.9, 1}},
+                                 {{1, 1, 1}, {1, 0, 1}, {1, 1.8, 1}}};
+    size_t count;
+    int beside = 0;
+    rg_mesh *m = make(on_one, 3);
+    rg_mesh_keep_apart(m);
+    rg_touch *t = rg_mesh_touches(m, &count);
+    assert_int_equal(count, 3);
+    for (size_t i = 0; i < count; i++) {
+        bool aside = fabs(t[i].area - 1.7) < 1e-12; /* the two above, beside each other */
+        assert_true(aside || fabs(t[i].area - 1.9) < 1e-12 || fabs(t[i].area - 1.8) < 1e-12);
+        assert_int_equal(t[i].faces[0], 2);
+        assert_int_equal(t[i].faces[1], 2);
+        beside += aside;
+    }
+    assert_int_equal(beside, 1);
+    rg_free(t);
+    rg_mesh_free(m);
+}
+
 /* ---- overlaps ---- */
 
 static double sunk;
@@ -462,10 +486,15 @@ static void test_file(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_numbers),      cmocka_unit_test(test_a_shared_vertex),
-        cmocka_unit_test(test_touching),     cmocka_unit_test(test_overlaps),
-        cmocka_unit_test(test_many_touch),   cmocka_unit_test(test_many_overlap),
-        cmocka_unit_test(test_random_boxes), cmocka_unit_test(test_neighbours_are_of_one_part),
+        cmocka_unit_test(test_numbers),
+        cmocka_unit_test(test_a_shared_vertex),
+        cmocka_unit_test(test_touching),
+        cmocka_unit_test(test_overlaps),
+        cmocka_unit_test(test_many_touch),
+        cmocka_unit_test(test_faces_that_touch_twice),
+        cmocka_unit_test(test_many_overlap),
+        cmocka_unit_test(test_random_boxes),
+        cmocka_unit_test(test_neighbours_are_of_one_part),
         cmocka_unit_test(test_file),
     };
     omp_set_num_threads(1); /* a child has none of its parent's threads */
