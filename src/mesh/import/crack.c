@@ -16,26 +16,22 @@ static const double same_place = 1e-9; /* of the mesh's size, as in mesh/check.c
 
 /* A face of the surface. */
 typedef struct {
-    rg_gid place[3]; /* ascending: of each vertex the lowest one at its place */
-    int32_t part;
+    rg_gid place[4]; /* ascending: of each vertex the lowest one at its place; then the part */
     rg_gid slot;
 } side;
 
 static int by_place(const void *a, const void *b) {
     const side *p = a, *q = b;
-    for (int k = 0; k < 3; k++) {
+    for (int k = 0; k < 4; k++) {
         if (p->place[k] != q->place[k]) {
             return p->place[k] < q->place[k] ? -1 : 1;
         }
-    }
-    if (p->part != q->part) {
-        return p->part < q->part ? -1 : 1;
     }
     return (p->slot > q->slot) - (p->slot < q->slot);
 }
 
 static bool same_face(const side *a, const side *b) {
-    return a->part == b->part && memcmp(a->place, b->place, sizeof a->place) == 0;
+    return memcmp(a->place, b->place, sizeof a->place) == 0;
 }
 
 /* [vertices]: the lowest vertex at the place of each. */
@@ -69,7 +65,7 @@ static side *list_sides(const rg_mesh *mesh, const size_t *place, size_t *count)
             continue;
         }
         side *new = &list[(*count)++];
-        *new = (side){.part = mesh->part != NULL ? mesh->part[s / 4] : 0, .slot = (rg_gid)s};
+        *new = (side){.place = {0, 0, 0, mesh->part != NULL ? mesh->part[s / 4] : 0}, .slot = (rg_gid)s};
         for (int k = 0; k < 3; k++) {
             new->place[k] = (rg_gid)place[vertex_of(mesh, (rg_gid)s, k)];
         }
