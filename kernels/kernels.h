@@ -205,8 +205,17 @@ typedef struct {
 } rg_prestress_state_args;
 
 /* Internal variables that are output: damage, 0 to 1; regime of the cracks, 1, 2, 3 (0: no stress);
- * equivalent plastic strain. 0 where the material has none. */
-enum { RG_INTERNAL_DAMAGE, RG_INTERNAL_REGIME, RG_INTERNAL_PLASTIC, RG_INTERNAL };
+ * equivalent plastic strain; plastic part of log J; pressure that bulking has added (Pa); temperature (K). 0
+ * where the material has none. */
+enum {
+    RG_INTERNAL_DAMAGE,
+    RG_INTERNAL_REGIME,
+    RG_INTERNAL_PLASTIC,
+    RG_INTERNAL_VOLUME,
+    RG_INTERNAL_BULKING,
+    RG_INTERNAL_TEMPERATURE,
+    RG_INTERNAL,
+};
 
 typedef struct {
     double density;

@@ -10,7 +10,7 @@
 #include "kernels.h"
 
 enum {
-    RG_USER_ABI = 1,
+    RG_USER_ABI = 2,
     /* What kernels are handed; where sizes differ, so do places, whoever forgot the number above. */
     RG_USER_LAYOUT = (int)(sizeof(rg_bulk_args) + 7 * sizeof(rg_bulk_state_args) + 63 * sizeof(rg_material) +
                            5 * sizeof(rg_interface_args) + 11 * sizeof(rg_interface_state_args)),

@@ -26,6 +26,10 @@ unsigned rg_material_inside(rg_material_model model) {
     return bits[model];
 }
 
+unsigned rg_material_has(const rg_material *m) {
+    return m->model == RG_MATERIAL_USER ? m->of.user.library->facts->inside : rg_material_inside(m->model);
+}
+
 int rg_material_exists(rg_material_model model) {
 #define EXISTS(name, NAME, word, meaning, history, inside) [RG_MATERIAL_##NAME] = 1,
     static const int here[] = {RG_MATERIALS_HERE(EXISTS)[RG_MATERIAL_USER] = 1};

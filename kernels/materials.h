@@ -11,11 +11,14 @@
 
 /* What a material has inside, and how its elastic constants are given, as bits. */
 enum {
-    RG_HAS_DAMAGE = 1,  /* a share of the solid that is cracked, 0 to 1 */
-    RG_HAS_REGIME = 2,  /* regimes of its cracks, 1, 2, 3 */
-    RG_HAS_PLASTIC = 4, /* equivalent plastic strain */
-    RG_TAKES_YOUNG = 8, /* by Young's modulus and Poisson's ratio */
-    RG_TAKES_BULK = 16, /* by its bulk modulus and coefficients of its energy */
+    RG_HAS_DAMAGE = 1,        /* a share of the solid that is cracked, 0 to 1 */
+    RG_HAS_REGIME = 2,        /* regimes of its cracks, 1, 2, 3 */
+    RG_HAS_PLASTIC = 4,       /* equivalent plastic strain */
+    RG_TAKES_YOUNG = 8,       /* by Young's modulus and Poisson's ratio */
+    RG_TAKES_BULK = 16,       /* by its bulk modulus and coefficients of its energy */
+    RG_HAS_VOLUME = 32,       /* plastic change of volume */
+    RG_HAS_BULKING = 64,      /* pressure of what is crushed and takes more room */
+    RG_HAS_TEMPERATURE = 128, /* a temperature of its own */
 };
 
 /* Constants of an elastic solid of any symmetry: the upper triangle of its stiffness, row by row, in Voigt's
@@ -91,13 +94,13 @@ enum {
       RG_TAKES_YOUNG | RG_HAS_PLASTIC)                                                                       \
     X(johnson_cook, JOHNSON_COOK, "johnson-cook",                                                            \
       "a metal that flows harder the faster and softer the hotter it is", RG_JC_HISTORY,                     \
-      RG_TAKES_YOUNG | RG_HAS_PLASTIC)                                                                       \
+      RG_TAKES_YOUNG | RG_HAS_PLASTIC | RG_HAS_TEMPERATURE)                                                  \
     X(johnson_holmquist, JOHNSON_HOLMQUIST, "johnson-holmquist-2",                                           \
       "a ceramic or glass that is crushed, under high pressure too", RG_JH_HISTORY,                          \
-      RG_TAKES_YOUNG | RG_HAS_DAMAGE | RG_HAS_PLASTIC)                                                       \
+      RG_TAKES_YOUNG | RG_HAS_DAMAGE | RG_HAS_PLASTIC | RG_HAS_BULKING)                                      \
     X(drucker_prager, DRUCKER_PRAGER, "drucker-prager",                                                      \
       "rock, soil or concrete: strength by pressure, with a cap and a tension cut-off", RG_DP_HISTORY,       \
-      RG_TAKES_YOUNG | RG_HAS_PLASTIC)                                                                       \
+      RG_TAKES_YOUNG | RG_HAS_PLASTIC | RG_HAS_VOLUME)                                                       \
     X(viscoelastic, VISCOELASTIC, "viscoelastic",                                                            \
       "a polymer that relaxes: neo-Hookean in the long run, beside three Maxwell elements", RG_VE_HISTORY,   \
       RG_TAKES_YOUNG)
@@ -295,6 +298,9 @@ unsigned rg_material_inside(rg_material_model model);
 
 /* Values of history per point of any material. */
 int rg_material_values(const rg_material *m);
+
+/* What is inside any material. */
+unsigned rg_material_has(const rg_material *m);
 
 /* Whether this build has the model's kernels. */
 int rg_material_exists(rg_material_model model);

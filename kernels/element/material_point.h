@@ -38,6 +38,13 @@ typedef struct {
     rg_vec internal[RG_INTERNAL]; /* only with history */
 } rg_point_state;
 
+/* What a material with a history begins with: none of the internal variables. */
+RG_INLINE void rg_no_internal(rg_point_state *out) {
+    for (int k = 0; k < RG_INTERNAL; k++) {
+        out->internal[k] = (rg_vec){0};
+    }
+}
+
 /* F = I + H. */
 RG_INLINE void rg_plus_identity(rg_vec H[3][3], rg_vec F[3][3]) {
     for (int i = 0; i < 3; i++) {

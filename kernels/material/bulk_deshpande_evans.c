@@ -38,6 +38,7 @@ RG_INLINE void material_state(const rg_material *m, rg_vec H[3][3], rg_vec histo
     rg_de_stress s = rg_de_stress_at(c, &r, d.eb);
     out->energy = rg_de_stored(&s, d.ekk, d.eb);
     out->J = d.J;
+    rg_no_internal(out);
     out->internal[RG_INTERNAL_DAMAGE] = c->d0 * (size * size * size);
     out->internal[RG_INTERNAL_REGIME] = rg_de_regime(&r, &s, d.eb);
     out->internal[RG_INTERNAL_PLASTIC] = history[RG_DE_STRAIN];

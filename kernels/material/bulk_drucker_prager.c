@@ -23,8 +23,9 @@ RG_INLINE void material_state(const rg_material *m, rg_vec H[3][3], rg_vec histo
     rg_vec volume = d.ekk - history[RG_DP_VOLUME];
     out->energy = 0.5 * (c.bulk * (volume * volume) + c.shear3 * (d.eb * d.eb));
     out->J = d.J;
-    out->internal[RG_INTERNAL_DAMAGE] = out->internal[RG_INTERNAL_REGIME] = (rg_vec){0};
+    rg_no_internal(out);
     out->internal[RG_INTERNAL_PLASTIC] = history[RG_DP_STRAIN];
+    out->internal[RG_INTERNAL_VOLUME] = history[RG_DP_VOLUME];
     if (stress) {
         rg_hencky_piola(c.bulk * volume, c.shear3 * d.eb, &d, out->P);
     }

@@ -27,8 +27,9 @@ RG_INLINE void material_state(const rg_material *m, rg_vec H[3][3], rg_vec histo
     rg_hencky_at(F, history + RG_JC_FLOW, &d);
     out->energy = 0.5 * (c.bulk * (d.ekk * d.ekk) + c.von_mises * (d.eb * d.eb));
     out->J = d.J;
-    out->internal[RG_INTERNAL_DAMAGE] = out->internal[RG_INTERNAL_REGIME] = (rg_vec){0};
+    rg_no_internal(out);
     out->internal[RG_INTERNAL_PLASTIC] = history[RG_JC_STRAIN];
+    out->internal[RG_INTERNAL_TEMPERATURE] = c.room + history[RG_JC_RISE];
     if (stress) {
         rg_hencky_piola(c.bulk * d.ekk, c.von_mises * d.eb, &d, out->P);
     }

@@ -22,8 +22,9 @@ RG_INLINE void material_state(const rg_material *m, rg_vec H[3][3], rg_vec histo
     rg_jh_begin(&c, F, history, &p);
     out->energy = 0.5 * p.mises * p.d.eb + rg_jh_stored(&c, p.d.J, p.bulked, p.hold);
     out->J = p.d.J;
+    rg_no_internal(out);
     out->internal[RG_INTERNAL_DAMAGE] = history[RG_JH_DAMAGE];
-    out->internal[RG_INTERNAL_REGIME] = (rg_vec){0};
+    out->internal[RG_INTERNAL_BULKING] = history[RG_JH_BULKING];
     out->internal[RG_INTERNAL_PLASTIC] = history[RG_JH_STRAIN];
     if (stress) {
         rg_hencky_piola(-p.p * p.d.J, p.mises, &p.d, out->P);

@@ -26,8 +26,7 @@ RG_INLINE void material_state(const rg_material *m, rg_vec H[3][3], rg_vec histo
     rg_ve_strain(H, E);
     out->energy = rg_neo_hookean_energy(&c.rest, H, &v);
     out->J = v.J;
-    out->internal[RG_INTERNAL_DAMAGE] = out->internal[RG_INTERNAL_REGIME] =
-        out->internal[RG_INTERNAL_PLASTIC] = (rg_vec){0};
+    rg_no_internal(out);
     for (int k = 0; k < 6; k++) {
         all[k] = (rg_vec){0};
     }

@@ -33,7 +33,7 @@ typedef struct {
     double yield, hardening, power;    /* A, B (Pa), n */
     double rate, unit;                 /* C; rate0 dt, the strain of a step at that rate */
     double softening, inv_range;       /* m, 0: none; 1/(Tm - T0) (1/K) */
-    double heating;                    /* chi/(density c) (K m^3/J) */
+    double heating, room;              /* chi/(density c) (K m^3/J); T0 (K) */
 } rg_jc_constants;
 
 RG_INLINE rg_jc_constants rg_jc_constants_of(const rg_material *m) {
@@ -51,6 +51,7 @@ RG_INLINE rg_jc_constants rg_jc_constants_of(const rg_material *m) {
         .softening = given[RG_PARAMETER_SOFTENING_POWER],
         .inv_range = range > 0 ? 1 / range : 0,
         .heating = capacity > 0 ? given[RG_PARAMETER_HEAT_FRACTION] / (m->density * capacity) : 0,
+        .room = given[RG_PARAMETER_ROOM_TEMPERATURE],
     };
 }
 

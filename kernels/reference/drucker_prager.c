@@ -122,6 +122,6 @@ void rg_reference_point_drucker_prager(const rg_material *m, bool advance, doubl
     out->stiffening =
         excess * rg_reference_hencky_stiffening(m->lambda, m->mu, -J * to_p, J * to_q, eb, inverse);
     out->energy = J * (to_p * to_p / s.K + to_q * to_q / s.G3) / 2;
-    out->internal[RG_INTERNAL_DAMAGE] = out->internal[RG_INTERNAL_REGIME] = 0;
     out->internal[RG_INTERNAL_PLASTIC] = history[RG_DP_STRAIN];
+    out->internal[RG_INTERNAL_VOLUME] = history[RG_DP_VOLUME];
 }

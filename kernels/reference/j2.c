@@ -38,6 +38,5 @@ void rg_reference_point_j2(const rg_material *m, bool advance, double F[3][3], d
     out->energy = (mean * ekk + mises * (eb - dep)) / 2;
     out->released[RG_RELEASED_PLASTIC] = dep * (before + yield_stress(m->of.parameter, *ep)) / 2;
     out->released[RG_RELEASED_DAMAGE] = 0;
-    out->internal[RG_INTERNAL_DAMAGE] = out->internal[RG_INTERNAL_REGIME] = 0;
     out->internal[RG_INTERNAL_PLASTIC] = *ep;
 }

@@ -48,6 +48,6 @@ void rg_reference_point_johnson_cook(const rg_material *m, bool advance, double 
     out->energy = (mean * ekk + mises * (eb - dep)) / 2;
     out->released[RG_RELEASED_PLASTIC] = work;
     out->released[RG_RELEASED_DAMAGE] = 0;
-    out->internal[RG_INTERNAL_DAMAGE] = out->internal[RG_INTERNAL_REGIME] = 0;
     out->internal[RG_INTERNAL_PLASTIC] = *ep;
+    out->internal[RG_INTERNAL_TEMPERATURE] = m->of.parameter[RG_PARAMETER_ROOM_TEMPERATURE] + *rise;
 }

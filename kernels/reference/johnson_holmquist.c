@@ -102,6 +102,6 @@ void rg_reference_point_johnson_holmquist(const rg_material *m, bool advance, do
         rg_reference_hencky_stiffening(m->lambda, m->mu, -J * p - fmax(stiffer, 0), mises, eb, inverse);
     out->energy = mises * elastic / 2 + stored(&s, J, *bulked, *D);
     out->internal[RG_INTERNAL_DAMAGE] = *D;
-    out->internal[RG_INTERNAL_REGIME] = 0;
+    out->internal[RG_INTERNAL_BULKING] = *bulked;
     out->internal[RG_INTERNAL_PLASTIC] = history[RG_JH_STRAIN];
 }

@@ -20,7 +20,7 @@ typedef struct {
     double energy;                /* stored, per reference volume (J/m^3) */
     double stiffening;            /* bound on the acoustic tensor over lambda + 2 mu at rest */
     double released[RG_RELEASED]; /* in the step, by flow and by damage (J/m^3) */
-    double internal[RG_INTERNAL]; /* damage, regime, plastic strain, for output */
+    double internal[RG_INTERNAL]; /* RG_INTERNAL_DAMAGE ... (kernels.h), for output */
 } rg_scalar_point;
 
 static void RG_SCALAR_POINT(double F[3][3], double history[], const double parameter[], double dt,

@@ -151,12 +151,16 @@ static unsigned internal_fields(const rg_case *c) {
         inside |= rg_input_inside(rg_case_material(c, i));
     }
     return (inside & RG_HAS_DAMAGE ? RG_FIELD_DAMAGE : 0U) | (inside & RG_HAS_REGIME ? RG_FIELD_REGIME : 0U) |
-           (inside & RG_HAS_PLASTIC ? RG_FIELD_PLASTIC : 0U);
+           (inside & RG_HAS_PLASTIC ? RG_FIELD_PLASTIC : 0U) |
+           (inside & RG_HAS_VOLUME ? RG_FIELD_VOLUME : 0U) |
+           (inside & RG_HAS_BULKING ? RG_FIELD_BULKING : 0U) |
+           (inside & RG_HAS_TEMPERATURE || c->temperature.value != NULL ? RG_FIELD_TEMPERATURE : 0U);
 }
 
 unsigned rg_case_default_fields(const rg_case *c) {
     unsigned internal = internal_fields(c);
-    return RG_FIELDS_COMMON | internal | (internal != 0 ? RG_FIELD_TRIAXIALITY : 0U) |
+    return RG_FIELDS_COMMON | internal |
+           ((internal & ~(unsigned)RG_FIELD_TEMPERATURE) != 0 ? RG_FIELD_TRIAXIALITY : 0U) |
            (c->others > 0 ? RG_FIELD_MATERIAL : 0U);
 }
 

@@ -36,6 +36,9 @@ enum {
     RG_FIELD_RANK = 1024,       /* rank that owns the element, and that speaks for the cracked face */
     RG_FIELD_FRAGMENT = 2048,   /* id of the fragment */
     RG_FIELD_MATERIAL = 4096,   /* number of the material: 0 that of `material`, then those of `materials` */
+    RG_FIELD_VOLUME = 8192,     /* plastic part of log J: mean per element */
+    RG_FIELD_BULKING = 16384,   /* pressure that bulking has added: mean per element */
+    RG_FIELD_TEMPERATURE = 32768,
     RG_FIELDS_COMMON = 63 | RG_FIELD_FRAGMENT, /* what every run puts out by default */
 };
 

@@ -134,7 +134,8 @@ static const char *const components[] = {"x", "y", "z", NULL};
 static const char *const box_sets[] = {"x-", "x+", "y-", "y+", "z-", "z+", NULL};
 static const char *const fields[] = {
     "displacement", "velocity",       "stress",      "mean_stress", "principal_stress", "crack",    "damage",
-    "regime",       "plastic_strain", "triaxiality", "rank",        "fragment",         "material", NULL};
+    "regime",       "plastic_strain", "triaxiality", "rank",        "fragment",         "material",
+    "plastic_volume", "bulking_pressure", "temperature", NULL};
 static const char *const fields_meaning[] = {
     "of the nodes (m)",
     "of the nodes (m/s)",
@@ -142,13 +143,16 @@ static const char *const fields_meaning[] = {
     "a third of its trace (Pa)",
     "principal stresses, largest first (Pa)",
     "the crack surface: opening, slip, damage, time of failure",
-    "of the ceramic, mean of each element",
+    "share of the solid that is cracked or crushed, mean of each element",
     "of the ceramic's cracks, largest of the element: 1 closed, 2 sliding, 3 open",
     "equivalent plastic strain, mean of each element",
     "mean stress over von Mises stress",
     "that owns the element, and that speaks for a broken face",
     "number of the fragment",
-    "number of the material: 0 that of `material`, then those of `materials`"};
+    "number of the material: 0 that of `material`, then those of `materials`",
+    "plastic part of the logarithm of the volume (pores that close: below 0), mean of each element",
+    "pressure that crushing has added as it takes more room, mean of each element (Pa)",
+    "of solids that heat themselves their own, of others what `temperature` prescribes, mean of each element (K)"};
 static const char *const fragments[] = {"each", "last", "none", NULL};
 static const char *const fragments_meaning[] = {
     "for each output", "for the end of the run", "no file"};

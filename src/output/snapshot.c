@@ -242,7 +242,7 @@ static void write_nodal(rg_snapshots *w, const rg_solver *s, const char *name, c
 }
 
 /* What an element puts out of its state: mean Cauchy stress, mean stress, principal stresses, triaxiality,
- * damage, regime, plastic strain. */
+ * internal variables. */
 enum {
     STRESS = 0,
     MEAN = 6,
@@ -263,6 +263,10 @@ static const struct {
     {RG_FIELD_DAMAGE, {"damage", "1", RG_CENTER_CELL, 1, INTERNAL + RG_INTERNAL_DAMAGE, false}},
     {RG_FIELD_REGIME, {"regime", "1", RG_CENTER_CELL, 1, INTERNAL + RG_INTERNAL_REGIME, false}},
     {RG_FIELD_PLASTIC, {"plastic_strain", "1", RG_CENTER_CELL, 1, INTERNAL + RG_INTERNAL_PLASTIC, false}},
+    {RG_FIELD_VOLUME, {"plastic_volume", "1", RG_CENTER_CELL, 1, INTERNAL + RG_INTERNAL_VOLUME, false}},
+    {RG_FIELD_BULKING, {"bulking_pressure", "Pa", RG_CENTER_CELL, 1, INTERNAL + RG_INTERNAL_BULKING, false}},
+    {RG_FIELD_TEMPERATURE,
+     {"temperature", "K", RG_CENTER_CELL, 1, INTERNAL + RG_INTERNAL_TEMPERATURE, false}},
     {RG_FIELD_TRIAXIALITY, {"triaxiality", "1", RG_CENTER_CELL, 1, TRIAXIALITY, false}},
 };
 enum { STATE_FIELDS = sizeof state_field / sizeof *state_field };
@@ -313,6 +317,7 @@ typedef struct {
     const rg_solver *s;
     const rg_lid *slot;
     tile_state *thread; /* [threads] */
+    bool prescribed;    /* temperatures are wanted, and the case has them */
 } state_records;
 
 static void evaluate(const rg_solver *s, const rg_tile *t, tile_state *state) {
@@ -333,6 +338,9 @@ static void get_state(const void *of, size_t i, void *out) {
     size_t first = at / RG_LANES * RG_GAUSS, lane = at % RG_LANES;
     element_stress(state->cauchy + first * 6 * RG_LANES + lane, out);
     element_internal(state->internal + first * RG_INTERNAL * RG_LANES + lane, out);
+    if (r->prescribed && (rg_material_has(rg_material_of(r->s, slot)) & RG_HAS_TEMPERATURE) == 0) {
+        ((double *)out)[INTERNAL + RG_INTERNAL_TEMPERATURE] = rg_heating_temperature(r->s, slot);
+    }
 }
 
 static void write_states(rg_snapshots *w, const rg_solver *s) {
@@ -346,7 +354,8 @@ static void write_states(rg_snapshots *w, const rg_solver *s) {
     if (fields == 0) {
         return;
     }
-    state_records records = {s, w->slab->slot, RG_NEW(tile_state, (size_t)s->threads)};
+    state_records records = {s, w->slab->slot, RG_NEW(tile_state, (size_t)s->threads),
+                             s->heating != NULL && (w->fields & RG_FIELD_TEMPERATURE) != 0};
     for (int t = 0; t < s->threads; t++) {
         records.thread[t] =
             (tile_state){RG_NEW(double, points * 6), RG_NEW(double, points *RG_INTERNAL), NULL};

@@ -93,6 +93,17 @@ void rg_heating_tile(rg_solver *s, size_t tile) {
     }
 }
 
+double rg_heating_temperature(const rg_solver *s, size_t slot) {
+    const rg_expr *own = s->heating->own[omp_get_thread_num()];
+    double sum = 0;
+    for (int g = 0; g < RG_GAUSS; g++) {
+        double x[3];
+        rg_gauss_position(s->domain->corner + 12 * slot, g, x);
+        sum += rg_expr_value(own, x, s->time);
+    }
+    return sum / RG_GAUSS;
+}
+
 double rg_heating_scale(const rg_solver *s) {
     const rg_domain *d = s->domain;
     rg_exact_sum sum = {0};

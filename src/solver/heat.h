@@ -21,6 +21,10 @@ void rg_heating_start(struct rg_solver *s);
  */
 void rg_heating_tile(struct rg_solver *s, size_t tile);
 
+/* Mean of an element's points as they are at the time of the solver (K). Something is prescribed; in any
+ * thread. */
+double rg_heating_temperature(const struct rg_solver *s, size_t slot);
+
 /* Norm of the accelerations that the stress of a held body causes, as rg_initial_stress_scale. Collective. */
 double rg_heating_scale(const struct rg_solver *s);
 

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import rhegma
 from conftest import CASES, SINGLE, example, launch, overrides, rounding
 from figures import ROUNDING
 from test_parallel import assert_same_bits
@@ -186,6 +187,21 @@ def test_fields_show_the_plastic_strain(run, figure):
     # Cauchy stress, not Kirchhoff's, and fields are means over the points of an element
     figure("plastic wave: von Mises stress in the fields against the yield curve, relative",
            np.abs(mises[flowed] / (YIELD + HARDENING * strain[flowed]) - 1).max(), bound=0.02)
+
+
+@double_only
+def test_fields_show_the_heat_of_flow(run, figure):
+    """Nine tenths of the plastic work of a metal stay where it flowed; another one beside it has no temperature."""
+    sets = {**SHORT, "material": {"preset": "copper-ofhc"}, "interface": {"law": "none"}, "output.fields": ["temperature", "plastic_strain"],
+            "materials": [{"name": "stiff", "where": "z > 3e-3", "model": "neo-hookean", "young": 124e9, "poisson": 0.34, "density": 8960}]}
+    one = run(TORN, sets=sets)
+    points, cells = rhegma.mesh(one.dir)
+    last, corner = one.frames()[-1], points[cells[:, :4]]
+    volume = np.abs(np.linalg.det(corner[:, 1:] - corner[:, :1])) / 6
+    copper, rise = corner[:, :, 2].mean(axis=1) < 3e-3, last["temperature"].ravel() - 294
+    assert (rise[copper] >= 0).all() and rise.max() > 0.5 and (rise[~copper] == -294).all()
+    figure("Johnson-Cook: heat in the field of temperature over 0.9 of the plastic work", 8960 * 383 * (volume * rise)[copper].sum() / 0.9
+           / one.summary["plastic_J"], theory=1, bound=3e-13, why=ROUNDING)
 
 
 @double_only

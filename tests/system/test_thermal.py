@@ -51,6 +51,16 @@ def test_a_held_cube_is_pressed(run, figure, model):
            why=ROUNDING)
 
 
+def test_fields_show_the_temperature(run, figure):
+    """Of a case without one beside it: means over the points of an element, at its centroid where it is linear."""
+    sets = {**CUBE, "temperature": {"value": f"293 + 50*z/{SIZE} - 20*x/{SIZE} + 1e9*t", "free": 293}, "output.fields": ["temperature"]}
+    one = run(BAR, sets=sets)
+    points, cells = rhegma.mesh(one.dir)
+    middle = points[cells[:, :4]].mean(axis=1) / SIZE
+    apart = [np.abs(f["temperature"].ravel() - (293 + 50 * middle[:, 2] - 20 * middle[:, 0] + 1e9 * f["time"])).max() for f in one.frames()]
+    figure("field of temperature against the case's expression", max(apart), bound=1e-3 if SINGLE else 1.7e-13, why=ROUNDING, unit="K")
+
+
 @pytest.mark.skipif(SINGLE, reason="a static start to rounding")
 def test_a_plate_between_walls(run, figure):
     """Heated in proportion to the depth, held along x and y, free across: sigma_x = -E e(z)/(1 - nu), nothing across."""

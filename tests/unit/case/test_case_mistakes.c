@@ -13,7 +13,8 @@
 #define INTERVAL "allowed: integer >= 1 (steps), or number > 0 and < 1 (simulated seconds)\n"
 #define FIELDS                                                                                               \
     "allowed: list from displacement, velocity, stress, mean_stress, principal_stress, crack, "              \
-    "damage, regime, plastic_strain, triaxiality, rank, fragment, material"
+    "damage, regime, plastic_strain, triaxiality, rank, fragment, material, plastic_volume, "                \
+    "bulking_pressure, temperature"
 #define BLOCKS                                                                                               \
     "allowed: defaults, tables, mesh, material, materials, interface, contact, viscosity, temperature, "     \
     "mass, initial, "                                                                                        \

@@ -30,8 +30,13 @@ enum { FORCE, TRACTION, STIFFENING, PAST, ENERGY, CAUCHY, INTERNAL, FIELDS };
 static const struct {
     const char *name;
     size_t rows, kinds; /* every `kinds`-th row is of the same kind */
-} field[FIELDS] = {{"force", 30, 1}, {"traction", 36, 1}, {"stiffening", 1, 1},         {"history", 0, 0},
-                   {"energy", 1, 1}, {"cauchy", 24, 1},   {"internal", 12, RG_INTERNAL}};
+} field[FIELDS] = {{"force", 30, 1},
+                   {"traction", 36, 1},
+                   {"stiffening", 1, 1},
+                   {"history", 0, 0},
+                   {"energy", 1, 1},
+                   {"cauchy", 24, 1},
+                   {"internal", RG_GAUSS *RG_INTERNAL, RG_INTERNAL}};
 
 static size_t rows_of(int f) {
     return f == PAST ? history_rows() : field[f].rows;

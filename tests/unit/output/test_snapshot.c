@@ -190,8 +190,13 @@ static const char *fields_line(void) {
 
 typedef struct {
     double cauchy[ELEMENTS][RG_GAUSS][6], internal[ELEMENTS][RG_GAUSS][RG_INTERNAL], owner[ELEMENTS],
-        fragment[ELEMENTS];
+        fragment[ELEMENTS], temperature[ELEMENTS];
 } known;
+
+/* Of `heat`. */
+static double prescribed(const double x[3], double t) {
+    return 300 + 2e4 * x[2] - 1e4 * x[0] + 1e9 * t;
+}
 
 static void know_tile(const random_state *r, const rg_tile *t, const rg_fragment_parts *p, known *all) {
     static _Alignas(64) double cauchy[RG_GAUSS * 6 * RG_LANES], internal[RG_GAUSS * RG_INTERNAL * RG_LANES];
@@ -212,6 +217,12 @@ static void know_tile(const random_state *r, const rg_tile *t, const rg_fragment
         }
         for (size_t k = 0; history && k < RG_GAUSS * RG_INTERNAL; k++) {
             all->internal[id][k / RG_INTERNAL][k % RG_INTERNAL] = internal[k * RG_LANES + lane];
+        }
+        rg_material_model model = bulk.material.model;
+        for (int g = 0; g < RG_GAUSS; g++) {
+            double x[3], own = internal[(g * RG_INTERNAL + RG_INTERNAL_TEMPERATURE) * RG_LANES + (int)lane];
+            rg_gauss_position(s->domain->corner + 12 * slot, g, x);
+            all->temperature[id] += (model == RG_MATERIAL_JOHNSON_COOK ? own : prescribed(x, s->time)) / 4;
         }
         all->owner[id] = s->rank;
         all->fragment[id] = (double)p->label[p->of[slot]].id;
@@ -322,8 +333,10 @@ static bool stresses_good(const known *all, const rg_gid *id, int64_t count) {
 
 static bool internals_good(const known *all, const rg_gid *id, int64_t count) {
     const double *damage = field_of("damage"), *regime = field_of("regime"),
-                 *plastic = field_of("plastic_strain");
-    bool good = damage != NULL && regime != NULL && plastic != NULL;
+                 *plastic = field_of("plastic_strain"), *volume = field_of("plastic_volume"),
+                 *bulking = field_of("bulking_pressure"), *temperature = field_of("temperature");
+    bool good = damage != NULL && regime != NULL && plastic != NULL && volume != NULL && bulking != NULL &&
+                temperature != NULL;
     for (int64_t i = 0; good && i < count; i++) {
         double mean[RG_INTERNAL] = {0}, most = 0;
         for (int g = 0; g < RG_GAUSS; g++) {
@@ -333,7 +346,10 @@ static bool internals_good(const known *all, const rg_gid *id, int64_t count) {
             most = fmax(most, all->internal[id[i]][g][RG_INTERNAL_REGIME]);
         }
         good = near(damage[i], mean[RG_INTERNAL_DAMAGE], 1e-12) && regime[i] == most &&
-               near(plastic[i], mean[RG_INTERNAL_PLASTIC], 1e-12);
+               near(plastic[i], mean[RG_INTERNAL_PLASTIC], 1e-12) &&
+               near(volume[i], mean[RG_INTERNAL_VOLUME], 1e-12) &&
+               near(bulking[i], mean[RG_INTERNAL_BULKING], 1e-12) &&
+               near(temperature[i], all->temperature[id[i]], 1e-9);
     }
     return good;
 }
@@ -408,14 +424,20 @@ static void check_share(const char *name, const random_state *r, const rg_snapsh
 
 static const char all_fields[] =
     "output.fields=[displacement, velocity, stress, mean_stress, principal_stress, triaxiality, "
-    "damage, regime, plastic_strain, crack, rank, fragment, material]";
+    "damage, regime, plastic_strain, crack, rank, fragment, material, plastic_volume, bulking_pressure, "
+    "temperature]";
 static const char rock[] =
     "materials=[{name: rock, where: \"x + z > 3.1e-3\", model: deshpande-evans, shear: 146e9, poisson: "
-    "0.2, density: 3700, flaw_radius: 19e-6, flaw_density: 1e12, toughness: 3e6, yield_stress: 4e9}]";
+    "0.2, density: 3700, flaw_radius: 19e-6, flaw_density: 1e12, toughness: 3e6, yield_stress: 4e9}, "
+    "{name: copper, where: \"x + z < 2.2e-3\", preset: copper-ofhc}, "
+    "{name: ceramic, where: \"y < -0.3e-3\", preset: alumina-jh2}, "
+    "{name: sand, where: \"y > 0.5e-3\", preset: berea-sandstone, expansion: 1e-5}]";
+static const char heat[] = "temperature={value: \"300 + 2e4*z - 1e4*x + 1e9*t\", free: 290}";
 static const char whole_line[] =
     "displacement m node3;velocity m/s node3;stress Pa cell6;mean_stress Pa cell1;principal_stress Pa "
     "cell3;damage 1 "
-    "cell1;regime 1 cell1;plastic_strain 1 cell1;triaxiality 1 cell1;rank 1 cell1!;fragment 1 "
+    "cell1;regime 1 cell1;plastic_strain 1 cell1;plastic_volume 1 cell1;bulking_pressure Pa cell1;"
+    "temperature K cell1;triaxiality 1 cell1;rank 1 cell1!;fragment 1 "
     "cell1!;material 1 cell1!;| "
     "opening m cell1;slip m cell1;damage 1 cell1;time_of_failure s cell1;rank 1 cell1;";
 
@@ -463,13 +485,16 @@ static void check_all(const char *name, int changes, const char *const change[],
 /* Each field alone makes just that. */
 static void check_single_fields(void) {
     static const char *const word[] = {
-        "displacement", "velocity", "stress", "mean_stress", "principal_stress", "triaxiality",   "rank",
-        "fragment",     "material", "crack",  "damage",      "regime",           "plastic_strain"};
-    const char *change[] = {rock, all_fields};
-    random_state r = random_state_make(2, change, MPI_COMM_WORLD);
+        "displacement", "velocity", "stress",         "mean_stress",    "principal_stress",
+        "triaxiality",  "rank",     "fragment",       "material",       "crack",
+        "damage",       "regime",   "plastic_strain", "plastic_volume", "bulking_pressure",
+        "temperature"};
+    const char *change[] = {rock, heat, all_fields};
+    random_state r = random_state_make(3, change, MPI_COMM_WORLD);
     random_state_draw(&r, SEED);
     rg_fragment_parts *parts = rg_fragments_find(r.solver);
-    static const unsigned bit[] = {1, 2, 4, 8, 16, 512, 1024, 2048, 4096, 32, 64, 128, 256};
+    static const unsigned bit[] = {1,    2,  4,  8,   16,  512,  1024,  2048,
+                                   4096, 32, 64, 128, 256, 8192, 16384, 32768};
     bool good = true;
     rg_slab *slab = NULL;
     for (size_t k = 0; k < sizeof word / sizeof *word; k++) {
@@ -618,10 +643,14 @@ static void check_bytes(void) {
 int main(int argc, char **argv) {
     MPI_Init(&argc, &argv);
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-    const char *change[] = {all_fields, rock, "output.region='y < 0.45e-3'", "output.precision=single",
+    const char *change[] = {all_fields,
+                            rock,
+                            heat,
+                            "output.region='y < 0.45e-3'",
+                            "output.precision=single",
                             "output.compression=4"};
-    check_all("whole", 2, change, (rg_writer_style){false, 0});
-    check_all("part", 5, change, (rg_writer_style){true, 4});
+    check_all("whole", 3, change, (rg_writer_style){false, 0});
+    check_all("part", 6, change, (rg_writer_style){true, 4});
     check_single_fields();
     check_rest();
     check_windows();

@@ -277,15 +277,22 @@ static void test_fields(void **state) {
     (void)state;
     const unsigned plastic = RG_FIELD_PLASTIC | RG_FIELD_TRIAXIALITY,
                    ceramic = plastic | RG_FIELD_DAMAGE | RG_FIELD_REGIME;
-    static const rg_material_model models[] = {RG_MATERIAL_NEO_HOOKEAN, RG_MATERIAL_J2,
-                                               RG_MATERIAL_DESHPANDE_EVANS};
-    const unsigned own[] = {0, plastic, ceramic};
-    for (int a = 0; a < 3; a++) {
+    static const rg_material_model models[] = {RG_MATERIAL_NEO_HOOKEAN,       RG_MATERIAL_J2,
+                                               RG_MATERIAL_DESHPANDE_EVANS,   RG_MATERIAL_JOHNSON_COOK,
+                                               RG_MATERIAL_JOHNSON_HOLMQUIST, RG_MATERIAL_DRUCKER_PRAGER};
+    const unsigned own[] = {0,
+                            plastic,
+                            ceramic,
+                            plastic | RG_FIELD_TEMPERATURE,
+                            plastic | RG_FIELD_DAMAGE | RG_FIELD_BULKING,
+                            plastic | RG_FIELD_VOLUME};
+    const int count = sizeof models / sizeof *models;
+    for (int a = 0; a < count; a++) {
         rg_case c = {.material = {.model = models[a]}};
         assert_int_equal(rg_case_default_fields(&c), RG_FIELDS_COMMON | own[a]);
         assert_int_equal(rg_case_possible_fields(&c), RG_FIELDS_COMMON | RG_FIELD_RANK |
                                                           RG_FIELD_TRIAXIALITY | RG_FIELD_MATERIAL | own[a]);
-        for (int b = 0; b < 3; b++) {
+        for (int b = 0; b < count; b++) {
             rg_other_material other[2] = {{.is = {.model = RG_MATERIAL_LINEAR_ELASTIC}},
                                           {.is = {.model = models[b]}}};
             c.others = 2;

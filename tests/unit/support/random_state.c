@@ -276,5 +276,9 @@ int mesh_material(const random_state *r, rg_gid id) {
     for (int c = 0; c < 3; c++) {
         middle[c] = 0.25 * (x[0][c] + x[1][c] + x[2][c] + x[3][c]);
     }
-    return r->input->others > 0 && rg_expr_value(r->input->other[0].where, middle, 0) != 0 ? 1 : 0;
+    int last = r->input->others; /* that claims it */
+    while (last > 0 && rg_expr_value(r->input->other[last - 1].where, middle, 0) == 0) {
+        last--;
+    }
+    return last;
 }
