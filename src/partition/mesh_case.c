@@ -70,8 +70,6 @@ static const char *refuse_crack(const rg_case *c) {
     return c->interface.law == RG_LAW_NONE || c->interface.law == RG_LAW_FREE
                ? "needs a law of interfaces that ends (law: none in interface.sets keeps all other faces "
                  "whole)"
-           : c->interface.form == RG_FORM_CONTINUOUS && c->interface.faces == NULL
-               ? "needs interface.faces, which select it, in form continuous"
            : c->start == RG_START_STATIC && c->interface.friction > 0
                ? "needs interface.friction 0 with start: static: where it sticks would depend on the way"
                : NULL;

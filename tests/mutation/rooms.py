@@ -20,7 +20,7 @@ ROOMS = {
              """apart near sets mesh mesh_check mesh_command mesh_damage mesh_info mesh_file tiles part part_read domain fuzz-mesh
                 test_parts.py test_mesh_faults.py test_meshes.py test_invariance.py test_partition.py test_cli.py"""),
     "partition": (["src/partition/*"],
-                  """test_parts.py test_user_materials.py tiles part part_read patch material materials material_map anisotropic spectrum
+                  """test_parts.py test_user_materials.py mesh_case tiles part part_read patch material materials material_map anisotropic spectrum
                      step verify test_mesh_faults.py test_bimaterials.py test_partition.py test_meshes.py test_cli.py test_continuous.py
                      test_crystals.py test_parallel.py"""),
     "contact": (["src/contact/*"], "grip search contact_twin contact balance test_parts.py test_fragment_contact.py test_parallel.py test_restart.py"),
