@@ -3,6 +3,7 @@
 #include <string.h>
 #include "reference/material.h"
 #include "reference/reference.h"
+#include "stressed.h"
 
 /* One element, gathered. */
 typedef struct {
@@ -336,8 +337,31 @@ static double row_sum(double s[3][3]) {
     return most;
 }
 
+static bool is_pressure(const rg_material *m) {
+    return m->model == RG_MATERIAL_J2 || m->model == RG_MATERIAL_JOHNSON_COOK;
+}
+
+/* P0, and what it adds to the stiffness (Pa). */
+static double piola_before(const rg_material *m, double f[3][3], double s[3][3], double p[3][3]) {
+    if (!is_pressure(m)) {
+        multiply(f, s, p);
+        return row_sum(s);
+    }
+    double inv[3][3], turned[3][3], square[3][3];
+    rg_reference_invert(f, inv);
+    for (int r = 0; r < 3; r++)
+        for (int c = 0; c < 3; c++) {
+            turned[r][c] = inv[c][r];
+            p[r][c] = s[0][0] * inv[c][r];
+        }
+    multiply(inv, turned, square);
+    return fabs(s[0][0]) * row_sum(square);
+}
+
 void rg_reference_prestress(const rg_prestress_args *args, size_t begin, size_t end) {
     const rg_bulk_args *bulk = args->bulk;
+    const rg_material *m = &bulk->material;
+    double modulus = m->model == RG_MATERIAL_ANISOTROPIC ? m->of.anisotropic.softest : m->lambda + 2 * m->mu;
     for (size_t e = begin * RG_LANES; e < end * RG_LANES; e++) {
         element el;
         double force[RG_NODES][3] = {{0}}, traction[RG_FACES][RG_FCORNERS][3] = {{{0}}}, worst = 0;
@@ -346,10 +370,10 @@ void rg_reference_prestress(const rg_prestress_args *args, size_t begin, size_t 
             double f[3][3], s[3][3], p[3][3];
             deformation(&el, g, f);
             stress_before(args->stress, e, g, s);
-            multiply(f, s, p);
+            double stiff = piola_before(&bulk->material, f, s, p);
             add_force(&el, g, p, force);
             add_traction(&el, g, p, traction);
-            worst = fmax(worst, row_sum(s) / (bulk->material.lambda + 2 * bulk->material.mu));
+            worst = fmax(worst, stiff / modulus);
         }
         for (int a = 0; a < RG_NODES; a++)
             for (int c = 0; c < 3; c++)
@@ -362,8 +386,24 @@ void rg_reference_prestress(const rg_prestress_args *args, size_t begin, size_t 
     }
 }
 
-/* S0:E, E = (F^T F - 1)/2, and S0:C^-1:S0/2 = ((1 + nu) S0:S0 - nu (tr S0)^2)/(2 young). */
+/* S0:C^-1:S0, of any stiffness. */
+static double twice_stored(const rg_material *m, double s[3][3]) {
+    static const int row[6] = {0, 1, 2, 1, 0, 0}, column[6] = {0, 1, 2, 2, 2, 1};
+    double compliance[6][6], sum = 0;
+    rg_material_compliance(m, compliance);
+    for (int i = 0; i < 6; i++)
+        for (int j = 0; j < 6; j++)
+            sum += s[row[i]][column[i]] * compliance[i][j] * s[row[j]][column[j]];
+    return sum;
+}
+
+/* S0:E, E = (F^T F - 1)/2, and S0:C^-1:S0/2, isotropic ((1 + nu) S0:S0 - nu (tr S0)^2)/(2 young); p log J and
+ * p^2/2K. */
 static double density_before(const rg_material *m, double f[3][3], double s[3][3]) {
+    if (is_pressure(m)) {
+        double inv[3][3], bulk = m->lambda + 2.0 / 3 * m->mu;
+        return s[0][0] * log(rg_reference_invert(f, inv)) + s[0][0] * s[0][0] / (2 * bulk);
+    }
     double nu = m->lambda / (2 * (m->lambda + m->mu)), young = 2 * m->mu * (1 + nu), work = 0, square = 0;
     double trace = s[0][0] + s[1][1] + s[2][2];
     for (int r = 0; r < 3; r++)
@@ -374,7 +414,8 @@ static double density_before(const rg_material *m, double f[3][3], double s[3][3
             work += s[r][c] * strain;
             square += s[r][c] * s[r][c];
         }
-    return work + ((1 + nu) * square - nu * trace * trace) / (2 * young);
+    bool elastic = m->model != RG_MATERIAL_ANISOTROPIC && m->model != RG_MATERIAL_VISCOELASTIC;
+    return work + (elastic ? ((1 + nu) * square - nu * trace * trace) / (2 * young) : twice_stored(m, s) / 2);
 }
 
 void rg_reference_prestress_state(const rg_prestress_state_args *args, size_t begin, size_t end) {
@@ -387,7 +428,7 @@ void rg_reference_prestress_state(const rg_prestress_state_args *args, size_t be
             double f[3][3], s[3][3], p[3][3], cauchy[6];
             deformation(&el, g, f);
             stress_before(args->stress, e, g, s);
-            multiply(f, s, p);
+            piola_before(&state->bulk->material, f, s, p);
             cauchy_stress(p, f, cauchy);
             for (size_t k = 0; state->cauchy && k < 6; k++)
                 state->cauchy[((row * RG_GAUSS + (size_t)g) * 6 + k) * RG_LANES + e % RG_LANES] += cauchy[k];

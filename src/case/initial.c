@@ -3,6 +3,7 @@
 
 #include "base/mem.h"
 #include "case/entry.h"
+#include "stressed.h"
 
 void rg_rotation_rule(const rg_entry *e, const char *prefix, const rg_initial *is) {
     char *name[2] = {rg_text_format("%srotation.speed", prefix), rg_text_format("%srotation.axis", prefix)};
@@ -63,7 +64,7 @@ static bool any_open(const rg_case *c) {
     return open;
 }
 
-/* Stress of what flows or is damaged would not know of one that is there before. */
+/* Not every solid can take a stress (stressed.h). */
 void rg_stress_rule(const rg_entry *e) {
     const rg_case *c = e->ck->c;
     if (c->stress_of.run != NULL && rg_initial_has_stress(&c->initial)) {
@@ -74,11 +75,12 @@ void rg_stress_rule(const rg_entry *e) {
     }
     for (int i = 0; i <= c->others && rg_case_has_stress(c); i++) {
         rg_material_model model = rg_case_material(c, i)->model;
-        if (rg_input_history(rg_case_material(c, i)) > 0 || model == RG_MATERIAL_ANISOTROPIC) {
-            char *what = rg_text_format("needs elastic isotropic materials, and %s is %s: its limits, or its "
-                                        "energy, would not know of "
-                                        "a stress that is there before",
-                                        rg_case_material_name(c, i), rg_material_word(model));
+        bool user = model == RG_MATERIAL_USER && rg_input_history(rg_case_material(c, i)) > 0;
+        if (user || ((int)RG_STRESS_NONE >> model & 1) != 0) {
+            char *what = rg_text_format(
+                "not with %s, which is %s: %s", rg_case_material_name(c, i), rg_material_word(model),
+                user ? "how a history of the user's own would begin with it is not known"
+                     : "how far its cracks have grown would depend on how the stress came there");
             rg_entry_wrong(e, "initial.stress", e->item->at, (rg_subject){0}, what);
             rg_free(what);
             return;
@@ -106,10 +108,8 @@ void rg_temperature_rule(const rg_entry *e) {
 
 void rg_start_rule(const rg_entry *e) {
     const rg_case *c = e->ck->c;
-    unsigned inside = 0;
     bool flows = false;
     for (int i = 0; i <= c->others; i++) {
-        inside |= rg_input_inside(rg_case_material(c, i));
         flows = flows || (rg_case_material(c, i)->model == RG_MATERIAL_USER &&
                           rg_input_history(rg_case_material(c, i)) > 0);
     }
@@ -118,8 +118,7 @@ void rg_start_rule(const rg_entry *e) {
         c->start != RG_START_STATIC ? NULL
         : form == RG_FORM_INCOMPLETE || form == RG_FORM_INTRINSIC
             ? "needs form variational or continuous, whose forces have a potential without a history"
-        : flows || (inside & (RG_HAS_DAMAGE | RG_HAS_PLASTIC)) != 0
-            ? "needs elastic materials: what flows or is damaged on the way would depend on the way"
+        : flows ? "not with a user's material that has a history: whether it flows on the way is not known"
         : c->bodies > 0 ? "cannot be found with bodies, which the solid might touch on the way"
         : c->contact.model == RG_CONTACT_GENERAL
             ? "cannot be found with contact.model general, by which fragments might meet on the way"

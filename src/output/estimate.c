@@ -11,7 +11,6 @@
 #include "library.h"
 #include "mesh/info.h"
 #include "output/snapshot.h"
-#include "solver/initial.h"
 #include "partition/material.h"
 #include "solver/opening.h"
 
@@ -176,7 +175,6 @@ rg_estimate rg_estimate_run(const rg_solver *s) {
     e.frame_bytes = rg_snapshots_frame_bytes(c) * (double)e.written;
     e.seconds = 1.3 * s->pass_seconds * (double)e.steps; /* a step is a pass, the update and some output */
     find_worst_zone(s, &e);
-    e.initial_stress = rg_initial_stress_largest(s);
     e.of_material = count_materials(s); /* now that the memory has been counted */
     return e;
 }
@@ -320,8 +318,8 @@ void rg_estimate_print(const rg_solver *s, const rg_estimate *e, FILE *out) {
             fprintf(out, "opening        %s\n", words);
         }
     }
-    if (s->prestress != NULL) {
-        fprintf(out, "initial stress up to %.4g Pa%s%s\n", e->initial_stress,
+    if (s->initial_stress.largest > 0) {
+        fprintf(out, "initial stress up to %.4g Pa%s%s\n", s->initial_stress.largest,
                 c->stress_of.run != NULL ? ", of the fields of " : "",
                 c->stress_of.run != NULL ? c->stress_of.run : "");
     }

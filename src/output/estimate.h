@@ -16,9 +16,8 @@ typedef struct {
     double frames, frame_bytes; /* of field output; on disk, without compression and cracks */
     int64_t written;            /* elements that have it: output.region */
     double seconds;             /* estimate for the time loop on these ranks and threads */
-    double cohesive_zone;  /* length at the face that resolves it worst (m); infinite where none breaks */
-    double initial_stress; /* largest component of it (Pa); 0: there is none */
-    double zone_edge;      /* longest edge of that face (m) */
+    double cohesive_zone; /* length at the face that resolves it worst (m); infinite where none breaks */
+    double zone_edge;     /* longest edge of that face (m) */
 } rg_estimate;
 
 /* Collective; needs rg_spectrum to have run. */

@@ -12,7 +12,7 @@
 #include "domain/element.h"
 #include "layout.h"
 #include "solver/coarse.h"
-#include "solver/initial.h"
+#include "solver/limits.h"
 #include "solver/step.h"
 
 enum { NEWTON_STEPS = 30, HALVINGS = 10, ITERATIONS = 20000, MODES = 6 };
@@ -315,7 +315,7 @@ rg_equilibrium rg_equilibrium_find(rg_solver *s, FILE *out) {
                "what `boundary` prescribes at t = 0 does not hold the body: it can still move or turn");
     }
     q.coarse = rg_coarse_make(s);
-    double stress = fmax(s->prestress != NULL ? rg_initial_stress_scale(s) : 0, rg_heating_scale(s));
+    double stress = fmax(s->prestress != NULL ? s->initial_stress.scale : 0, rg_heating_scale(s));
     double loads = fmax(load_norm(&q), stress), scale = loads, residual = find_residual(&q, &scale),
            last = INFINITY;
     for (int k = 0; k < NEWTON_STEPS && residual > tolerance() * scale; k++) {
@@ -335,13 +335,17 @@ rg_equilibrium rg_equilibrium_find(rg_solver *s, FILE *out) {
     }
     rg_equilibrium found = {.residual = scale > 0 ? residual / scale : 0, .passes = q.passes};
     end(&q);
+    rg_limits_refuse(s, "start: static");
     rg_solver_settle(s);
     return found;
 }
 
 double rg_equilibrium_of_stress(rg_solver *s, FILE *out) {
     newton q = make(s);
-    double loads = 0, scale = rg_initial_stress_scale(s);
+    if (s->input->start == RG_START_INITIAL) {
+        rg_limits_refuse(s, "initial.stress");
+    }
+    double loads = 0, scale = s->initial_stress.scale;
     copy(&q, s->u, q.start);
     rg_constraints_place(s->constraints, s->u); /* which the first step does */
     double residual = find_residual(&q, &loads), share = scale > 0 ? residual / scale : 0;

@@ -12,6 +12,7 @@
 #include "domain/element.h"
 #include "quadrature.h"
 #include "solver/stress_of_run.h"
+#include "stressed.h"
 
 /* ---- Which values ---- */
 
@@ -149,6 +150,70 @@ _Noreturn static void refuse_value(const rg_solver *s, int set, const char *part
              rg_expr_text(value), bad->x[0], bad->x[1], bad->x[2]);
 }
 
+static double largest_stress(const rg_solver *s) {
+    double most = 0;
+    for (size_t i = 0; i < s->domain->blocks * RG_PRESTRESS_BLOCK; i++) {
+        most = fmax(most, fabs((double)s->prestress[i]));
+    }
+    MPI_Allreduce(MPI_IN_PLACE, &most, 1, MPI_DOUBLE, MPI_MAX, s->comm);
+    return most;
+}
+
+/* Of the stress of the start, what it makes of elements by themselves: about the norm, in that of M^-1, of
+ * its forces on a body of loose elements. */
+static double stress_scale(const rg_solver *s) {
+    const rg_domain *d = s->domain;
+    rg_exact_sum sum = {0};
+    for (size_t slot = 0; slot < d->blocks * RG_LANES; slot++) {
+        double square = 0, volume = d->geom[rg_geom_index(slot, RG_GEOM_VOLUME)];
+        for (int i = 0; i < RG_PRESTRESS && d->id[slot] >= 0; i++) {
+            double value = s->prestress[stress_index(slot, i / 6, i % 6)];
+            square += (i % 6 < 3 ? 0.25 : 0.5) * value * value;
+        }
+        if (d->id[slot] >= 0) {
+            double side = cbrt(volume);
+            rg_exact_add(&sum,
+                         square * side * side * side * side / rg_element_mass(d, s->model->material, slot));
+        }
+    }
+    rg_exact_allreduce(&sum, 1, s->comm);
+    return sqrt(rg_exact_value(&sum));
+}
+
+static bool takes_stress(const rg_material *m) {
+    return ((int)RG_STRESS_INSIDE >> m->model & 1) != 0;
+}
+
+/* A point of a solid that flows begins with an elastic strain; what of the stress is beside stays. */
+static void take_point(rg_solver *s, size_t slot, int g, const rg_material *m) {
+    enum { MOST = 32 };
+    int count = rg_material_values(m);
+    double stress[6], history[MOST] = {0};
+    for (int k = 0; k < 6; k++) {
+        stress[k] = s->prestress[stress_index(slot, g, k)];
+    }
+    rg_material_take_stress(m, stress, history);
+    for (int k = 0; k < 6; k++) {
+        s->prestress[stress_index(slot, g, k)] = (rg_real)stress[k];
+    }
+    rg_real *to = s->history + slot / RG_LANES * s->model->history_stride + slot % RG_LANES;
+    for (int k = 0; k < count; k++) {
+        to[(g * count + k) * RG_LANES] = (rg_real)history[k];
+    }
+}
+
+/* Where stress is a part of the solid's own. */
+static void take_stress(rg_solver *s) {
+    s->initial_stress.largest = largest_stress(s);
+    s->initial_stress.scale = stress_scale(s);
+    for (size_t slot = 0; slot < s->domain->blocks * RG_LANES; slot++) {
+        const rg_material *m = &s->model->material[s->domain->material[slot / RG_LANES]];
+        for (int g = 0; g < RG_GAUSS && s->domain->id[slot] >= 0 && takes_stress(m); g++) {
+            take_point(s, slot, g, m);
+        }
+    }
+}
+
 /* In order: expressions are not for threads. */
 static void fill_stress(rg_solver *s, const int16_t *set) {
     static const char *const part[6] = {"stress.xx", "stress.yy", "stress.zz",
@@ -176,34 +241,6 @@ static void fill_stress(rg_solver *s, const int16_t *set) {
         const rg_initial *is = number < 0 ? &s->input->initial : &s->input->initial_set[number].is;
         refuse_value(s, number, part[k], is->stress[k], &bad);
     }
-}
-
-double rg_initial_stress_largest(const rg_solver *s) {
-    double most = 0;
-    for (size_t i = 0; s->prestress != NULL && i < s->domain->blocks * RG_PRESTRESS_BLOCK; i++) {
-        most = fmax(most, fabs((double)s->prestress[i]));
-    }
-    MPI_Allreduce(MPI_IN_PLACE, &most, 1, MPI_DOUBLE, MPI_MAX, s->comm);
-    return most;
-}
-
-double rg_initial_stress_scale(const rg_solver *s) {
-    const rg_domain *d = s->domain;
-    rg_exact_sum sum = {0};
-    for (size_t slot = 0; slot < d->blocks * RG_LANES; slot++) {
-        double square = 0, volume = d->geom[rg_geom_index(slot, RG_GEOM_VOLUME)];
-        for (int i = 0; i < RG_PRESTRESS && d->id[slot] >= 0; i++) {
-            double value = s->prestress[stress_index(slot, i / 6, i % 6)];
-            square += (i % 6 < 3 ? 0.25 : 0.5) * value * value;
-        }
-        if (d->id[slot] >= 0) {
-            double side = cbrt(volume);
-            rg_exact_add(&sum,
-                         square * side * side * side * side / rg_element_mass(d, s->model->material, slot));
-        }
-    }
-    rg_exact_allreduce(&sum, 1, s->comm);
-    return sqrt(rg_exact_value(&sum));
 }
 
 static void refuse_values(const rg_solver *s, rg_first_bad *bad) {
@@ -236,6 +273,7 @@ void rg_initial_fill(rg_solver *s) {
             rg_stress_of_run(s, set);
         }
         fill_stress(s, set);
+        take_stress(s);
     }
     rg_free(set);
     refuse_values(s, &bad);

@@ -13,11 +13,4 @@ const rg_initial *rg_initial_of(const rg_case *c, const rg_domain *d, const rg_s
  * the run with a message where a set is empty or a value is not finite. Collective. */
 void rg_initial_fill(rg_solver *s);
 
-/* The largest component of a stress of the start (Pa); 0: there is none. Collective. */
-double rg_initial_stress_largest(const rg_solver *s);
-
-/* Of the stress of the start, what it makes of elements by themselves: about the norm, in that of M^-1, of
- * its forces on a body of loose elements. Collective. */
-double rg_initial_stress_scale(const rg_solver *s);
-
 #endif

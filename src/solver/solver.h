@@ -90,6 +90,10 @@ struct rg_solver {
     double time, dt;       /* of the current state (s); dt is the step that led to it */
     double dt_next;        /* step that leads on, once kicked */
     int64_t step;
+    struct {
+        double largest;         /* component (Pa) */
+        double scale;           /* about the norm, in that of M^-1, of its forces on loose elements */
+    } initial_stress;           /* as the case gives it; 0 after a restart, which needs it no more */
     rg_openings openings;       /* of faces that open at a time (solver/opening.h) */
     double opening_rate;        /* largest on all ranks (1/s) */
     double stiffening_anywhere; /* largest on all ranks; infinite if not finite */

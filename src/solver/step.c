@@ -496,6 +496,11 @@ void rg_solver_acceleration(rg_solver *s, rg_real *acceleration, bool loaded) {
     evaluate(s, &(impulse){.velocity = acceleration, .dt = 1, .hold = true, .load = true});
 }
 
+void rg_solver_flow(rg_solver *s) {
+    publish(s);
+    evaluate(s, &(impulse){.velocity = s->step_velocity, .dt = 0, .hold = true, .advance = true});
+}
+
 /* ---- Time ---- */
 
 /* The stiffening of the initial state, with faces that cannot break yet. */

@@ -35,6 +35,10 @@ void rg_solver_impulse(rg_solver *s, rg_real *velocity, double dt);
  * alone, and no constraints: for equilibria. The state stays. Collective. */
 void rg_solver_acceleration(rg_solver *s, rg_real *acceleration, bool loaded);
 
+/* The histories go on by a step to the present displacement, for which the materials of the stepper are
+ * ready, and nothing else does. Collective. */
+void rg_solver_flow(rg_solver *s);
+
 /* The displacement of the start has changed: constraints and stiffening follow. Collective. */
 void rg_solver_settle(rg_solver *s);
 

@@ -8,7 +8,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "reference/material.h"
 #include "reference/reference.h"
+#include "stressed.h"
 #include "support/dice.h"
 #include "support/kernel_input.h"
 #include "support/precision.h"
@@ -30,11 +32,12 @@ typedef struct {
     rg_bulk_args bulk;
 } problem;
 
-static problem *make(input_kind kind, rg_gradient gradient) {
+static problem *make(input_kind kind, rg_gradient gradient, rg_material_model model) {
     dice d = {.seed = 11};
     problem *p = input_alloc(sizeof *p);
     p->in = input_make(kind, input_laws[0], 3, 0);
     input_break(p->in, 0.3); /* points out of the lift */
+    input_set_model(p->in, model);
     p->stress = input_alloc(STRESS * sizeof *p->stress);
     p->force = input_alloc(NODAL * sizeof *p->force);
     p->traction = input_alloc(TRACTION * sizeof *p->traction);
@@ -105,11 +108,14 @@ static void test_against_reference(void **state) {
     (void)state;
     const rg_kernels *sets[INPUT_SETS];
     int n = input_sets(sets, INPUT_SETS);
-    for (int k = 0; k < 4 * n; k++) {
-        const rg_kernels *set = sets[k / 4];
+    static const rg_material_model models[] = {RG_MATERIAL_NEO_HOOKEAN, RG_MATERIAL_ANISOTROPIC,
+                                               RG_MATERIAL_J2};
+    for (int k = 0; k < 12 * n; k++) {
+        const rg_kernels *set = sets[k / 12];
+        rg_material_model model = models[k / 4 % 3];
         input_kind kind = k % 2 == 0 ? INPUT_SMALL : INPUT_LARGE;
         rg_gradient gradient = k / 2 % 2 == 0 ? RG_GRADIENT_OWN : RG_GRADIENT_LIFTED;
-        problem *p = make(kind, gradient), *twin = make(kind, gradient);
+        problem *p = make(kind, gradient, model), *twin = make(kind, gradient, model);
         run(set, p);
         run(&rg_kernels_reference, twin);
         compare(set->name, "force", p->force, twin->force, NODAL);
@@ -136,7 +142,7 @@ static double energy_of(problem *p, size_t slot) {
  */
 static void test_potential(void **state) {
     (void)state;
-    problem *p = make(INPUT_LARGE, RG_GRADIENT_OWN);
+    problem *p = make(INPUT_LARGE, RG_GRADIENT_OWN, RG_MATERIAL_NEO_HOOKEAN);
     memset(p->force, 0, NODAL * sizeof *p->force);
     rg_reference_prestress(&(rg_prestress_args){&p->bulk, p->stress}, 0, INPUT_EBLOCKS);
     double scale = largest(p->force, NODAL), width = 0.1 * INPUT_SIZE;
@@ -176,10 +182,90 @@ static void test_potential(void **state) {
     release(p);
 }
 
+/* The same of a mean stress, whose energy is not quadratic. */
+static void test_potential_of_pressure(void **state) {
+    (void)state;
+    problem *p = make(INPUT_LARGE, RG_GRADIENT_OWN, RG_MATERIAL_JOHNSON_COOK);
+    memset(p->force, 0, NODAL * sizeof *p->force);
+    rg_reference_prestress(&(rg_prestress_args){&p->bulk, p->stress}, 0, INPUT_EBLOCKS);
+    double scale = largest(p->force, NODAL), width = sizeof(rg_real) < sizeof(double) ? 1e-2 : 1e-4;
+    for (size_t e = 0; e < INPUT_ELEMENTS; e += 17)
+        for (int i = 0; i < 3 * RG_NODES; i++) {
+            size_t slot = p->in->element[e], at = rg_node_index(slot, i / 3, i % 3);
+            rg_real before = p->in->u[at];
+            p->in->u[at] = (rg_real)(before + width * INPUT_SIZE);
+            double high = energy_of(p, slot), step = p->in->u[at];
+            p->in->u[at] = (rg_real)(before - width * INPUT_SIZE);
+            double low = energy_of(p, slot);
+            step -= p->in->u[at];
+            p->in->u[at] = before;
+            assert_true(fabs((low - high) / step - (double)p->force[at]) <= 30 * width * width * scale);
+        }
+    memset(p->in->u, 0, NODAL * sizeof *p->in->u);
+    size_t slot = p->in->element[0];
+    double bulk = p->in->material.lambda + 2.0 / 3 * p->in->material.mu, stored = 0;
+    for (int g = 0; g < RG_GAUSS; g++) {
+        double mean =
+            p->stress[slot / RG_LANES * RG_PRESTRESS_BLOCK + (size_t)(6 * g) * RG_LANES + slot % RG_LANES];
+        stored += 0.25 * (double)p->in->geom[rg_geom_index(slot, RG_GEOM_VOLUME)] * mean * mean / (2 * bulk);
+    }
+    assert_true(fabs(energy_of(p, slot) / stored - 1) <= TOLERANCE);
+    release(p);
+}
+
+/* Inverse of the stiffness of a solid without symmetries, and of the isotropic ones in their closed form. */
+static void test_compliance(void **state) {
+    (void)state;
+    problem *p = make(INPUT_SMALL, RG_GRADIENT_OWN, RG_MATERIAL_ANISOTROPIC);
+    const rg_material *m = &p->in->material;
+    double inverse[6][6];
+    rg_material_compliance(m, inverse);
+    for (int i = 0; i < 6; i++)
+        for (int j = 0; j < 6; j++) {
+            double sum = 0;
+            for (int k = 0; k < 6; k++) {
+                int low = i < k ? i : k, high = i < k ? k : i;
+                sum +=
+                    m->of.anisotropic.stiffness[6 * low - low * (low - 1) / 2 + high - low] * inverse[k][j];
+            }
+            assert_true(fabs(sum - (i == j)) < 1e-14);
+        }
+    release(p);
+}
+
+/* Each solid that flows has the stress that it was given, at its own strain and beside it. */
+static void test_stress_inside(void **state) {
+    (void)state;
+    static const struct {
+        rg_material_model model;
+        rg_reference_point_law *law;
+    } solids[] = {{RG_MATERIAL_J2, rg_reference_point_j2},
+                  {RG_MATERIAL_JOHNSON_COOK, rg_reference_point_johnson_cook},
+                  {RG_MATERIAL_DRUCKER_PRAGER, rg_reference_point_drucker_prager},
+                  {RG_MATERIAL_JOHNSON_HOLMQUIST, rg_reference_point_johnson_holmquist}};
+    static const double part[6] = {-0.03, 0.01, -0.02, 0.004, -0.005, 0.006};
+    static const int row[6] = {0, 1, 2, 1, 0, 0}, column[6] = {0, 1, 2, 2, 2, 1};
+    for (size_t i = 0; i < sizeof solids / sizeof *solids; i++) {
+        problem *p = make(INPUT_SMALL, RG_GRADIENT_OWN, solids[i].model);
+        rg_material m = p->in->material;
+        rg_material_prepare(&m, 1e-9);
+        double F[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, P[3][3], stress[6], history[32] = {0};
+        rg_reference_point out;
+        for (int k = 0; k < 6; k++)
+            stress[k] = part[k] * m.mu;
+        rg_material_take_stress(&m, stress, history);
+        solids[i].law(&m, false, F, history, P, &out);
+        for (int k = 0; k < 6; k++)
+            assert_true(fabs(P[row[k]][column[k]] + stress[k] - part[k] * m.mu) < 1e-14 * m.mu);
+        release(p);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_against_reference),
-        cmocka_unit_test(test_potential),
+        cmocka_unit_test(test_against_reference),     cmocka_unit_test(test_potential),
+        cmocka_unit_test(test_potential_of_pressure), cmocka_unit_test(test_compliance),
+        cmocka_unit_test(test_stress_inside),
     };
     return cmocka_run_group_tests_name("prestress", tests, NULL, NULL);
 }
