@@ -1,4 +1,4 @@
-#include "contact/contact.h"
+#include "contact/inner.h"
 
 #include <float.h>
 #include <inttypes.h>
@@ -12,11 +12,6 @@
 #include "partition/material.h"
 #include "domain/element.h"
 
-/* A face travels as its u^ and by how much it has sunk. */
-enum { ROW = 9, BOX = 6, VALUES = ROW + 1, HALO_TAG = 11 };
-
-#define NO_INTERFACE SIZE_MAX
-
 /* Of the height of an element: how deep faces may lie in each other before they press, which those that break
  * under pressure do; how deep they see each other; and how far they may move between two searches, of the
  * mean.
@@ -24,83 +19,16 @@ enum { ROW = 9, BOX = 6, VALUES = ROW + 1, HALO_TAG = 11 };
 #define SKIN  2e-3
 #define REACH 0.5
 #define FAT   0.2
-#define TURN  0.1 /* of the unit normals */
-
-/* A face of this rank. */
-typedef struct {
-    rg_lid slot;
-    int8_t face;
-    int8_t turned;    /* its corners, ascending, run the other way round */
-    size_t interface; /* of the values that it has as an interface's side: of `sunk`; or NO_INTERFACE */
-    size_t touch;     /* its first touch */
-} face;
-
-/* A pair as one of its faces sees it. */
-typedef struct {
-    size_t pair;
-    int side;
-} touch;
-
-/* Friction of a pair of materials. */
-typedef struct {
-    int material[2];
-    double friction[2];
-} special;
-
-struct rg_contacts {
-    const rg_domain *domain;
-    const rg_material *material;
-    MPI_Comm comm;
-    int rank;
-    double penalty, omega2;
-    double push[RG_FACES][RG_NODES][RG_FCORNERS]; /* M^-1 Q' of an element of unit mass */
-    double eigenvalue; /* largest of M^-1 K on unit mass and stiffness of one face */
-
-    size_t faces, far, pairs; /* of this rank, of others, with a part of this rank */
-    bool any;
-    size_t *tile_begin;  /* faces of tile t: from tile_begin[t] on */
-    double *tile_omega2; /* [tiles]: of what touches now (1/s^2) */
-    int64_t *tile_touching;
-    face *face;
-    double *rest, *corner, *last; /* [faces, then far][9]: undeformed, now; [faces][9] at the last search */
-    double *box;                  /* [faces, then far][6]: now */
-    rg_gid *id;                   /* [faces, then far] */
-    rg_real *row;                 /* [faces, then far][VALUES] */
-    double *sunk;                 /* [faces, then far]: as it came (m) */
-    double *moved;                /* [faces]: since the search, and in the last step, over what they may */
-    double *stepped;
-    double fat;
-    rg_halo *halo;
-    rg_contact_pair *pair;
-    touch *touch;
-    double *force, *energy, *depth; /* of the pairs */
-    bool rubs;
-    double friction[2]; /* Coulomb's coefficient until a pair slides, while it does */
-    int specials;
-    special *special;    /* of pairs of materials; the last one counts */
-    double *grip, *heat; /* of the pairs: what friction remembers, and took; NULL without it */
-    rg_grips kept;       /* from before the search */
-};
 
 /* ---- Elements ---- */
-
-/* Q: what the six nodes of a face have a part in its corners by the projection
- *     int l_i (u^ - u) = 0,  u^ = sum l_i u^_i,  i = 1 to 3. */
-static double projection(int corner, int node) {
-    static const int end[RG_FNODES - RG_FCORNERS][2] = {{0, 1}, {1, 2}, {0, 2}};
-    if (node < RG_FCORNERS) {
-        return node == corner ? 0.4 : -0.2;
-    }
-    const int *edge = end[node - RG_FCORNERS];
-    return edge[0] == corner || edge[1] == corner ? 0.6 : -0.2;
-}
 
 static void make_element(rg_contacts *c, rg_mass mass) {
     for (int f = 0; f < RG_FACES; f++) {
         for (int n = 0; n < RG_NODES; n++) {
             for (int i = 0; i < RG_FCORNERS; i++) {
                 for (int a = 0; a < RG_FNODES; a++) {
-                    c->push[f][n][i] += rg_inverse_mass_entry(mass, n, rg_face_node[f][a]) * projection(i, a);
+                    c->push[f][n][i] +=
+                        rg_inverse_mass_entry(mass, n, rg_face_node[f][a]) * rg_contact_projection(i, a);
                 }
             }
         }
@@ -110,17 +38,10 @@ static void make_element(rg_contacts *c, rg_mass mass) {
      */
     double own = 0, other = 0;
     for (int a = 0; a < RG_FNODES; a++) {
-        own += projection(0, a) * c->push[0][rg_face_node[0][a]][0];
-        other += projection(0, a) * c->push[0][rg_face_node[0][a]][1];
+        own += rg_contact_projection(0, a) * c->push[0][rg_face_node[0][a]][0];
+        other += rg_contact_projection(0, a) * c->push[0][rg_face_node[0][a]][1];
     }
     c->eigenvalue = (own + 2 * other) / 3;
-}
-
-/* What a face adds to the squared frequency of its element, over kappa: both sides of a pair bear its
- * stiffness, and each face by half of the jump's square at most, so twice. */
-static double omega2_of(const rg_contacts *c, size_t slot, int k) {
-    double normal[3], area = rg_surface_area(c->domain->corner + 12 * slot, k, normal);
-    return 2 * area * c->eigenvalue / rg_element_mass(c->domain, c->material, slot);
 }
 
 /* With all of the surface pressed. */
@@ -133,7 +54,7 @@ static double largest_omega2(const rg_contacts *c) {
             if (rg_surface_has(d, slot, k)) {
                 const rg_material *m = &c->material[d->material[slot / RG_LANES]];
                 double kappa = c->penalty * rg_material_modulus(m) / rg_surface_height(d, slot, k);
-                sum += kappa * omega2_of(c, slot, k);
+                sum += kappa * rg_contact_omega2_of(c, slot, k);
             }
         }
         most = fmax(most, sum);
@@ -150,10 +71,10 @@ rg_contacts *rg_contacts_make(const rg_case *input, const rg_domain *d, const rg
     *c = (rg_contacts){.domain = d, .material = m, .comm = comm, .penalty = input->contact.penalty};
     c->rubs = rg_case_rubs(input);
     c->specials = input->contact.pairs;
-    c->special = RG_NEW(special, (size_t)c->specials + 1);
+    c->special = RG_NEW(rg_contact_special, (size_t)c->specials + 1);
     for (int i = 0; i < c->specials; i++) {
         const rg_contact_friction *p = &input->contact.pair[i];
-        c->special[i] = (special){
+        c->special[i] = (rg_contact_special){
             {rg_case_find_material(input, p->between[0]), rg_case_find_material(input, p->between[1])},
             {fmax(p->friction, p->static_friction), p->friction}};
     }
@@ -185,7 +106,7 @@ static size_t sunk_index(size_t i, int k) {
 }
 
 /* Visits the exposed faces of a tile; counts them and, with room for them, lists them. */
-static size_t list_faces(const rg_contacts *c, size_t tile, const uint8_t *exposed, face *out) {
+static size_t list_faces(const rg_contacts *c, size_t tile, const uint8_t *exposed, rg_contact_side *out) {
     const rg_domain *d = c->domain;
     const rg_tile *t = &d->tile[tile];
     size_t count = 0;
@@ -194,7 +115,8 @@ static size_t list_faces(const rg_contacts *c, size_t tile, const uint8_t *expos
             int how = exposure(d, t, exposed, slot, k);
             if (how > 0 && out != NULL) {
                 int32_t link = d->interface[rg_link_index(slot, k)];
-                out[count] = (face){.slot = (rg_lid)slot, .face = (int8_t)k, .interface = NO_INTERFACE};
+                out[count] = (rg_contact_side){
+                    .slot = (rg_lid)slot, .face = (int8_t)k, .interface = RG_CONTACT_NO_INTERFACE};
                 if (how == 2) {
                     out[count].interface = sunk_index(t->ibegin * RG_LANES + (size_t)link / 4, link % 2);
                 }
@@ -205,19 +127,14 @@ static size_t list_faces(const rg_contacts *c, size_t tile, const uint8_t *expos
     return count;
 }
 
-/* Corner i of a face, out of its ascending ones. */
-static int corner_of(const face *f, int i) {
-    return f->turned && i > 0 ? 3 - i : i;
-}
-
-static void copy_corners(const double *corner, const face *f, double *rest) {
+static void copy_corners(const double *corner, const rg_contact_side *f, double *rest) {
     for (int i = 0; i < 3; i++) {
-        memcpy(rest + 3 * i, corner + 3 * rg_face_node[f->face][corner_of(f, i)], 3 * sizeof *rest);
+        memcpy(rest + 3 * i, corner + 3 * rg_face_node[f->face][rg_contact_corner(f, i)], 3 * sizeof *rest);
     }
 }
 
 /* Corners in an order in which they run round the outward normal. */
-static void set_rest(const rg_contacts *c, face *f, double *rest) {
+static void set_rest(const rg_contacts *c, rg_contact_side *f, double *rest) {
     const double *corner = c->domain->corner + 12 * (size_t)f->slot;
     double out[3], normal[3];
     rg_surface_area(corner, f->face, out);
@@ -225,26 +142,6 @@ static void set_rest(const rg_contacts *c, face *f, double *rest) {
     rg_vector_normal(rest, normal);
     f->turned = rg_vector_dot(normal, out) < 0;
     copy_corners(corner, f, rest);
-}
-
-static void set_row(const rg_contacts *c, size_t i, const rg_real *u) {
-    const face *f = &c->face[i];
-    for (int k = 0; k < ROW; k++) {
-        double sum = 0;
-        for (int a = 0; a < RG_FNODES; a++) {
-            sum += projection(corner_of(f, k / 3), a) *
-                   u[rg_node_index((size_t)f->slot, rg_face_node[f->face][a], k % 3)];
-        }
-        c->row[VALUES * i + (size_t)k] = (rg_real)sum;
-    }
-}
-
-static void set_corners(const rg_contacts *c, size_t i) {
-    for (size_t k = 0; k < ROW; k++) {
-        c->corner[ROW * i + k] = c->rest[ROW * i + k] + c->row[VALUES * i + k];
-    }
-    rg_contact_box(c->corner + ROW * i, c->box + BOX * i);
-    c->sunk[i] = c->row[VALUES * i + ROW];
 }
 
 /* The numbers of a pair's faces, the lower one first. */
@@ -304,28 +201,28 @@ static rg_exposed_face *expose(rg_contacts *c, const uint8_t *exposed, const rg_
         c->tile_begin[t + 1] = c->tile_begin[t] + list_faces(c, t, exposed, NULL);
     }
     c->faces = c->tile_begin[d->tiles];
-    c->face = RG_NEW(face, c->faces + 1);
+    c->face = RG_NEW(rg_contact_side, c->faces + 1);
     rg_exposed_face *e = RG_NEW(rg_exposed_face, c->faces + 1);
     for (size_t t = 0; t < d->tiles; t++) {
         list_faces(c, t, exposed, c->face + c->tile_begin[t]);
     }
-    c->row = RG_NEW(rg_real, VALUES * (c->faces + 1));
+    c->row = RG_NEW(rg_real, RG_CONTACT_VALUES * (c->faces + 1));
     for (size_t i = 0; i < c->faces; i++) {
-        face *f = &c->face[i];
+        rg_contact_side *f = &c->face[i];
         size_t slot = (size_t)f->slot;
         const rg_material *m = &c->material[d->material[slot / RG_LANES]];
         e[i] = (rg_exposed_face){.id = RG_FACES * d->id[slot] + f->face,
                                  .rank = c->rank,
                                  .row = (int32_t)i,
-                                 .former = f->interface != NO_INTERFACE,
+                                 .former = f->interface != RG_CONTACT_NO_INTERFACE,
                                  .material = d->material[slot / RG_LANES],
                                  .modulus = rg_material_modulus(m),
                                  .shear = m->mu,
                                  .height = rg_surface_height(d, slot, f->face)};
         set_rest(c, f, e[i].rest);
-        set_row(c, i, u);
-        for (int k = 0; k < ROW; k++) {
-            e[i].corner[k] = e[i].rest[k] + c->row[VALUES * i + (size_t)k];
+        rg_contact_set_row(c, i, u);
+        for (int k = 0; k < RG_CONTACT_ROW; k++) {
+            e[i].corner[k] = e[i].rest[k] + c->row[RG_CONTACT_VALUES * i + (size_t)k];
         }
     }
     return e;
@@ -377,24 +274,24 @@ static shared *make_rows(rg_contacts *c, const rg_exposed_face *own, const rg_ca
     rg_halo_row *send = RG_NEW(rg_halo_row, count + 1);
     int32_t *from = RG_NEW(int32_t, c->far + 1);
     rg_free(c->row);
-    c->row = RG_NEW(rg_real, VALUES * (rows + 1));
+    c->row = RG_NEW(rg_real, RG_CONTACT_VALUES * (rows + 1));
     c->sunk = RG_NEW(double, rows + 1);
-    c->rest = RG_NEW(double, ROW *(rows + 1));
-    c->corner = RG_NEW(double, ROW *(rows + 1));
-    c->box = RG_NEW(double, BOX *(rows + 1));
-    c->last = RG_NEW(double, ROW *(c->faces + 1));
+    c->rest = RG_NEW(double, RG_CONTACT_ROW *(rows + 1));
+    c->corner = RG_NEW(double, RG_CONTACT_ROW *(rows + 1));
+    c->box = RG_NEW(double, RG_CONTACT_BOX *(rows + 1));
+    c->last = RG_NEW(double, RG_CONTACT_ROW *(c->faces + 1));
     c->id = RG_NEW(rg_gid, rows + 1);
     c->moved = RG_NEW(double, c->faces + 1);
     c->stepped = RG_NEW(double, c->faces + 1);
     for (size_t i = 0; i < c->faces; i++) {
-        memcpy(c->rest + ROW * i, own[i].rest, sizeof own[i].rest);
-        memcpy(c->last + ROW * i, own[i].corner, sizeof own[i].corner);
-        memcpy(c->corner + ROW * i, own[i].corner, sizeof own[i].corner);
+        memcpy(c->rest + RG_CONTACT_ROW * i, own[i].rest, sizeof own[i].rest);
+        memcpy(c->last + RG_CONTACT_ROW * i, own[i].corner, sizeof own[i].corner);
+        memcpy(c->corner + RG_CONTACT_ROW * i, own[i].corner, sizeof own[i].corner);
         c->id[i] = own[i].id;
     }
     for (size_t i = 0; i < c->far; i++) {
         needed[i].row = c->faces + i;
-        memcpy(c->rest + ROW * needed[i].row, needed[i].rest, ROW * sizeof *c->rest);
+        memcpy(c->rest + RG_CONTACT_ROW * needed[i].row, needed[i].rest, RG_CONTACT_ROW * sizeof *c->rest);
         c->id[needed[i].row] = needed[i].id;
         from[i] = needed[i].rank;
     }
@@ -402,7 +299,7 @@ static shared *make_rows(rg_contacts *c, const rg_exposed_face *own, const rg_ca
         send[i] = (rg_halo_row){given[i].rank, given[i].row};
     }
     rg_halo_plan plan = {.send = send, .sends = count, .from = from, .receives = c->far, .own = c->faces};
-    c->halo = rg_halo_plan_make(&plan, VALUES, c->row, HALO_TAG, c->comm);
+    c->halo = rg_halo_plan_make(&plan, RG_CONTACT_VALUES, c->row, RG_CONTACT_HALO_TAG, c->comm);
     rg_free(send);
     rg_free(from);
     rg_free(given);
@@ -423,7 +320,7 @@ static int32_t row_of(const rg_contacts *c, const rg_exposed_face *f, const shar
 typedef struct {
     size_t row;
     rg_gid partner;
-    touch is;
+    rg_contact_touch is;
 } contact_of;
 
 static int by_partner(const void *a, const void *b) {
@@ -444,7 +341,7 @@ static void make_touches(rg_contacts *c) {
         }
     }
     qsort(of, count, sizeof *of, by_partner);
-    c->touch = RG_NEW(touch, count + 1);
+    c->touch = RG_NEW(rg_contact_touch, count + 1);
     for (size_t i = 0, f = 0; f <= c->faces; f++) {
         c->face[f].touch = i;
         while (i < count && of[i].row == f) {
@@ -465,21 +362,13 @@ static double set_fat(const rg_contacts *c, const rg_exposed_face *e) {
     return sum[1] > 0 ? FAT * sum[0] / sum[1] : 0;
 }
 
-static double largest(const double *x, size_t count) {
-    double most = 0;
-    for (size_t i = 0; i < count; i++) {
-        most = fmax(most, x[i]);
-    }
-    return most;
-}
-
 /* The spring of friction is as stiff across as the penalty along: with mu in place of lambda + 2 mu. */
 static void set_friction(const rg_contacts *c, const rg_candidate *from, rg_contact_pair *pair) {
     double mu = from->face[0].shear + from->face[1].shear,
            all = from->face[0].modulus + from->face[1].modulus;
     memcpy(pair->friction, c->friction, sizeof c->friction);
     for (int i = 0; i < c->specials; i++) {
-        const special *e = &c->special[i];
+        const rg_contact_special *e = &c->special[i];
         for (int k = 0; k < 2; k++) {
             if (e->material[k] == from->face[0].material && e->material[1 - k] == from->face[1].material) {
                 memcpy(pair->friction, e->friction, sizeof e->friction);
@@ -495,7 +384,7 @@ void rg_contacts_search(rg_contacts *c, const uint8_t *exposed, const rg_real *u
     memset(c->tile_omega2, 0, c->domain->tiles * sizeof *c->tile_omega2);
     rg_exposed_face *own = expose(c, exposed, u);
     c->fat = set_fat(c, own);
-    rg_search by = {c->penalty, SKIN, REACH, c->fat, TURN};
+    rg_search by = {c->penalty, SKIN, REACH, c->fat, RG_CONTACT_TURN};
     rg_candidate *p = rg_search_pairs(&by, own, c->faces, &c->pairs, c->comm);
     shared *far = make_rows(c, own, p);
     c->pair = RG_NEW(rg_contact_pair, c->pairs + 1);
@@ -519,187 +408,6 @@ void rg_contacts_search(rg_contacts *c, const uint8_t *exposed, const rg_real *u
     rg_free(far);
     rg_free(p);
     rg_free(own);
-}
-
-/* ---- Steps ---- */
-
-/* How far a face has got from one state to another, over what it may between two searches. */
-static double way(const rg_contacts *c, const double *from, const double *to) {
-    double moved = 0, n[2][3];
-    for (size_t k = 0; k < ROW; k += 3) {
-        moved = fmax(moved, rg_vector_distance2(from + k, to + k));
-    }
-    rg_vector_normal(from, n[0]);
-    rg_vector_normal(to, n[1]);
-    return fmax(sqrt(moved) / c->fat, sqrt(rg_vector_distance2(n[0], n[1])) / TURN);
-}
-
-void rg_contacts_place(rg_contacts *c, size_t tile, const rg_real *u, const rg_real *sunk) {
-    for (size_t i = c->tile_begin[tile]; i < c->tile_begin[tile + 1]; i++) {
-        size_t at = c->face[i].interface;
-        double before[ROW];
-        memcpy(before, c->corner + ROW * i, sizeof before);
-        set_row(c, i, u);
-        c->row[VALUES * i + ROW] = at == NO_INTERFACE ? 0 : sunk[at];
-        set_corners(c, i);
-        c->moved[i] = way(c, c->last + ROW * i, c->corner + ROW * i);
-        c->stepped[i] = way(c, before, c->corner + ROW * i);
-    }
-}
-
-rg_halo *rg_contacts_halo(const rg_contacts *c) {
-    return c->halo;
-}
-
-/* Counts the pairs of a tile that touch, and bounds the squared frequency of elements that they press. */
-static void note_touching(rg_contacts *c, size_t tile) {
-    double most = 0, sum = 0;
-    int64_t count = 0;
-    for (size_t i = c->tile_begin[tile]; i < c->tile_begin[tile + 1]; i++) {
-        const face *f = &c->face[i];
-        double kappa = 0;
-        sum = i > c->tile_begin[tile] && f->slot == f[-1].slot ? sum : 0;
-        for (size_t k = f->touch; k < f[1].touch; k++) {
-            size_t pair = c->touch[k].pair;
-            if (c->energy[pair] > 0) {
-                kappa = fmax(kappa, c->pair[pair].stiffness);
-                count += c->touch[k].side == 0;
-            }
-        }
-        sum += kappa > 0 ? kappa * omega2_of(c, (size_t)f->slot, f->face) : 0;
-        most = fmax(most, sum);
-    }
-    c->tile_omega2[tile] = most;
-    c->tile_touching[tile] = count;
-}
-
-void rg_contacts_meet(rg_contacts *c, const rg_kernels *kernels, bool rub) {
-    enum { BATCH = 256 };
-    rg_contact_args args = {.corner = c->corner,
-                            .box = c->box,
-                            .sunk = c->sunk,
-                            .pair = c->pair,
-                            .force = c->force,
-                            .energy = c->energy,
-                            .depth = c->depth,
-                            .grip = rub ? c->grip : NULL,
-                            .heat = c->heat};
-    size_t batches = (c->pairs + BATCH - 1) / BATCH;
-#pragma omp for schedule(static)
-    for (size_t i = c->faces; i < c->faces + c->far; i++) {
-        set_corners(c, i);
-    }
-#pragma omp for schedule(static)
-    for (size_t b = 0; b < batches; b++) {
-        size_t end = (b + 1) * BATCH;
-        kernels->contact(&args, b * BATCH, end < c->pairs ? end : c->pairs);
-    }
-#pragma omp for schedule(static)
-    for (size_t t = 0; t < c->domain->tiles; t++) {
-        note_touching(c, t);
-    }
-}
-
-/* Forces on the corners of a face, and the sum of their sizes by pairs (N); false where it touches nothing.
- */
-static bool face_forces(const rg_contacts *c, const face *f, double force[3][3], double *felt) {
-    bool touches = false;
-    memset(force, 0, 9 * sizeof(double));
-    for (size_t i = f->touch; i < f[1].touch; i++) {
-        const touch *t = &c->touch[i];
-        double sum[3] = {0, 0, 0};
-        if (!(c->energy[t->pair] > 0)) {
-            continue;
-        }
-        const double *of = c->force + 18 * t->pair + 9 * t->side;
-        touches = true;
-        for (int k = 0; k < 9; k++) {
-            force[k / 3][k % 3] += of[k];
-            sum[k % 3] += of[k];
-        }
-        *felt += sqrt(sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]);
-    }
-    return touches;
-}
-
-static void push_element(const rg_contacts *c, const face *f, double force[3][3], const rg_push *push) {
-    double mass = rg_element_mass(c->domain, c->material, (size_t)f->slot);
-    for (int n = 0; n < RG_NODES; n++) {
-        for (int k = 0; k < 3; k++) {
-            double a = 0;
-            for (int i = 0; i < RG_FCORNERS; i++) {
-                a += c->push[f->face][n][corner_of(f, i)] * force[i][k];
-            }
-            size_t at = rg_node_index((size_t)f->slot, n, k);
-            push->velocity[at] = (rg_real)(push->velocity[at] + push->dt * a / mass);
-            if (push->step_velocity != NULL) {
-                push->step_velocity[at] = (rg_real)(push->step_velocity[at] + push->dt_now * a / mass);
-            }
-        }
-    }
-}
-
-/* How deep a face is in others, beyond their common skin. */
-static double depth_of(const rg_contacts *c, const face *f) {
-    double depth = 0;
-    for (size_t i = f->touch; i < f[1].touch; i++) {
-        size_t pair = c->touch[i].pair;
-        depth = fmax(depth, c->depth[pair] - c->pair[pair].skin);
-    }
-    return depth;
-}
-
-void rg_contacts_push(const rg_contacts *c, size_t tile, const rg_push *push, double dt, double *impulse,
-                      double *heat, rg_real *sunk) {
-    for (size_t i = c->tile_begin[tile]; i < c->tile_begin[tile + 1]; i++) {
-        double force[3][3], felt = 0;
-        size_t at = c->face[i].interface;
-        if (at != NO_INTERFACE && sunk[at] > 0) {
-            sunk[at] = (rg_real)fmin(sunk[at], depth_of(c, &c->face[i]));
-        }
-        if (face_forces(c, &c->face[i], force, &felt)) {
-            push_element(c, &c->face[i], force, push);
-            impulse[c->face[i].slot] += felt * dt;
-        }
-        for (size_t k = c->face[i].touch; heat != NULL && k < c->face[i + 1].touch; k++) {
-            heat[c->face[i].slot] += 0.5 * c->heat[c->touch[k].pair];
-        }
-    }
-}
-
-void rg_contacts_sink(const rg_contacts *c, const uint8_t *exposed, rg_real *sunk) {
-    for (size_t i = 0; i < c->faces; i++) {
-        size_t at = c->face[i].interface;
-        if (at != NO_INTERFACE &&
-            exposed[at / (2 * RG_LANES) * RG_LANES + at % RG_LANES] == RG_NEWLY_EXPOSED) {
-            sunk[at] = (rg_real)depth_of(c, &c->face[i]);
-        }
-    }
-}
-
-void rg_contacts_energy(const rg_contacts *c, size_t tile, rg_exact_sum *energy) {
-    for (size_t i = c->face[c->tile_begin[tile]].touch; i < c->face[c->tile_begin[tile + 1]].touch; i++) {
-        if (c->touch[i].side == 0) {
-            rg_exact_add(energy, c->energy[c->touch[i].pair]);
-        }
-    }
-}
-
-double rg_contacts_moved(const rg_contacts *c) {
-    double moved = largest(c->moved, c->faces), stepped = largest(c->stepped, c->faces);
-    return moved + 2 * stepped;
-}
-
-int64_t rg_contacts_touching(const rg_contacts *c) {
-    int64_t count = 0;
-    for (size_t i = 0; i < c->domain->tiles; i++) {
-        count += c->tile_touching[i];
-    }
-    return count;
-}
-
-bool rg_contacts_any(const rg_contacts *c) {
-    return c->any;
 }
 
 /* ---- Checkpoints ---- */
@@ -743,7 +451,7 @@ bool rg_contacts_overlap(const rg_contacts *c, char *words, size_t size) {
     }
     double where[4] = {0, 0, 0, 0};
     if (first == lowest) {
-        const double *x = c->corner + ROW * c->pair[which].face[0];
+        const double *x = c->corner + RG_CONTACT_ROW * c->pair[which].face[0];
         for (int k = 0; k < 3; k++) {
             where[k] = (x[k] + x[3 + k] + x[6 + k]) / 3;
         }
@@ -761,10 +469,6 @@ bool rg_contacts_overlap(const rg_contacts *c, char *words, size_t size) {
 
 double rg_contacts_omega2(const rg_contacts *c) {
     return c->omega2;
-}
-
-double rg_contacts_omega2_now(const rg_contacts *c) {
-    return largest(c->tile_omega2, c->domain->tiles);
 }
 
 void rg_contacts_free(rg_contacts *c) {

@@ -1,0 +1,235 @@
+/* Steps of contact between fragments: where faces are, what pairs do to each other and that to elements. */
+#include <math.h>
+#include <string.h>
+
+#include "base/vector.h"
+#include "contact/inner.h"
+#include "domain/element.h"
+#include "partition/material.h"
+
+double rg_contact_projection(int corner, int node) {
+    static const int end[RG_FNODES - RG_FCORNERS][2] = {{0, 1}, {1, 2}, {0, 2}};
+    if (node < RG_FCORNERS) {
+        return node == corner ? 0.4 : -0.2;
+    }
+    const int *edge = end[node - RG_FCORNERS];
+    return edge[0] == corner || edge[1] == corner ? 0.6 : -0.2;
+}
+
+void rg_contact_set_row(const rg_contacts *c, size_t i, const rg_real *u) {
+    const rg_contact_side *f = &c->face[i];
+    for (int k = 0; k < RG_CONTACT_ROW; k++) {
+        double sum = 0;
+        for (int a = 0; a < RG_FNODES; a++) {
+            sum += rg_contact_projection(rg_contact_corner(f, k / 3), a) *
+                   u[rg_node_index((size_t)f->slot, rg_face_node[f->face][a], k % 3)];
+        }
+        c->row[RG_CONTACT_VALUES * i + (size_t)k] = (rg_real)sum;
+    }
+}
+
+void rg_contact_set_corners(const rg_contacts *c, size_t i) {
+    for (size_t k = 0; k < RG_CONTACT_ROW; k++) {
+        c->corner[RG_CONTACT_ROW * i + k] =
+            c->rest[RG_CONTACT_ROW * i + k] + c->row[RG_CONTACT_VALUES * i + k];
+    }
+    rg_contact_box(c->corner + RG_CONTACT_ROW * i, c->box + RG_CONTACT_BOX * i);
+    c->sunk[i] = c->row[RG_CONTACT_VALUES * i + RG_CONTACT_ROW];
+}
+
+double rg_contact_omega2_of(const rg_contacts *c, size_t slot, int k) {
+    double normal[3], area = rg_surface_area(c->domain->corner + 12 * slot, k, normal);
+    return 2 * area * c->eigenvalue / rg_element_mass(c->domain, c->material, slot);
+}
+
+static double largest(const double *x, size_t count) {
+    double most = 0;
+    for (size_t i = 0; i < count; i++) {
+        most = fmax(most, x[i]);
+    }
+    return most;
+}
+
+/* How far a face has got from one state to another, over what it may between two searches. */
+static double way(const rg_contacts *c, const double *from, const double *to) {
+    double moved = 0, n[2][3];
+    for (size_t k = 0; k < RG_CONTACT_ROW; k += 3) {
+        moved = fmax(moved, rg_vector_distance2(from + k, to + k));
+    }
+    rg_vector_normal(from, n[0]);
+    rg_vector_normal(to, n[1]);
+    return fmax(sqrt(moved) / c->fat, sqrt(rg_vector_distance2(n[0], n[1])) / RG_CONTACT_TURN);
+}
+
+void rg_contacts_place(rg_contacts *c, size_t tile, const rg_real *u, const rg_real *sunk) {
+    for (size_t i = c->tile_begin[tile]; i < c->tile_begin[tile + 1]; i++) {
+        size_t at = c->face[i].interface;
+        double before[RG_CONTACT_ROW];
+        memcpy(before, c->corner + RG_CONTACT_ROW * i, sizeof before);
+        rg_contact_set_row(c, i, u);
+        c->row[RG_CONTACT_VALUES * i + RG_CONTACT_ROW] = at == RG_CONTACT_NO_INTERFACE ? 0 : sunk[at];
+        rg_contact_set_corners(c, i);
+        c->moved[i] = way(c, c->last + RG_CONTACT_ROW * i, c->corner + RG_CONTACT_ROW * i);
+        c->stepped[i] = way(c, before, c->corner + RG_CONTACT_ROW * i);
+    }
+}
+
+rg_halo *rg_contacts_halo(const rg_contacts *c) {
+    return c->halo;
+}
+
+/* Counts the pairs of a tile that touch, and bounds the squared frequency of elements that they press. */
+static void note_touching(rg_contacts *c, size_t tile) {
+    double most = 0, sum = 0;
+    int64_t count = 0;
+    for (size_t i = c->tile_begin[tile]; i < c->tile_begin[tile + 1]; i++) {
+        const rg_contact_side *f = &c->face[i];
+        double kappa = 0;
+        sum = i > c->tile_begin[tile] && f->slot == f[-1].slot ? sum : 0;
+        for (size_t k = f->touch; k < f[1].touch; k++) {
+            size_t pair = c->touch[k].pair;
+            if (c->energy[pair] > 0) {
+                kappa = fmax(kappa, c->pair[pair].stiffness);
+                count += c->touch[k].side == 0;
+            }
+        }
+        sum += kappa > 0 ? kappa * rg_contact_omega2_of(c, (size_t)f->slot, f->face) : 0;
+        most = fmax(most, sum);
+    }
+    c->tile_omega2[tile] = most;
+    c->tile_touching[tile] = count;
+}
+
+void rg_contacts_meet(rg_contacts *c, const rg_kernels *kernels, bool rub) {
+    enum { BATCH = 256 };
+    rg_contact_args args = {.corner = c->corner,
+                            .box = c->box,
+                            .sunk = c->sunk,
+                            .pair = c->pair,
+                            .force = c->force,
+                            .energy = c->energy,
+                            .depth = c->depth,
+                            .grip = rub ? c->grip : NULL,
+                            .heat = c->heat};
+    size_t batches = (c->pairs + BATCH - 1) / BATCH;
+#pragma omp for schedule(static)
+    for (size_t i = c->faces; i < c->faces + c->far; i++) {
+        rg_contact_set_corners(c, i);
+    }
+#pragma omp for schedule(static)
+    for (size_t b = 0; b < batches; b++) {
+        size_t end = (b + 1) * BATCH;
+        kernels->contact(&args, b * BATCH, end < c->pairs ? end : c->pairs);
+    }
+#pragma omp for schedule(static)
+    for (size_t t = 0; t < c->domain->tiles; t++) {
+        note_touching(c, t);
+    }
+}
+
+/* Forces on the corners of a face, and the sum of their sizes by pairs (N); false where it touches nothing.
+ */
+static bool face_forces(const rg_contacts *c, const rg_contact_side *f, double force[3][3], double *felt) {
+    bool touches = false;
+    memset(force, 0, 9 * sizeof(double));
+    for (size_t i = f->touch; i < f[1].touch; i++) {
+        const rg_contact_touch *t = &c->touch[i];
+        double sum[3] = {0, 0, 0};
+        if (!(c->energy[t->pair] > 0)) {
+            continue;
+        }
+        const double *of = c->force + 18 * t->pair + 9 * t->side;
+        touches = true;
+        for (int k = 0; k < 9; k++) {
+            force[k / 3][k % 3] += of[k];
+            sum[k % 3] += of[k];
+        }
+        *felt += sqrt(sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]);
+    }
+    return touches;
+}
+
+static void push_element(const rg_contacts *c, const rg_contact_side *f, double force[3][3],
+                         const rg_push *push) {
+    double mass = rg_element_mass(c->domain, c->material, (size_t)f->slot);
+    for (int n = 0; n < RG_NODES; n++) {
+        for (int k = 0; k < 3; k++) {
+            double a = 0;
+            for (int i = 0; i < RG_FCORNERS; i++) {
+                a += c->push[f->face][n][rg_contact_corner(f, i)] * force[i][k];
+            }
+            size_t at = rg_node_index((size_t)f->slot, n, k);
+            push->velocity[at] = (rg_real)(push->velocity[at] + push->dt * a / mass);
+            if (push->step_velocity != NULL) {
+                push->step_velocity[at] = (rg_real)(push->step_velocity[at] + push->dt_now * a / mass);
+            }
+        }
+    }
+}
+
+/* How deep a face is in others, beyond their common skin. */
+static double depth_of(const rg_contacts *c, const rg_contact_side *f) {
+    double depth = 0;
+    for (size_t i = f->touch; i < f[1].touch; i++) {
+        size_t pair = c->touch[i].pair;
+        depth = fmax(depth, c->depth[pair] - c->pair[pair].skin);
+    }
+    return depth;
+}
+
+void rg_contacts_push(const rg_contacts *c, size_t tile, const rg_push *push, double dt, double *impulse,
+                      double *heat, rg_real *sunk) {
+    for (size_t i = c->tile_begin[tile]; i < c->tile_begin[tile + 1]; i++) {
+        double force[3][3], felt = 0;
+        size_t at = c->face[i].interface;
+        if (at != RG_CONTACT_NO_INTERFACE && sunk[at] > 0) {
+            sunk[at] = (rg_real)fmin(sunk[at], depth_of(c, &c->face[i]));
+        }
+        if (face_forces(c, &c->face[i], force, &felt)) {
+            push_element(c, &c->face[i], force, push);
+            impulse[c->face[i].slot] += felt * dt;
+        }
+        for (size_t k = c->face[i].touch; heat != NULL && k < c->face[i + 1].touch; k++) {
+            heat[c->face[i].slot] += 0.5 * c->heat[c->touch[k].pair];
+        }
+    }
+}
+
+void rg_contacts_sink(const rg_contacts *c, const uint8_t *exposed, rg_real *sunk) {
+    for (size_t i = 0; i < c->faces; i++) {
+        size_t at = c->face[i].interface;
+        if (at != RG_CONTACT_NO_INTERFACE &&
+            exposed[at / (2 * RG_LANES) * RG_LANES + at % RG_LANES] == RG_NEWLY_EXPOSED) {
+            sunk[at] = (rg_real)depth_of(c, &c->face[i]);
+        }
+    }
+}
+
+void rg_contacts_energy(const rg_contacts *c, size_t tile, rg_exact_sum *energy) {
+    for (size_t i = c->face[c->tile_begin[tile]].touch; i < c->face[c->tile_begin[tile + 1]].touch; i++) {
+        if (c->touch[i].side == 0) {
+            rg_exact_add(energy, c->energy[c->touch[i].pair]);
+        }
+    }
+}
+
+double rg_contacts_moved(const rg_contacts *c) {
+    double moved = largest(c->moved, c->faces), stepped = largest(c->stepped, c->faces);
+    return moved + 2 * stepped;
+}
+
+int64_t rg_contacts_touching(const rg_contacts *c) {
+    int64_t count = 0;
+    for (size_t i = 0; i < c->domain->tiles; i++) {
+        count += c->tile_touching[i];
+    }
+    return count;
+}
+
+bool rg_contacts_any(const rg_contacts *c) {
+    return c->any;
+}
+
+double rg_contacts_omega2_now(const rg_contacts *c) {
+    return largest(c->tile_omega2, c->domain->tiles);
+}
