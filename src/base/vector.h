@@ -29,8 +29,9 @@ static inline double rg_vector_distance2(const double a[3], const double b[3]) {
     return rg_vector_dot(d, d);
 }
 
-/* Unit normal of a triangle of corner[9], round which its corners run by the right hand. */
-static inline void rg_vector_normal(const double corner[9], double n[3]) {
+/* Unit normal of a triangle of corner[9], round which its corners run by the right hand; returns twice its
+ * area. */
+static inline double rg_vector_normal(const double corner[9], double n[3]) {
     double one[3], two[3];
     rg_vector_subtract(corner + 3, corner, one);
     rg_vector_subtract(corner + 6, corner, two);
@@ -39,6 +40,7 @@ static inline void rg_vector_normal(const double corner[9], double n[3]) {
     for (int i = 0; i < 3; i++) {
         n[i] /= length;
     }
+    return length;
 }
 
 #endif

@@ -157,13 +157,18 @@ static unsigned internal_fields(const rg_case *c) {
            (inside & RG_HAS_TEMPERATURE || c->temperature.value != NULL ? RG_FIELD_TEMPERATURE : 0U);
 }
 
+static unsigned contact_fields(const rg_case *c) {
+    return c->contact.model == RG_CONTACT_GENERAL ? RG_FIELD_CONTACT : 0U;
+}
+
 unsigned rg_case_default_fields(const rg_case *c) {
     unsigned internal = internal_fields(c);
     return RG_FIELDS_COMMON | internal |
            ((internal & ~(unsigned)RG_FIELD_TEMPERATURE) != 0 ? RG_FIELD_TRIAXIALITY : 0U) |
-           (c->others > 0 ? RG_FIELD_MATERIAL : 0U);
+           (c->others > 0 ? RG_FIELD_MATERIAL : 0U) | contact_fields(c);
 }
 
 unsigned rg_case_possible_fields(const rg_case *c) {
-    return RG_FIELDS_COMMON | RG_FIELD_RANK | RG_FIELD_TRIAXIALITY | RG_FIELD_MATERIAL | internal_fields(c);
+    return RG_FIELDS_COMMON | RG_FIELD_RANK | RG_FIELD_TRIAXIALITY | RG_FIELD_MATERIAL | internal_fields(c) |
+           contact_fields(c);
 }

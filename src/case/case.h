@@ -39,6 +39,7 @@ enum {
     RG_FIELD_VOLUME = 8192,     /* plastic part of log J: mean per element */
     RG_FIELD_BULKING = 16384,   /* pressure that bulking has added: mean per element */
     RG_FIELD_TEMPERATURE = 32768,
+    RG_FIELD_CONTACT = 65536, /* pressure and traction by which fragments meet, and heat of their friction */
     RG_FIELDS_COMMON = 63 | RG_FIELD_FRAGMENT, /* what every run puts out by default */
 };
 
@@ -170,6 +171,16 @@ typedef struct {
     char **between;
     double friction, static_friction; /* the latter 0: as the former */
 } rg_contact_friction;
+
+/* Whose force by contact between fragments is recorded: of faces of the surface, by what they touch; or of
+ * faces of one material, by those of another. */
+typedef struct {
+    char *name;     /* column prefix in history.csv */
+    char *set;      /* a side of the box, or a surface set of the mesh */
+    rg_expr *where; /* faces of the surface where it is not 0, by middle and outward normal */
+    int names;
+    char **between; /* names of two materials: that which feels it, that which exerts it */
+} rg_contact_force_input;
 
 /* Faces with properties of their own: those that `set`, `where` and `between` (NULL: no such condition)
  * select. */
@@ -392,6 +403,8 @@ typedef struct {
         rg_probe *probe;
         int sensors;
         rg_sensor_input *sensor;
+        int contacts;
+        rg_contact_force_input *contact;
         int crack_tips;
         rg_crack_tip_input *crack_tip;
         int crack_fronts;

@@ -166,6 +166,8 @@ static void check_entry(rg_check *ck, const rg_key *key, const rg_node *list, co
         rg_initial_set_rule(ck, list, i, item, good);
     } else if (key->entry == &rg_face_set_table) {
         rg_face_set_rule(ck, list, i, item, good);
+    } else if (key->entry == &rg_contact_force_table) {
+        rg_contact_force_rule(ck, list, i, item, good);
     } else if (key->entry == &rg_contact_friction_table) {
         rg_contact_friction_rule(ck, list, i, item, good);
     }

@@ -135,6 +135,7 @@ void rg_body_rule(rg_check *ck, const rg_node *list, int i, const char *path, bo
 void rg_probe_rule(rg_check *ck, const rg_node *list, int i, const char *path, bool good);
 void rg_crack_front_rule(rg_check *ck, const rg_node *list, int i, const char *path, bool good);
 void rg_crack_tip_rule(rg_check *ck, const rg_node *list, int i, const char *path, bool good);
+void rg_contact_force_rule(rg_check *ck, const rg_node *list, int i, const char *path, bool good);
 void rg_sensor_rule(rg_check *ck, const rg_node *list, int i, const char *path, bool good);
 void rg_material_rule(rg_check *ck, const rg_node *list, int i, const char *path);
 void rg_initial_set_rule(rg_check *ck, const rg_node *list, int i, const char *path, bool good);

@@ -111,7 +111,7 @@ enum { RG_MAX_KEYS = 192 }; /* at most, in a table */
 /* A key comes after the keys that decide whether its group is used. */
 extern const rg_key_table rg_case_table, rg_material_table, rg_boundary_table, rg_body_table, rg_probe_table,
     rg_sensor_table, rg_crack_tip_table, rg_crack_front_table, rg_face_set_table, rg_contact_friction_table,
-    rg_load_table, rg_initial_set_table;
+    rg_contact_force_table, rg_load_table, rg_initial_set_table;
 
 /* What a value of the key must be, in words. Returns `text`. */
 const char *rg_key_allowed(const rg_key *key, char *text, size_t size);

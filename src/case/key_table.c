@@ -135,7 +135,7 @@ static const char *const box_sets[] = {"x-", "x+", "y-", "y+", "z-", "z+", NULL}
 static const char *const fields[] = {
     "displacement", "velocity",       "stress",      "mean_stress", "principal_stress", "crack",    "damage",
     "regime",       "plastic_strain", "triaxiality", "rank",        "fragment",         "material",
-    "plastic_volume", "bulking_pressure", "temperature", NULL};
+    "plastic_volume", "bulking_pressure", "temperature", "contact", NULL};
 static const char *const fields_meaning[] = {
     "of the nodes (m)",
     "of the nodes (m/s)",
@@ -152,7 +152,8 @@ static const char *const fields_meaning[] = {
     "number of the material: 0 that of `material`, then those of `materials`",
     "plastic part of the logarithm of the volume (pores that close: below 0), mean of each element",
     "pressure that crushing has added as it takes more room, mean of each element (Pa)",
-    "of solids that heat themselves their own, of others what `temperature` prescribes, mean of each element (K)"};
+    "of solids that heat themselves their own, of others what `temperature` prescribes, mean of each element (K)",
+    "with contact.model general: pressure and traction on that face of each element which others press most (Pa), with friction the heat of its contacts (J)"};
 static const char *const fragments[] = {"each", "last", "none", NULL};
 static const char *const fragments_meaning[] = {
     "for each output", "for the end of the run", "no file"};
@@ -344,6 +345,8 @@ static const rg_key case_keys[] = {
      .offset_count = offsetof(rg_case, output.probes), MEANS("points whose history is recorded in every step")},
     {.name = "output.sensors", .type = RG_KEY_LIST, ELSE("none"), CASE(output.sensor), .entry = &rg_sensor_table,
      .offset_count = offsetof(rg_case, output.sensors), MEANS("means, extremes and integrals over parts of the body, recorded in every step: columns NAME_VALUE_MEASURE of history.csv")},
+    {.name = "output.contacts", .type = RG_KEY_LIST, ELSE("none"), GROUP(CONTACT), CASE(output.contact), .entry = &rg_contact_force_table,
+     .offset_count = offsetof(rg_case, output.contacts), MEANS("forces of contact between fragments on parts of the solid, recorded in every step: columns NAME_force_x ... (N) and NAME_moment_x ... (N m, about the origin) of history.csv")},
     {.name = "output.crack_tips", .type = RG_KEY_LIST, ELSE("none"), GROUP(COHESIVE), CASE(output.crack_tip), .entry = &rg_crack_tip_table,
      .offset_count = offsetof(rg_case, output.crack_tips), MEANS("how far cracks have come and how fast, recorded in every step: columns NAME_tip (m; nan before there is one) and NAME_speed (m/s) of history.csv")},
     {.name = "output.crack_fronts", .type = RG_KEY_LIST, ELSE("none"), CASE(output.crack_front), .entry = &rg_crack_front_table,
@@ -380,6 +383,17 @@ static const rg_key contact_friction_keys[] = {
     {.name = "friction", REAL, FROM(0), REQUIRED, .offset = offsetof(rg_contact_friction, friction), MEANS("as contact.friction")},
     {.name = "static_friction", REAL, FROM(0), ELSE("friction"), .offset = offsetof(rg_contact_friction, static_friction),
      MEANS("as contact.static_friction")},
+};
+
+#define CONTACT_FORCE(member) .offset = offsetof(rg_contact_force_input, member)
+static const rg_key contact_force_keys[] = {
+    {.name = "name", .type = RG_KEY_TEXT, REQUIRED, CONTACT_FORCE(name), MEANS("column prefix in history.csv: letters, digits, _ and -")},
+    {.name = "set", .type = RG_KEY_TEXT, .choice = box_sets, ELSE("where or between"), ONE_OF, CONTACT_FORCE(set),
+     MEANS("the force on a side of the box, or on a surface set of the mesh file, by all that it touches but rigid bodies")},
+    {.name = "where", .type = RG_KEY_EXPR, ELSE("set or between"), ONE_OF, .no_time = true, .normal = true, CONTACT_FORCE(where),
+     MEANS("that on faces of the surface where it is not 0, by their middle and outward normal")},
+    {.name = "between", .type = RG_KEY_TEXTS, ELSE("set or where"), ONE_OF, CONTACT_FORCE(between), .offset_count = offsetof(rg_contact_force_input, names),
+     MEANS("names of two materials: the force on the first by the second, faces that cracked open included")},
 };
 
 static const rg_key face_set_keys[] = {
@@ -599,6 +613,7 @@ static const rg_key sensor_keys[] = {
 const rg_key_table rg_case_table = TABLE(case_keys, rg_case);
 const rg_key_table rg_material_table = TABLE(other_material_keys, rg_other_material);
 const rg_key_table rg_contact_friction_table = TABLE(contact_friction_keys, rg_contact_friction);
+const rg_key_table rg_contact_force_table = TABLE(contact_force_keys, rg_contact_force_input);
 const rg_key_table rg_face_set_table = TABLE(face_set_keys, rg_face_set);
 const rg_key_table rg_boundary_table = TABLE(boundary_keys, rg_boundary);
 const rg_key_table rg_load_table = TABLE(load_keys, rg_load_input);

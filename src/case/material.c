@@ -264,8 +264,9 @@ void rg_fields_rule(rg_check *ck, const rg_key *key, const rg_node *node) {
         if ((*fields & ~possible) >> i & 1U) {
             rg_subject subject = {.key = "output.fields", .value = key->choice[i]};
             rg_problem_add(ck->problems, node->at, &subject,
-                           ck->c->others > 0 ? "no material has such a field"
-                                             : "material.model has no such field");
+                           1U << i == RG_FIELD_CONTACT ? "not written, because contact.model is interfaces"
+                           : ck->c->others > 0         ? "no material has such a field"
+                                                       : "material.model has no such field");
         }
     }
 }

@@ -326,6 +326,10 @@ static const char *column_name(const rg_case *c, int i, bool *end) {
         return c->output.sensor[i].name;
     }
     i -= c->output.sensors;
+    if (i < c->output.contacts) {
+        return c->output.contact[i].name;
+    }
+    i -= c->output.contacts;
     if (i < c->output.crack_tips) {
         return c->output.crack_tip[i].name;
     }

@@ -1,4 +1,5 @@
-/* Rules for the sensors of a case, each on one part of the body, and for the tips and fronts of cracks. */
+/* Rules for the sensors of a case, each on one part of the body, for forces of contact, and for the tips and
+ * fronts of cracks. */
 #include <math.h>
 #include <string.h>
 
@@ -47,6 +48,41 @@ void rg_sensor_rule(rg_check *ck, const rg_node *list, int i, const char *path, 
         check_part(&e);
         check_words(&e, "values", sensor->values);
         check_words(&e, "measures", sensor->measures);
+    }
+}
+
+static void check_one_part(const rg_entry *e) {
+    static const char *const keys[] = {"set", "where", "between"};
+    const rg_node *last = NULL;
+    int given = 0;
+    for (int i = 0; i < 3; i++) {
+        const rg_node *node = rg_entry_given(e, keys[i]);
+        last = node != NULL ? node : last;
+        given += node != NULL;
+    }
+    if (given != 1) {
+        rg_entry_wrong(e, NULL, last != NULL ? last->key_at : e->item->at,
+                       (rg_subject){.allowed = "exactly one of set, where, between"},
+                       given == 0 ? "missing set, where or between" : "more than one given");
+    }
+}
+
+void rg_contact_force_rule(rg_check *ck, const rg_node *list, int i, const char *path, bool good) {
+    const rg_contact_force_input *force = &ck->c->output.contact[i];
+    rg_entry e = {ck, &list->child[i], path};
+    const rg_node *between = good ? rg_entry_given(&e, "between") : NULL;
+    if (force->name != NULL) {
+        rg_name_rule(ck, e.item, path, force->name);
+    }
+    if (good) {
+        check_one_part(&e);
+    }
+    if (between != NULL) {
+        rg_between_rule(ck, between, force->names, force->between, false, path);
+    }
+    if (between != NULL && force->names == 2 && strcmp(force->between[0], force->between[1]) == 0) {
+        rg_entry_wrong(&e, "between", between->at, (rg_subject){.allowed = "names of two materials"},
+                       "what a material does to itself adds up to nothing");
     }
 }
 

@@ -186,8 +186,9 @@ static void give_grips(rg_contacts *c) {
 static void forget(rg_contacts *c) {
     rg_halo_free(c->halo);
     c->halo = NULL;
-    void *blocks[] = {c->face,  c->rest,  c->corner, c->last,  c->id,   c->row, c->moved, c->stepped, c->pair,
-                      c->touch, c->force, c->energy, c->depth, c->sunk, c->box, c->grip,  c->heat};
+    void *blocks[] = {c->face,  c->rest,    c->corner, c->last,  c->id,    c->row,
+                      c->moved, c->stepped, c->pair,   c->touch, c->force, c->energy,
+                      c->depth, c->sunk,    c->box,    c->grip,  c->heat,  c->of_material};
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) {
         rg_free(blocks[i]);
     }
@@ -235,6 +236,7 @@ typedef struct {
     int32_t rank;
     rg_gid id;
     size_t row;
+    int32_t material;
     const double *rest;
 } shared;
 
@@ -263,8 +265,8 @@ static shared *make_rows(rg_contacts *c, const rg_exposed_face *own, const rg_ca
         for (int k = 0; k < 2; k++) {
             const rg_exposed_face *far = &p[i].face[k], *near = &p[i].face[1 - k];
             if (far->rank != c->rank) {
-                needed[count] = (shared){far->rank, far->id, 0, far->rest};
-                given[count++] = (shared){far->rank, near->id, (size_t)near->row, NULL};
+                needed[count] = (shared){far->rank, far->id, 0, far->material, far->rest};
+                given[count++] = (shared){far->rank, near->id, (size_t)near->row, near->material, NULL};
             }
         }
     }
@@ -281,6 +283,7 @@ static shared *make_rows(rg_contacts *c, const rg_exposed_face *own, const rg_ca
     c->box = RG_NEW(double, RG_CONTACT_BOX *(rows + 1));
     c->last = RG_NEW(double, RG_CONTACT_ROW *(c->faces + 1));
     c->id = RG_NEW(rg_gid, rows + 1);
+    c->of_material = RG_NEW(int32_t, rows + 1);
     c->moved = RG_NEW(double, c->faces + 1);
     c->stepped = RG_NEW(double, c->faces + 1);
     for (size_t i = 0; i < c->faces; i++) {
@@ -288,11 +291,13 @@ static shared *make_rows(rg_contacts *c, const rg_exposed_face *own, const rg_ca
         memcpy(c->last + RG_CONTACT_ROW * i, own[i].corner, sizeof own[i].corner);
         memcpy(c->corner + RG_CONTACT_ROW * i, own[i].corner, sizeof own[i].corner);
         c->id[i] = own[i].id;
+        c->of_material[i] = own[i].material;
     }
     for (size_t i = 0; i < c->far; i++) {
         needed[i].row = c->faces + i;
         memcpy(c->rest + RG_CONTACT_ROW * needed[i].row, needed[i].rest, RG_CONTACT_ROW * sizeof *c->rest);
         c->id[needed[i].row] = needed[i].id;
+        c->of_material[needed[i].row] = needed[i].material;
         from[i] = needed[i].rank;
     }
     for (size_t i = 0; i < count; i++) {

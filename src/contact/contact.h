@@ -54,10 +54,37 @@ rg_halo *rg_contacts_halo(const rg_contacts *c);
  * none. A worksharing loop: call it from all threads; ends with a barrier. */
 void rg_contacts_meet(rg_contacts *c, const rg_kernels *kernels, bool rub);
 
-/* What they do to the elements of a tile. impulse[slot] grows by the forces that the faces of each element
- * feel, times `dt` (N s), heat[slot] by half of what friction took of each pair (J; NULL: there is none). */
-void rg_contacts_push(const rg_contacts *c, size_t tile, const rg_push *push, double dt, double *impulse,
-                      double *heat, rg_real *sunk);
+/* What contact has done to each element: impulse[slot] grows by the forces that its faces feel, by pairs,
+ * times the length of the kick (N s), heat[slot] by half of what friction took of each pair (J; NULL: there
+ * is none), touches[slot] by 1 whenever it touches something and has not in the last
+ * RG_TOUCH_AFRESH steps, from which touching[slot] counts down: faces that just lean on each other flutter.
+ */
+enum { RG_TOUCH_AFRESH = 100 };
+typedef struct {
+    double *impulse, *heat, *touches;
+    uint8_t *touching;
+    rg_real *sunk;
+} rg_contact_record;
+
+/* What they do to the elements of a tile, in a kick of length `dt`. */
+void rg_contacts_push(const rg_contacts *c, size_t tile, const rg_push *push, double dt,
+                      const rg_contact_record *to);
+
+/* Faces of the surface, by bits [slots] (NULL: all that are exposed), of a material, and materials of what
+ * they touch; -1: all. */
+typedef struct {
+    const uint8_t *faces;
+    int of, by;
+} rg_contact_choice;
+
+/* Adds the force (N) that chosen faces of a tile feel now, and its moment about the origin (N m); returns
+ * whether they touch anything. */
+bool rg_contacts_force(const rg_contacts *c, size_t tile, const rg_contact_choice *which, double force[3],
+                       double moment[3]);
+
+/* Of that face of an element which is pressed most, where two are alike the first: the normal part of the
+ * force on it now, and the force, by its deformed area (Pa); 0 where none touches anything. */
+void rg_contacts_traction(const rg_contacts *c, size_t slot, double *pressure, double traction[3]);
 
 /* By how much the sides of newly exposed interfaces have sunk, once the pairs have met. */
 void rg_contacts_sink(const rg_contacts *c, const uint8_t *exposed, rg_real *sunk);

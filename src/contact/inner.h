@@ -55,6 +55,7 @@ struct rg_contacts {
     double *rest, *corner, *last; /* [faces, then far][9]: undeformed, now; [faces][9] at the last search */
     double *box;                  /* [faces, then far][6]: now */
     rg_gid *id;                   /* [faces, then far] */
+    int32_t *of_material;         /* likewise */
     rg_real *row;                 /* [faces, then far][RG_CONTACT_VALUES] */
     double *sunk;                 /* [faces, then far]: as it came (m) */
     double *moved;                /* [faces]: since the search, and in the last step, over what they may */

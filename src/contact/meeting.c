@@ -177,23 +177,105 @@ static double depth_of(const rg_contacts *c, const rg_contact_side *f) {
     return depth;
 }
 
-void rg_contacts_push(const rg_contacts *c, size_t tile, const rg_push *push, double dt, double *impulse,
-                      double *heat, rg_real *sunk) {
+/* Pushes the element of a face; returns whether it touches something. */
+static bool push_face(const rg_contacts *c, const rg_contact_side *f, const rg_push *push, double dt,
+                      const rg_contact_record *to) {
+    double force[3][3], felt = 0;
+    if (f->interface != RG_CONTACT_NO_INTERFACE && to->sunk[f->interface] > 0) {
+        to->sunk[f->interface] = (rg_real)fmin(to->sunk[f->interface], depth_of(c, f));
+    }
+    bool touches = face_forces(c, f, force, &felt);
+    if (touches) {
+        push_element(c, f, force, push);
+        to->impulse[f->slot] += felt * dt;
+    }
+    for (size_t k = f->touch; to->heat != NULL && k < f[1].touch; k++) {
+        to->heat[f->slot] += 0.5 * c->heat[c->touch[k].pair];
+    }
+    return touches;
+}
+
+void rg_contacts_push(const rg_contacts *c, size_t tile, const rg_push *push, double dt,
+                      const rg_contact_record *to) {
+    bool touches = false;
     for (size_t i = c->tile_begin[tile]; i < c->tile_begin[tile + 1]; i++) {
-        double force[3][3], felt = 0;
-        size_t at = c->face[i].interface;
-        if (at != RG_CONTACT_NO_INTERFACE && sunk[at] > 0) {
-            sunk[at] = (rg_real)fmin(sunk[at], depth_of(c, &c->face[i]));
-        }
-        if (face_forces(c, &c->face[i], force, &felt)) {
-            push_element(c, &c->face[i], force, push);
-            impulse[c->face[i].slot] += felt * dt;
-        }
-        for (size_t k = c->face[i].touch; heat != NULL && k < c->face[i + 1].touch; k++) {
-            heat[c->face[i].slot] += 0.5 * c->heat[c->touch[k].pair];
+        rg_lid slot = c->face[i].slot;
+        touches = push_face(c, &c->face[i], push, dt, to) || touches;
+        if (i + 1 == c->tile_begin[tile + 1] || c->face[i + 1].slot != slot) { /* all of its element's */
+            to->touches[slot] += touches && to->touching[slot] == 0;
+            to->touching[slot] =
+                (uint8_t)(touches ? RG_TOUCH_AFRESH : to->touching[slot] - (to->touching[slot] > 0));
+            touches = false;
         }
     }
 }
+
+/* ---- What it is told of ---- */
+
+static bool is_chosen(const rg_contact_choice *which, const rg_contacts *c, size_t i) {
+    const rg_contact_side *f = &c->face[i];
+    return which->faces != NULL ? (which->faces[f->slot] >> f->face & 1) != 0
+                                : which->of < 0 || c->of_material[i] == which->of;
+}
+
+bool rg_contacts_force(const rg_contacts *c, size_t tile, const rg_contact_choice *which, double force[3],
+                       double moment[3]) {
+    bool touches = false;
+    for (size_t i = c->tile_begin[tile]; i < c->tile_begin[tile + 1]; i++) {
+        bool chosen = is_chosen(which, c, i);
+        for (size_t k = c->face[i].touch; chosen && k < c->face[i + 1].touch; k++) {
+            const rg_contact_touch *t = &c->touch[k];
+            size_t other = (size_t)c->pair[t->pair].face[1 - t->side];
+            if (!(c->energy[t->pair] > 0) || (which->by >= 0 && c->of_material[other] != which->by)) {
+                continue;
+            }
+            touches = true;
+            for (int corner = 0; corner < 3; corner++) {
+                const double *f = c->force + 18 * t->pair + 9 * t->side + 3 * corner;
+                double turn[3];
+                rg_vector_cross(c->corner + RG_CONTACT_ROW * i + 3 * corner, f, turn);
+                for (int a = 0; a < 3; a++) {
+                    force[a] += f[a];
+                    moment[a] += turn[a];
+                }
+            }
+        }
+    }
+    return touches;
+}
+
+/* The first face of an element: they come by their elements. */
+static size_t first_face(const rg_contacts *c, size_t slot) {
+    size_t low = 0, high = c->faces;
+    while (low < high) {
+        size_t middle = (low + high) / 2;
+        if ((size_t)c->face[middle].slot < slot) {
+            low = middle + 1;
+        } else {
+            high = middle;
+        }
+    }
+    return low;
+}
+
+void rg_contacts_traction(const rg_contacts *c, size_t slot, double *pressure, double traction[3]) {
+    *pressure = 0;
+    memset(traction, 0, 3 * sizeof *traction);
+    for (size_t i = first_face(c, slot); i < c->faces && (size_t)c->face[i].slot == slot; i++) {
+        double force[3][3], normal[3], sum[3], felt = 0;
+        double area = 0.5 * rg_vector_normal(c->corner + RG_CONTACT_ROW * i, normal);
+        face_forces(c, &c->face[i], force, &felt);
+        for (int k = 0; k < 3; k++) {
+            sum[k] = (force[0][k] + force[1][k] + force[2][k]) / area;
+        }
+        if (-rg_vector_dot(sum, normal) > *pressure) {
+            *pressure = -rg_vector_dot(sum, normal);
+            memcpy(traction, sum, sizeof sum);
+        }
+    }
+}
+
+/* ---- Once in a while ---- */
 
 void rg_contacts_sink(const rg_contacts *c, const uint8_t *exposed, rg_real *sunk) {
     for (size_t i = 0; i < c->faces; i++) {

@@ -42,6 +42,9 @@ typedef struct {
     double rotational;  /* of its rotation as a rigid body about the centroid, L . I^-1 L/2 (J) */
     double inertia[3];  /* principal moments about the centroid, smallest first (kg m^2) */
     double axis[3][3];  /* their unit axes; the largest component of each is positive */
+    double touches;     /* of contact between fragments, since the start: by its present elements, how many
+                           times each began to touch something, */
+    double impulse;     /* and what they felt, summed by size over steps and pairs (N s) */
     double size[3];     /* sides of the homogeneous box of the same mass and inertia, along the axes (m) */
 } rg_fragment;
 

@@ -20,7 +20,9 @@ enum {
     MOMENTUM = MOMENT + 3,
     ANGULAR = MOMENTUM + 3,
     SECOND = ANGULAR + 3,
-    SUMS = SECOND + 6
+    TOUCHES = SECOND + 6,
+    IMPULSE,
+    SUMS
 };
 
 /* From this many elements on the threads share a fragment; smaller ones they share out. */
@@ -87,6 +89,10 @@ static void add_element(rg_exact_sum sum[SUMS], const rg_solver *s, double m[RG_
     mass_times(m, v, mv);
     element_integrals(rg_element_mass(s->domain, s->model->material, slot), x, v, mx, mv, out);
     out[VOLUME] = volume;
+    if (s->contacts != NULL) {
+        out[TOUCHES] = s->contact_touches[slot];
+        out[IMPULSE] = s->contact_impulse[slot];
+    }
     for (int k = 0; k < SUMS; k++) {
         rg_exact_add(&sum[k], out[k]);
     }
@@ -140,7 +146,9 @@ static rg_fragment finish(part *p) {
                      .elements = p->elements,
                      .mass = v[MASS],
                      .volume = v[VOLUME],
-                     .kinetic = v[KINETIC]};
+                     .kinetic = v[KINETIC],
+                     .touches = v[TOUCHES],
+                     .impulse = v[IMPULSE]};
     for (int c = 0; c < 3; c++) {
         arm[c] = v[MOMENT + c] / f.mass;
         f.centroid[c] = p->label.anchor[c] + arm[c];

@@ -102,10 +102,15 @@ static int body_columns(const rg_bodies *b) {
     return count;
 }
 
-static int named_items(const rg_account *a) {
+/* Columns of an item of the account: work comes last, and is not there of what acts inside the solid. */
+static int item_columns(const rg_account_item *i) {
+    return i->name == NULL ? 0 : i->inside ? OUTSIDE - 1 : OUTSIDE;
+}
+
+static int account_columns(const rg_account *a) {
     int count = 0;
     for (int i = 0; i < a->count; i++) {
-        count += a->item[i].name != NULL;
+        count += item_columns(&a->item[i]);
     }
     return count;
 }
@@ -126,10 +131,9 @@ static void write_header(rg_probes *p, const rg_case *c) {
             fprintf(p->file, ",%s_%s", c->body[i].name, turn_column[k]);
         }
     }
-    for (int i = 0; i < p->account->count * OUTSIDE; i++) {
-        const char *name = p->account->item[i / OUTSIDE].name;
-        if (name != NULL) {
-            fprintf(p->file, ",%s_%s", name, outside_column[i % OUTSIDE]);
+    for (int i = 0; i < p->account->count; i++) {
+        for (int k = 0; k < item_columns(&p->account->item[i]); k++) {
+            fprintf(p->file, ",%s_%s", p->account->item[i].name, outside_column[k]);
         }
     }
     rg_sensors_header(p->sensors, p->file);
@@ -213,7 +217,7 @@ rg_probes *rg_probes_find(const rg_solver *s) {
                      .rank = s->rank,
                      .probes = probes,
                      .probe = s->input->output.probe,
-                     .row = body_columns(s->bodies) + named_items(s->account) * OUTSIDE,
+                     .row = body_columns(s->bodies) + account_columns(s->account),
                      .bodies = s->bodies,
                      .account = s->account};
     p->sensors = rg_sensors_make(s);
@@ -293,8 +297,10 @@ static void sample_account(const rg_probes *p, double *out) {
         if (item->name != NULL) {
             memcpy(out, item->force, sizeof item->force);
             memcpy(out + 3, item->moment, sizeof item->moment);
-            out[OUTSIDE - 1] = item->work_now;
-            out += OUTSIDE;
+            if (!item->inside) {
+                out[OUTSIDE - 1] = item->work_now;
+            }
+            out += item_columns(item);
         }
     }
 }

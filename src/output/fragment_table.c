@@ -13,6 +13,7 @@ static const char columns[] =
     "step,id,elements,time,mass,volume,centroid_x,centroid_y,centroid_z,momentum_x,momentum_y,momentum_z,"
     "kinetic,rotational,inertia_1,inertia_2,inertia_3,axis_1_x,axis_1_y,axis_1_z,axis_2_x,axis_2_y,axis_2_z,"
     "axis_3_x,axis_3_y,axis_3_z,size_1,size_2,size_3";
+static const char with_contact[] = ",touches,contact_impulse"; /* of contact.model general */
 
 enum { TAG = 77 };
 
@@ -23,7 +24,9 @@ rg_fragment_table *rg_fragment_table_open(const rg_solver *s) {
         return t;
     }
     t->csv = rg_csv_open(s->input->output.dir, "fragments.csv", s->rank);
-    rg_csv_header(t->csv, columns);
+    char header[sizeof columns + sizeof with_contact];
+    snprintf(header, sizeof header, "%s%s", columns, s->contacts != NULL ? with_contact : "");
+    rg_csv_header(t->csv, header);
     return t;
 }
 
@@ -44,7 +47,7 @@ rg_fragment_mark rg_fragment_table_sync(rg_fragment_table *t) {
 
 static void write_row(rg_fragment_table *t, const rg_solver *s, const rg_fragment *f) {
     const int64_t number[] = {s->step, f->id, f->elements};
-    double value[26] = {s->time, f->mass, f->volume};
+    double value[28] = {s->time, f->mass, f->volume};
     memcpy(value + 3, f->centroid, sizeof f->centroid);
     memcpy(value + 6, f->momentum, sizeof f->momentum);
     value[9] = f->kinetic;
@@ -52,7 +55,9 @@ static void write_row(rg_fragment_table *t, const rg_solver *s, const rg_fragmen
     memcpy(value + 11, f->inertia, sizeof f->inertia);
     memcpy(value + 14, f->axis, sizeof f->axis);
     memcpy(value + 23, f->size, sizeof f->size);
-    rg_csv_row(t->csv, number, sizeof number / sizeof *number, value, sizeof value / sizeof *value);
+    value[26] = f->touches;
+    value[27] = f->impulse;
+    rg_csv_row(t->csv, number, sizeof number / sizeof *number, value, s->contacts != NULL ? 28 : 26);
 }
 
 /* Of the same rows in the same order on any ranks: plain sums will do. */

@@ -394,6 +394,22 @@ static void get_fragment(const void *of, size_t i, void *out) {
     *(double *)out = (double)r->parts->label[r->parts->of[r->slot[i]]].id;
 }
 
+static void get_contact(const void *of, size_t i, void *out) {
+    const state_records *r = of;
+    double *value = out;
+    size_t slot = (size_t)r->slot[i];
+    rg_contacts_traction(r->s->contacts, slot, &value[0], value + 1);
+    value[4] = r->s->contact_heat != NULL ? r->s->contact_heat[slot] : 0;
+}
+
+static void write_contact(rg_snapshots *w, const rg_solver *s) {
+    static const rg_volume_field field[] = {{"contact_pressure", "Pa", RG_CENTER_CELL, 1, 0, false},
+                                            {"contact_traction", "Pa", RG_CENTER_CELL, 3, 1, false},
+                                            {"contact_heat", "J", RG_CENTER_CELL, 1, 4, false}};
+    write_volume(w, s, s->contact_heat != NULL ? 3 : 2, field, 5, get_contact,
+                 &(state_records){.s = s, .slot = w->slab->slot});
+}
+
 /* Faces in the region, by their present place; returns how many. */
 static size_t keep_faces(const rg_expr *region, size_t count, rg_crack_face *face) {
     size_t kept = 0;
@@ -459,6 +475,9 @@ void rg_snapshots_write(rg_snapshots *w, rg_solver *s, const rg_fragment_parts *
     if (w->fields & RG_FIELD_MATERIAL) {
         write_numbers(w, s, "material", get_material, &(nodal_records){s->domain, w->slab->slot, NULL});
     }
+    if (w->fields & RG_FIELD_CONTACT) {
+        write_contact(w, s);
+    }
     if (w->fields & RG_FIELD_CRACK) {
         write_cracks(w, s);
     }
@@ -469,6 +488,9 @@ double rg_snapshots_frame_bytes(const rg_case *c) {
     const unsigned nodal = RG_FIELD_DISPLACEMENT | RG_FIELD_VELOCITY,
                    whole = RG_FIELD_RANK | RG_FIELD_FRAGMENT | RG_FIELD_MATERIAL; /* numbers, in doubles */
     double values = 0, numbers = 0;
+    if ((c->output.fields & RG_FIELD_CONTACT) != 0) {
+        values += rg_case_rubs(c) ? 5 : 4;
+    }
     for (unsigned bit = 1; bit <= c->output.fields; bit *= 2) {
         values += (bit & c->output.fields & nodal) != 0 ? NODAL : 0;
         numbers += (bit & c->output.fields & whole) != 0;

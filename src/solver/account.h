@@ -1,4 +1,5 @@
-/* Force and work of what acts on the solid from outside: an item for each load, support and absorbing side.
+/* Force and work of what acts on the solid from outside: an item for each load, support and absorbing side;
+ * and forces between parts of it.
  *
  * A force f(n) at the time of step n acts from the middle of the step before to the middle of the next one.
  * Its work in the first half is dt v(n-1/2).f/2 and in the second dt' v(n+1/2).f/2: then the energy of a
@@ -18,6 +19,7 @@
 
 typedef struct {
     const char *name; /* column prefix in history.csv; NULL: it has none there */
+    bool inside;      /* between parts of the solid: no work is booked */
     /* From here to the end doubles only: a checkpoint takes them as a row. */
     double work;      /* up to the middle of the next step (J) */
     double work_now;  /* up to the present time */

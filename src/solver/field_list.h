@@ -37,6 +37,9 @@
     X(exposed, BYTE, FACE, 1, s->input->contact.model == RG_CONTACT_GENERAL, "exposed")                      \
     X(contact_sunk, REAL, FACE, 2, s->input->contact.model == RG_CONTACT_GENERAL, "contact_sunk")            \
     X(contact_impulse, DOUBLE, ELEMENT, 1, s->input->contact.model == RG_CONTACT_GENERAL, "contact_impulse") \
+    /* how many times it began to touch something, and whether it does now */                                \
+    X(contact_touches, DOUBLE, ELEMENT, 1, s->input->contact.model == RG_CONTACT_GENERAL, "contact_touches") \
+    X(contact_touching, BYTE, ELEMENT, 1, s->input->contact.model == RG_CONTACT_GENERAL, "contact_touching") \
     /* sides of exposed interfaces that have been outside all bodies since, as bits */                       \
     X(body_clear, BYTE, FACE, 1, s->input->contact.model == RG_CONTACT_GENERAL && s->input->bodies > 0,      \
       "body_clear")                                                                                          \

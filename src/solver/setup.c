@@ -118,10 +118,11 @@ static rg_solver *make(const rg_case *input, rg_part *part, MPI_Comm comm) {
     s->loads = rg_loads_make(input, s->domain, s->part, model->material, s->account, s->threads, comm);
     s->absorbing =
         rg_absorbing_make(input, s->domain, s->part, model->material, s->assembly, s->account, comm);
-    rg_account_open(s->account, s->threads);
-    if (part->original == NULL) {
+    if (part->original == NULL && input->contact.model == RG_CONTACT_GENERAL) {
         s->contacts = rg_contacts_make(input, s->domain, model->material, comm);
+        s->contact_forces = rg_contact_forces_make(input, s->domain, s->part, s->account, comm);
     }
+    rg_account_open(s->account, s->threads);
     s->heating = rg_heating_make(s);
     allocate(s);
     rg_law_start(s);
@@ -197,6 +198,7 @@ void rg_solver_free(rg_solver *s) {
         rg_absorbing_free(s->absorbing);
         rg_account_free(s->account);
         rg_contacts_free(s->contacts);
+        rg_contact_forces_free(s->contact_forces);
         rg_heating_free(s->heating);
         rg_assembly_free(s->assembly);
         rg_conforming_faces_free((rg_conforming_faces *)s->conforming_faces);

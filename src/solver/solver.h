@@ -17,6 +17,7 @@
 #include "base/exact_sum.h"
 #include "case/case.h"
 #include "contact/contact.h"
+#include "solver/contact_force.h"
 #include "domain/assembly.h"
 #include "domain/domain.h"
 #include "domain/halo.h"
@@ -83,12 +84,13 @@ struct rg_solver {
     rg_account *account; /* of what acts from outside */
     rg_loads *loads;
     rg_absorbing *absorbing;
-    rg_heating *heating;   /* NULL: no temperature is prescribed */
-    rg_contacts *contacts; /* between fragments; NULL: not computed */
-    int64_t contacts_most; /* most pairs of faces that touched at a time */
-    double contact_omega2; /* most that they added to the squared frequency (1/s^2) */
-    double time, dt;       /* of the current state (s); dt is the step that led to it */
-    double dt_next;        /* step that leads on, once kicked */
+    rg_heating *heating;               /* NULL: no temperature is prescribed */
+    rg_contacts *contacts;             /* between fragments; NULL: not computed */
+    rg_contact_forces *contact_forces; /* NULL likewise */
+    int64_t contacts_most;             /* most pairs of faces that touched at a time */
+    double contact_omega2;             /* most that they added to the squared frequency (1/s^2) */
+    double time, dt;                   /* of the current state (s); dt is the step that led to it */
+    double dt_next;                    /* step that leads on, once kicked */
     int64_t step;
     struct {
         double largest;         /* component (Pa) */

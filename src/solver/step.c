@@ -215,8 +215,10 @@ static void boundary_sweep(rg_solver *s, size_t tile, const rg_workspace *w, con
     tile_kick(s, tile, w, p, RG_SWEEP_BOUNDARY);
     if (s->contacts != NULL && p->constrain) {
         rg_push k = {p->dt, 0.5 * s->dt, p->velocity, step_velocity_of(s, tile, p)};
-        rg_contacts_push(s->contacts, tile, &k, 0.5 * (s->dt + s->dt_next), s->contact_impulse,
-                         s->contact_heat, s->contact_sunk);
+        rg_contact_record to = {s->contact_impulse, s->contact_heat, s->contact_touches, s->contact_touching,
+                                s->contact_sunk};
+        rg_contacts_push(s->contacts, tile, &k, 0.5 * (s->dt + s->dt_next), &to);
+        rg_contact_forces_book(s->contact_forces, s->contacts, tile);
     }
     if (p->apart) {
         rg_assembly_sum(s->assembly, tile, p->velocity);

@@ -4,7 +4,7 @@ import itertools
 
 import numpy as np
 import pytest
-from conftest import CASES, launch
+from conftest import CASES, launch, rounding
 
 H, DENSITY, YOUNG = 1e-4, 8000, 200e9  # speed 5000 m/s for a Poisson's ratio of 0
 SPEED = (YOUNG / DENSITY) ** 0.5
@@ -77,6 +77,8 @@ def test_bars_part_as_waves_tell(run, figure, case, one, two, restitution, bound
     assert result.summary["contacts"] > 4 and result.summary["overlaps"] == 0
     assert result.summary["contact_impulse_Ns"] == pytest.approx(last["momentum_z"][1], rel=1e-2)
     assert result.summary["energy_error_rel"] < 2e-4
+    assert (last["touches"] >= [2, 4]).all() and (last["touches"] < 40).all()  # elements of the end faces, each once or twice
+    assert sum(last["contact_impulse"]) == pytest.approx(2 * result.summary["contact_impulse_Ns"], rel=1e-12)
 
 
 def test_pressure_goes_through_faces_that_do_not_match(run, figure, case):
@@ -85,9 +87,20 @@ def test_pressure_goes_through_faces_that_do_not_match(run, figure, case):
     boxes = [((0, 0, 0), (2 * H, 2 * H, 2 * H), (2, 2, 2)), ((0, 0, 2.001 * H), (2 * H, 2 * H, 2 * H), (3, 3, 3))]
     path = case("die", boxes, material(0.25) + HELD.rstrip("]\n") + ", {set: zlow, component: z, velocity: 0}, {set: zhigh, absorbing: true}]\n"
                 f'loads: [{{set: zhigh, pressure: "{pressure / 2}*(1 - cos(pi*t/{end}))"}}]\n'
-                f"time: {{end: {end}}}\noutput: {{interval: {end}, fields: [stress], fragments: none}}\n")
-    stress = run(path).frames()[-1]["stress"][:, 5]
-    figure("stress across faces that do not match", abs(stress / -pressure - 1).max(), bound=1e-2)
+                f"time: {{end: {end}}}\noutput: {{interval: {end}, fields: [stress, contact], fragments: none, "
+                f'contacts: [{{name: upper, where: "z > {1.9 * H} && z < {2.1 * H} && nz < -0.9"}}, {{name: all, where: 1}}, {{name: side, set: xlow}}]}}\n')
+    result = run(path)
+    frame, history = result.frames()[-1], result.history
+    figure("stress across faces that do not match", abs(frame["stress"][:, 5] / -pressure - 1).max(), bound=1e-2)
+    pressed, traction = frame["contact_pressure"].ravel(), np.linalg.norm(frame["contact_traction"], axis=1)
+    faces = pressed > 0.5 * pressure  # two elements on each square; others' sides are on the wall, where they may just touch
+    assert faces.sum() == 2 * (2**2 + 3**2)
+    figure("contact pressure of faces that do not match", abs(pressed[faces] / pressure - 1).max(), bound=1e-2)
+    assert np.allclose(traction[faces], pressed[faces], rtol=1e-3)
+    force = pressure * (2 * H) ** 2
+    figure("force on a side that is pressed", history["upper_force_z"][-1], theory=force, bound=3e-3, unit="N", relative=True)
+    assert history["upper_moment_x"][-1] == pytest.approx(force * H, rel=5e-3)  # y times the force
+    assert max(abs(history[name]).max() for name in ("all_force_z", "side_force_x", "all_moment_y")) < rounding(1e-12, 1e-5) * force
 
 
 def test_block_slides_to_rest(run, figure, case):
@@ -99,7 +112,7 @@ def test_block_slides_to_rest(run, figure, case):
     path = case("slide", boxes, material(0.2) + "boundary: [" + ", ".join(f"{{set: zlow, component: {c}, velocity: 0}}" for c in "xyz") + "]\n"
                 f'initial: {{velocity: {{x: "z > {H} ? {speed} : 0"}}}}\n'
                 f'loads: [{{where: "z > {H}", acceleration: {{z: "-{weight}*(t < {rise} ? (1 - cos(pi*t/{rise}))/2 : 1)"}}}}]\n'
-                f'time: {{end: {1.3 * rest}}}\noutput: {{interval: {rest / 20}, fields: [], sensors: [{{name: block, where: "z > {H}", values: [ux, vx]}}]}}\n')
+                f'time: {{end: {1.3 * rest}}}\noutput: {{interval: {rest / 20}, fields: [], sensors: [{{name: block, where: "z > {H}", values: [ux, vx]}}], contacts: [{{name: sled, between: [sled, material]}}]}}\n')
     result = run(path, sets={"contact.friction": 0.1, "materials": [{"name": "sled", "model": "linear-elastic", "where": f"z > {H}", "density": DENSITY, "young": YOUNG, "poisson": 0.2}],
                              "contact.pairs": [{"between": ["material", "sled"], "friction": mu}]})
     time, way = result.history["time"], result.history["block_ux_mean"]
@@ -109,6 +122,8 @@ def test_block_slides_to_rest(run, figure, case):
     slides = (time > 2 * rise) & (time < 0.95 * rest)
     slowing, at_first = np.polyfit(time[slides], result.history["block_vx_mean"][slides], 1)
     figure("time after which it would rest", -1e6 * at_first / slowing, theory=1e6 * rest, bound=5e-3, unit="us", relative=True)
+    braking = -result.history["sled_force_x"][slides].mean() / result.history["sled_force_z"][slides].mean()
+    figure("friction over pressure, by the forces on a block that slides", braking, theory=mu, bound=1.5e-2, relative=True)
     assert np.ptp(way[time > 1.15 * rest]) < 2e-3 * theory
     figure("heat of a block that slides to rest", 1e6 * result.energy["friction"][-1],
            theory=1e6 * DENSITY * (1.5 * H) ** 2 * H * speed**2 / 2, bound=0.015, unit="uJ", relative=True)
@@ -122,6 +137,35 @@ def test_parts_that_lie_in_each_other_are_refused(case):
         process = launch("run", path, "-q", "-o", path.parent / "out", ranks=ranks)
         assert process.returncode == 2
         assert "lie in each other at (" in process.stderr and "elements " in process.stderr
+
+
+@pytest.mark.parametrize("contacts, message", [
+    ("{name: a, where: z > 7}", "output.contacts[0]: no face of the surface is in it, where: z > 7"),
+    ("{name: a}", "output.contacts[0]: missing set, where or between; allowed: exactly one of set, where, between"),
+    ("{name: a, where: 1, between: [m, n]}", "output.contacts[0]: more than one given; allowed: exactly one of set, where, between"),
+    ("{name: a, where: 1}, {name: a, where: 1}", "output.contacts[1].name: a: the name of an earlier one in history.csv; allowed: letters, digits, _ and -; unique in history.csv"),
+    ("{name: a, between: [m, o]}", "output.contacts[0].between: o: no such material; allowed: names of two materials, or one twice: material, m, n"),
+    ("{name: a, between: [m, m]}", "output.contacts[0].between: what a material does to itself adds up to nothing; allowed: names of two materials"),
+    ("{name: a, between: [m, material]}", "output.contacts[0].between[1]: material: no element is of this material")])
+def test_contact_forces_that_are_refused(tmp_path, contacts, message):
+    case = tmp_path / "force.yaml"
+    other = "model: neo-hookean, young: 1, poisson: 0, density: 1"
+    case.write_text(f"mesh: {{cells: [1, 1, 2], size: [1, 1, 2]}}\nmaterial: {{{other}}}\n"
+                    f"materials: [{{name: m, where: z > 1, {other}}}, {{name: n, where: z < 1, {other}}}]\n"
+                    f"interface: {{law: none}}\ncontact: {{model: general}}\ntime: {{end: 1}}\noutput: {{contacts: [{contacts}]}}\n")
+    told = launch("run", case, "-o", tmp_path / "out")
+    assert told.returncode == 2 and told.stderr.endswith(f"{message}\n"), told.stderr
+
+
+@pytest.mark.parametrize("output, message", [
+    ("fields: [contact]", "output.fields: contact: not written, because contact.model is interfaces"),
+    ("contacts: [{name: a, where: 1}]", "output.contacts: [{name: a, where: 1}]: not used, because contact.model is interfaces")])
+def test_what_contact_writes_wants_it(tmp_path, output, message):
+    case = tmp_path / "none.yaml"
+    case.write_text("mesh: {cells: [1, 1, 1], size: [1, 1, 1]}\nmaterial: {model: neo-hookean, young: 1, poisson: 0, density: 1}\n"
+                    f"interface: {{law: none}}\ntime: {{end: 1}}\noutput: {{{output}}}\n")
+    told = launch("check", case)
+    assert told.returncode == 2 and message in told.stderr, told.stderr
 
 
 TORN = {

@@ -14,7 +14,7 @@
 #define FIELDS                                                                                               \
     "allowed: list from displacement, velocity, stress, mean_stress, principal_stress, crack, "              \
     "damage, regime, plastic_strain, triaxiality, rank, fragment, material, plastic_volume, "                \
-    "bulking_pressure, temperature"
+    "bulking_pressure, temperature, contact"
 #define BLOCKS                                                                                               \
     "allowed: defaults, tables, mesh, material, materials, interface, contact, viscosity, temperature, "     \
     "mass, initial, "                                                                                        \

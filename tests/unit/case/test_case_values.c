@@ -39,7 +39,7 @@ static const mistake numbers_and_texts[] = {
      "velocity, "
      "stress, mean_stress, principal_stress, crack, damage, regime, plastic_strain, triaxiality, rank, "
      "fragment, "
-     "material, plastic_volume, bulking_pressure, temperature; did you mean 'stress'?\n"},
+     "material, plastic_volume, bulking_pressure, temperature, contact; did you mean 'stress'?\n"},
     {"output:\n",
      "output:\n"
      "  dir: true\n",
@@ -172,17 +172,18 @@ static const mistake numbers_and_texts[] = {
      "expression in x, y, z\n"
      ":19:12: output.fields[0]: [crack]: not one of the allowed words; allowed: list from displacement, "
      "velocity, stress, mean_stress, principal_stress, crack, damage, regime, plastic_strain, triaxiality, "
-     "rank, fragment, material, plastic_volume, bulking_pressure, temperature\n"
+     "rank, fragment, material, plastic_volume, bulking_pressure, temperature, contact\n"
      ":19:46: output.fields[4]: crack: given twice; allowed: list from displacement, velocity, stress, "
      "mean_stress, principal_stress, crack, damage, regime, plastic_strain, triaxiality, rank, fragment, "
-     "material, plastic_volume, bulking_pressure, temperature\n"},
+     "material, plastic_volume, bulking_pressure, temperature, contact\n"},
     {"output:\n",
      "output:\n"
      "  fields: [Crack, displacement]\n"
      "  fragments: never\n",
      ":18:12: output.fields[0]: Crack: not one of the allowed words; allowed: list from displacement, "
      "velocity, stress, mean_stress, principal_stress, crack, damage, regime, plastic_strain, triaxiality, "
-     "rank, fragment, material, plastic_volume, bulking_pressure, temperature; did you mean 'crack'?\n"
+     "rank, fragment, material, plastic_volume, bulking_pressure, temperature, contact; did you mean "
+     "'crack'?\n"
      ":19:14: output.fragments: never: not one of the allowed words; allowed: each, last, none\n"},
 };
 

@@ -385,17 +385,89 @@ static bool heat_good(const random_state *r, const twin *t, const double *heat) 
     return good;
 }
 
+static bool touches_good(const random_state *r, const twin *t) {
+    const rg_domain *d = r->solver->domain;
+    bool good = true;
+    for (size_t slot = 0; good && slot < d->blocks * RG_LANES; slot++) {
+        bool touches = d->id[slot] >= 0 && t->felt[d->id[slot]] > 0;
+        good = r->solver->contact_touches[slot] == touches &&
+               r->solver->contact_touching[slot] == (touches ? RG_TOUCH_AFRESH : 0);
+    }
+    return good;
+}
+
+/* Force on the elements here with a number below that, with its moment, and the sum of its sizes. */
+static double part_force(const random_state *r, const twin *t, rg_gid below, double force[3],
+                         double moment[3]) {
+    const rg_domain *d = r->solver->domain;
+    double size = 0;
+    for (size_t slot = 0; slot < d->blocks * RG_LANES; slot++) {
+        rg_gid e = d->id[slot];
+        for (int n = 0; e >= 0 && e < below && n < RG_NODES; n++) {
+            double x[3], turn[3], *f = t->force[e][n];
+            rg_node_position(d->corner + 12 * slot, n, x);
+            for (int k = 0; k < 3; k++) {
+                x[k] += r->solver->u[rg_node_index(slot, n, k)];
+                force[k] += f[k];
+                size += fabs(f[k]);
+            }
+            rg_reference_cross(x, f, turn);
+            for (int k = 0; k < 3; k++) {
+                moment[k] += turn[k];
+            }
+        }
+    }
+    return size;
+}
+
+/* Of half of the body: faces by bits, and what each element is told to bear. */
+static void check_parts(const random_state *r, const twin *t) {
+    const rg_solver *s = r->solver;
+    const rg_domain *d = s->domain;
+    uint8_t *faces = RG_NEW(uint8_t, d->blocks * RG_LANES + 1);
+    double found[6] = {0}, wanted[6] = {0}, pressure = 0;
+    rg_gid half = r->mesh->elements / 2;
+    double size = part_force(r, t, half, wanted, wanted + 3);
+    bool good = true, presses = false;
+    for (size_t slot = 0; slot < d->blocks * RG_LANES; slot++) {
+        double traction[3];
+        rg_gid e = d->id[slot];
+        faces[slot] = e >= 0 && e < half ? 15 : 0;
+        rg_contacts_traction(s->contacts, slot, &pressure, traction);
+        bool touches = e >= 0 && t->felt[e] > 0;
+        bool felt = traction[0] != 0 || traction[1] != 0 || traction[2] != 0;
+        good = good && felt == (pressure > 0) && (touches || !felt);
+        presses = presses || pressure > 0;
+    }
+    for (size_t n = 0; n < d->tiles; n++) {
+        rg_contacts_force(s->contacts, n, &(rg_contact_choice){faces, -1, -1}, found, found + 3);
+    }
+    for (int k = 0; k < 6; k++) { /* places of 3e-3 m */
+        good = good && near(found[k], wanted[k], ROUNDED * (size + 1) * (k < 3 ? 1 : 3e-3));
+    }
+    report(good && presses, "contact", "force on a part of the solid, and its moment");
+    rg_free(faces);
+}
+
 static void check_forces(const random_state *r, const twin *t, const char *of) {
     const rg_solver *s = r->solver;
     size_t slots = s->domain->blocks * RG_LANES, values = 3 * RG_NODES * slots;
     rg_real *v = RG_NEW(rg_real, values), *w = RG_NEW(rg_real, values);
     double *impulse = RG_NEW(double, slots), *heat = t->grips == NULL ? NULL : RG_NEW(double, slots);
     rg_push push = {.dt = DT, .dt_now = DT_NOW, .velocity = v, .step_velocity = w};
+    rg_contact_record to = {impulse, heat, s->contact_touches, s->contact_touching, s->contact_sunk};
     for (size_t n = 0; n < s->domain->tiles; n++) {
-        rg_contacts_push(s->contacts, n, &push, DT, impulse, heat, s->contact_sunk);
+        rg_contacts_push(s->contacts, n, &push, DT, &to);
     }
     report(pushed_well(r, t, v, DT) && pushed_well(r, t, w, DT_NOW), of, "forces on elements");
     report(impulse_good(r, t, impulse), of, "impulse");
+    if (t->grips == NULL) {
+        report(touches_good(r, t), of, "elements that begin to touch");
+        for (size_t n = 0; n < s->domain->tiles; n++) {
+            rg_contacts_push(s->contacts, n, &push, DT, &to);
+        }
+        report(touches_good(r, t), of, "and go on to");
+    }
     if (heat != NULL) {
         report(heat_good(r, t, heat), of, "heat of friction");
     }
@@ -496,6 +568,7 @@ static void check(void) {
     sides of = {&t, true, true};
     check_sums(&r, &t);
     check_frequencies(&r, &t);
+    check_parts(&r, &t);
     check_forces(&r, &t, "contact");
     visit(&r, judge_pushed, &of);
     rg_contacts_sink(r.solver->contacts, r.solver->exposed, r.solver->contact_sunk);
