@@ -209,10 +209,7 @@ static bool contains(double x[4][3], const double point[3]) {
 
 static bool boxes_meet(double a[4][3], double b[4][3]) {
     for (int c = 0; c < 3; c++) {
-        double low = lowest(a[0], c), high = highest(a[0], c);
-        bool below = b[0][c] < low && b[1][c] < low && b[2][c] < low && b[3][c] < low;
-        bool above = b[0][c] > high && b[1][c] > high && b[2][c] > high && b[3][c] > high;
-        if (below || above) {
+        if (highest(b[0], c) < lowest(a[0], c) || lowest(b[0], c) > highest(a[0], c)) {
             return false;
         }
     }
