@@ -29,7 +29,7 @@ ROOMS = {
                   test_bodies.py test_continuous.py test_fragments.py test_solids.py test_bimaterials.py test_open_faces.py test_ledger.py
                   test_spall.py test_parallel.py"""),
     "solver": (["src/solver/*"],
-               """heat test_thermal.py test_equilibrium.py step spectrum balance body attitude law load sides coarse initial tie mixed_mode
+               """heat opening test_thermal.py test_equilibrium.py step spectrum balance body attitude law load sides coarse initial tie mixed_mode
                   checkpoint step_limiter strength patch material verify case checkpoint_file ledger snapshot test_invariance.py
                   test_contact.py test_friction.py test_viscosity.py test_bodies.py test_output.py test_continuous.py test_ceramic.py
                   test_laws.py test_ledger.py test_spall.py test_solids.py test_waves.py test_bimaterials.py test_fragments.py
