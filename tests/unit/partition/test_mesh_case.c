@@ -205,6 +205,41 @@ static void check_apart(const char *change, bool apart, bool tells) {
     rg_case_free(c);
 }
 
+/* ---- tiles ---- */
+
+static rg_case *make_box(int64_t cells, int tile) {
+    char words[400];
+    snprintf(words, sizeof words,
+             "mesh: {cells: [%d, 12, 24], size: [1, 2, 3], tile: %d}\n"
+             "material: {model: neo-hookean, young: 70e9, poisson: 0.21, density: 2500}\n"
+             "interface: {law: none}\ntime: {end: 1e-6}\n",
+             (int)cells, tile);
+    rg_case *c = rg_case_read_text("a.yaml", words, strlen(words), 0, NULL, stderr);
+    if (c == NULL) {
+        abort();
+    }
+    return c;
+}
+
+/* Of 41,472 elements there are 64 tiles of 648, of those full ones at most; of 1,728 there are 64 of 27. */
+static void check_tiles(void) {
+    static const int wanted[3] = {256, 512, 640};
+    bool good = true;
+    for (int k = 0; k < 3; k++) {
+        rg_case *c = make_box(24, 256 << k);
+        rg_mesh *m = rg_mesh_of_case(c);
+        good = good && m->elements == 41472 && rg_mesh_tile(m) == wanted[k];
+        rg_mesh_free(m);
+        rg_case_free(c);
+    }
+    report(good, "tiles", "of a large box, as the case asks for");
+    rg_case *c = make_box(1, 512);
+    rg_part *part = rg_part_of_case(c, NULL, MPI_COMM_WORLD);
+    report(part->total == 1728 && part->tile == 16, "tiles", "of a small box");
+    rg_part_free(part);
+    rg_case_free(c);
+}
+
 int main(int argc, char **argv) {
     MPI_Init(&argc, &argv);
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);
@@ -216,6 +251,7 @@ int main(int argc, char **argv) {
     check_apart("", false, false);
     check_apart("contact.model=interfaces", true, true);
     check_apart("contact={model: general}", true, false);
+    check_tiles();
     report(rg_alloc_blocks() == 0, "memory", "all blocks are given back");
     check_cracks_refused(); /* what ends a run gives nothing back */
     check_sets();
