@@ -1,29 +1,15 @@
-/* Hanging nodes: surface vertices are sorted into cubic cells, and each surface face looks at those near it.
- */
+/* Hanging nodes: each surface face looks at the surface vertices near it. */
 #include <math.h>
-#include <stdlib.h>
+#include <string.h>
 
 #include "base/mem.h"
 #include "base/vector.h"
 #include "layout.h"
 #include "mesh/apart.h"
 #include "mesh/check.h"
+#include "mesh/near.h"
 
 static const double near_face = 1e-6; /* of its longest edge */
-
-struct kept {
-    int64_t cell;
-    rg_gid vertex;
-};
-
-/* Cells are numbered along x first, so those of a row follow each other. */
-struct grid {
-    double low[3], edge;
-    int64_t cells[3];
-    struct kept *kept; /* surface vertices by cell */
-    rg_gid count;
-    int32_t *part; /* of each vertex; NULL: all are of one */
-};
 
 struct triangle {
     const double *x[3];
@@ -31,11 +17,6 @@ struct triangle {
     double low[3], high[3]; /* its box, wider by the tolerance */
     double reach;           /* the tolerance (m) */
 };
-
-static int by_cell(const void *a, const void *b) {
-    const struct kept *p = a, *q = b;
-    return (p->cell > q->cell) - (p->cell < q->cell);
-}
 
 static struct triangle get_triangle(const rg_mesh *mesh, rg_gid slot) {
     struct triangle t;
@@ -55,66 +36,6 @@ static struct triangle get_triangle(const rg_mesh *mesh, rg_gid slot) {
         t.high[i] += t.reach;
     }
     return t;
-}
-
-static int64_t cell_along(const struct grid *g, int axis, double x) {
-    double at = floor((x - g->low[axis]) / g->edge);
-    at = at > 0 ? at : 0;
-    return at < (double)g->cells[axis] ? (int64_t)at : g->cells[axis] - 1;
-}
-
-static int64_t cell_of(const struct grid *g, const double x[3]) {
-    return (cell_along(g, 2, x[2]) * g->cells[1] + cell_along(g, 1, x[1])) * g->cells[0] +
-           cell_along(g, 0, x[0]);
-}
-
-/* Cells as wide as the mean surface face, but not more than 2^20 along an axis. */
-static void lay_cells(struct grid *g, const rg_mesh *mesh) {
-    double box[2][3], sum = 0, longest = 0;
-    rg_gid faces = 0;
-    rg_mesh_box_around(mesh, box);
-    for (rg_gid slot = 0; slot < 4 * mesh->elements; slot++) {
-        if (mesh->neighbour[slot] < 0) {
-            sum += get_triangle(mesh, slot).reach / near_face;
-            faces++;
-        }
-    }
-    for (int i = 0; i < 3; i++) {
-        g->low[i] = box[0][i];
-        longest = fmax(longest, box[1][i] - box[0][i]);
-    }
-    g->edge = fmax(sum / (double)faces, longest * 0x1p-20);
-    for (int i = 0; i < 3; i++) {
-        g->cells[i] = (int64_t)((box[1][i] - box[0][i]) / g->edge) + 1;
-    }
-}
-
-static struct grid make_grid(const rg_mesh *mesh) {
-    struct grid g = {.kept = RG_NEW(struct kept, (size_t)mesh->vertices), .part = rg_mesh_vertex_parts(mesh)};
-    int8_t *seen = RG_NEW(int8_t, (size_t)mesh->vertices);
-    lay_cells(&g, mesh);
-    for (rg_gid slot = 0; slot < 4 * mesh->elements; slot++) {
-        for (int k = 0; mesh->neighbour[slot] < 0 && k < 3; k++) {
-            rg_gid v = mesh->corner[slot / 4 * 4 + rg_face_node[slot % 4][k]];
-            if (!seen[v]) {
-                seen[v] = 1;
-                g.kept[g.count++] = (struct kept){cell_of(&g, mesh->x + 3 * v), v};
-            }
-        }
-    }
-    rg_free(seen);
-    qsort(g.kept, (size_t)g.count, sizeof *g.kept, by_cell);
-    return g;
-}
-
-/* The first kept vertex in `cell` or beyond. */
-static rg_gid first_in(const struct grid *g, int64_t cell) {
-    rg_gid low = 0, high = g->count;
-    while (low < high) {
-        rg_gid middle = (low + high) / 2;
-        *(g->kept[middle].cell < cell ? &low : &high) = g->kept[middle].cell < cell ? middle + 1 : middle;
-    }
-    return low;
 }
 
 /* Whether point p is within reach of the triangle: of its plane, and of its inside or edges. */
@@ -141,42 +62,78 @@ static bool is_corner(const struct triangle *t, rg_gid vertex) {
     return vertex == t->vertex[0] || vertex == t->vertex[1] || vertex == t->vertex[2];
 }
 
-/* Looks for vertices that hang on face `slot`; of[vertex] is the first face on which one hangs, -1 without.
- */
-static void search(const struct grid *g, const rg_mesh *mesh, rg_gid slot, rg_gid *of) {
-    struct triangle t = get_triangle(mesh, slot);
-    int64_t low[3], high[3];
-    for (int i = 0; i < 3; i++) {
-        low[i] = cell_along(g, i, t.low[i]);
-        high[i] = cell_along(g, i, t.high[i]);
-    }
-    for (int64_t z = low[2]; z <= high[2]; z++) {
-        for (int64_t y = low[1]; y <= high[1]; y++) {
-            int64_t row = (z * g->cells[1] + y) * g->cells[0];
-            for (rg_gid i = first_in(g, row + low[0]); i < g->count && g->kept[i].cell <= row + high[0];
-                 i++) {
-                rg_gid v = g->kept[i].vertex;
-                bool together = g->part == NULL || g->part[v] == g->part[t.vertex[0]];
-                if (of[v] < 0 && together && !is_corner(&t, v) && touches(&t, mesh->x + 3 * v)) {
-                    of[v] = slot;
-                }
-            }
+/* Faces of the surface, then its vertices, and their boxes, which are of two kinds to the search. */
+struct search {
+    const rg_mesh *mesh;
+    int32_t *part; /* of each vertex; NULL: all are of one */
+    int64_t count;
+    rg_gid *number; /* 4 * element + face, or vertex */
+    rg_near_box *box;
+    rg_gid *of; /* [vertices]: the first face on which one hangs, -1 without */
+};
+
+enum { FACE, VERTEX };
+
+static void list_faces(struct search *s) {
+    for (rg_gid slot = 0; slot < 4 * s->mesh->elements; slot++) {
+        if (s->mesh->neighbour[slot] < 0) {
+            struct triangle t = get_triangle(s->mesh, slot);
+            rg_near_box *box = &s->box[s->count];
+            box->part = FACE;
+            memcpy(box->low, t.low, sizeof t.low);
+            memcpy(box->high, t.high, sizeof t.high);
+            s->number[s->count++] = slot;
         }
     }
 }
 
-rg_gid *rg_mesh_hanging(const rg_mesh *mesh) {
-    struct grid g = make_grid(mesh);
-    rg_gid *of = RG_NEW(rg_gid, (size_t)mesh->vertices);
-    for (rg_gid v = 0; v < mesh->vertices; v++) {
-        of[v] = -1;
-    }
-    for (rg_gid slot = 0; slot < 4 * mesh->elements; slot++) {
-        if (mesh->neighbour[slot] < 0) {
-            search(&g, mesh, slot, of);
+static void list_vertices(struct search *s) {
+    int8_t *seen = RG_NEW(int8_t, (size_t)s->mesh->vertices);
+    int64_t faces = s->count;
+    for (int64_t i = 0; i < 3 * faces; i++) {
+        rg_gid slot = s->number[i / 3], v = s->mesh->corner[slot / 4 * 4 + rg_face_node[slot % 4][i % 3]];
+        if (!seen[v]) {
+            rg_near_box *box = &s->box[s->count];
+            box->part = VERTEX;
+            memcpy(box->low, s->mesh->x + 3 * v, sizeof box->low);
+            memcpy(box->high, box->low, sizeof box->high);
+            s->number[s->count++] = v;
+            seen[v] = 1;
         }
     }
-    rg_free(g.kept);
-    rg_free(g.part);
-    return of;
+    rg_free(seen);
+}
+
+static void look(void *context, int64_t face, int64_t vertex) {
+    struct search *s = context;
+    rg_gid slot = s->number[face], v = s->number[vertex];
+    struct triangle t = get_triangle(s->mesh, slot);
+    bool first = s->of[v] < 0 || slot < s->of[v];
+    bool together = s->part == NULL || s->part[v] == s->part[t.vertex[0]];
+    if (first && together && !is_corner(&t, v) && touches(&t, s->mesh->x + 3 * v)) {
+        s->of[v] = slot;
+    }
+}
+
+rg_gid *rg_mesh_hanging(const rg_mesh *mesh) {
+    size_t faces = 0, vertices = (size_t)mesh->vertices;
+    for (rg_gid slot = 0; slot < 4 * mesh->elements; slot++) {
+        faces += mesh->neighbour[slot] < 0;
+    }
+    size_t most = faces + (3 * faces < vertices ? 3 * faces : vertices);
+    struct search s = {.mesh = mesh,
+                       .part = rg_mesh_vertex_parts(mesh),
+                       .number = RG_NEW(rg_gid, most),
+                       .box = RG_NEW(rg_near_box, most),
+                       .of = RG_NEW(rg_gid, vertices)};
+    for (size_t v = 0; v < vertices; v++) {
+        s.of[v] = -1;
+    }
+    list_faces(&s);
+    list_vertices(&s);
+    rg_near_pairs(s.box, s.count, look, &s);
+    rg_free(s.part);
+    rg_free(s.number);
+    rg_free(s.box);
+    return s.of;
 }
