@@ -21,10 +21,10 @@ enum { SEED = 7 };
 
 /* Some are due, others later. */
 static random_state make(void) {
-    const char *change[] = {"interface.sets=[{where: z > 2.2e-3, open: true, at: 0.5e-7}, "
-                            "{where: z < 1.7e-3, open: true, at: 1e-3}]",
-                            "bodies=[]", "material.model=neo-hookean"};
-    random_state r = random_state_make(3, change, MPI_COMM_WORLD);
+    static const char sets[] = "interface.sets=[{where: z > 2.2e-3, open: true, at: 0.5e-7}, "
+                               "{where: z < 1.7e-3, open: true, at: 1e-3}]";
+    const char *change[] = {sets, "bodies=[]"};
+    random_state r = random_state_make(2, change, MPI_COMM_WORLD);
     random_state_draw(&r, SEED);
     for (size_t k = 0; k < r.solver->domain->blocks * RG_NODE_BLOCK; k++) {
         r.solver->u[k] *= (rg_real)0.05; /* so that no lift turns an element inside out */
