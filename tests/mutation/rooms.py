@@ -8,50 +8,51 @@ import fnmatch
 ROOMS = {
     "kernels": (["kernels/*"],
                 """kernels mixed_mode interface tile_faces reference laws friction viscosity elastic j2 johnson_cook johnson_holmquist
-                   drucker_prager thermal prestress rise test_thermal.py test_user_materials.py viscoelastic bulk_history anisotropic
-                   contact deshpande_evans deshpande_evans_kernel cost_model material step test_invariance.py test_contact.py
-                   test_friction.py test_viscosity.py test_laws.py test_ceramic.py test_solids.py test_ledger.py test_crystals.py
-                   test_fragment_contact.py test_spall.py"""),
+                   drucker_prager thermal prestress rise contact_twin crack_front ledger step_limiter spectrum tie probe sides coarse
+                   test_thermal.py test_user_materials.py viscoelastic bulk_history anisotropic contact deshpande_evans
+                   deshpande_evans_kernel cost_model material step test_invariance.py test_contact.py test_friction.py test_viscosity.py
+                   test_laws.py test_ceramic.py test_solids.py test_ledger.py test_crystals.py test_fragment_contact.py test_spall.py"""),
     "mesh/import": (["src/mesh/import/*"],
                     """crack apart near frame gmsh_errors inp inp_nodes inp_sets inp_split import unpack vtk test_inputs.py sets mesh
                        mesh_file mesh_command fuzz-inp fuzz-vtk test_parts.py test_abaqus.py test_gmsh.py test_mesh_faults.py test_meshes.py"""),
     "mesh/improve": (["src/mesh/improve/*"], "improve test_meshes.py"),
     "mesh": (["src/mesh/*"],
-             """apart near sets mesh mesh_check mesh_command mesh_damage mesh_info mesh_file tiles part part_read domain fuzz-mesh
-                test_parts.py test_mesh_faults.py test_meshes.py test_invariance.py test_partition.py test_cli.py"""),
+             """apart near sets mesh mesh_check mesh_command mesh_damage mesh_info mesh_file tiles part part_read domain fuzz-mesh crack
+                import improve mesh_case test_parts.py test_mesh_faults.py test_meshes.py test_invariance.py test_partition.py test_cli.py"""),
     "partition": (["src/partition/*"],
-                  """test_parts.py test_user_materials.py mesh_case tiles part part_read patch material materials material_map anisotropic spectrum
-                     step verify test_mesh_faults.py test_bimaterials.py test_partition.py test_meshes.py test_cli.py test_continuous.py
-                     test_crystals.py test_parallel.py"""),
+                  """contact_twin summary body sides heat strength checkpoint test_parts.py test_user_materials.py mesh_case tiles part
+                     part_read patch material materials material_map anisotropic spectrum step verify test_mesh_faults.py
+                     test_bimaterials.py test_partition.py test_meshes.py test_cli.py test_continuous.py test_crystals.py test_parallel.py"""),
     "contact": (["src/contact/*"], "grip search contact_twin contact balance test_parts.py test_fragment_contact.py test_parallel.py test_restart.py"),
     "domain": (["src/domain/*"],
-               """domain assembly slab patch step spectrum fragment verify fragment_twin ledger snapshot test_invariance.py test_contact.py
-                  test_bodies.py test_continuous.py test_fragments.py test_solids.py test_bimaterials.py test_open_faces.py test_ledger.py
-                  test_spall.py test_parallel.py"""),
+               """domain assembly slab patch step spectrum fragment verify fragment_twin ledger snapshot contact_twin crack_front probe
+                  sensor opening tie sides load test_invariance.py test_contact.py test_bodies.py test_continuous.py test_fragments.py
+                  test_solids.py test_bimaterials.py test_open_faces.py test_ledger.py test_spall.py test_parallel.py"""),
     "solver": (["src/solver/*"],
-               """heat opening test_thermal.py test_equilibrium.py step spectrum balance body attitude law load sides coarse initial tie mixed_mode
-                  checkpoint step_limiter strength patch material verify case checkpoint_file ledger snapshot test_invariance.py
-                  test_contact.py test_friction.py test_viscosity.py test_bodies.py test_output.py test_continuous.py test_ceramic.py
-                  test_laws.py test_ledger.py test_spall.py test_solids.py test_waves.py test_bimaterials.py test_fragments.py
-                  test_impact.py test_partition.py test_moments.py test_open_faces.py test_loads.py test_sides.py test_supports.py
-                  test_static.py test_crystals.py test_fragment_contact.py test_parallel.py test_restart.py"""),
+               """heat opening contact_twin crack_front rebalance probe sensor crack_tip test_thermal.py test_equilibrium.py step spectrum
+                  balance body attitude law load sides coarse initial tie mixed_mode checkpoint step_limiter strength patch material verify
+                  case checkpoint_file ledger snapshot test_invariance.py test_contact.py test_friction.py test_viscosity.py test_bodies.py
+                  test_output.py test_continuous.py test_ceramic.py test_laws.py test_ledger.py test_spall.py test_solids.py test_waves.py
+                  test_bimaterials.py test_fragments.py test_impact.py test_partition.py test_moments.py test_open_faces.py test_loads.py
+                  test_sides.py test_supports.py test_static.py test_crystals.py test_fragment_contact.py test_parallel.py test_restart.py"""),
     "diagnostics": (["src/diagnostics/*"],
-                    """test_crack_fronts.py test_thermal.py step exact_sum fragment fragment_table fragment_twin ledger probe sensor
-                       crack_tip verify test_output.py test_invariance.py test_friction.py test_viscosity.py test_bodies.py test_ceramic.py
-                       test_fragments.py test_sensors.py test_moments.py test_sides.py test_ledger.py test_spall.py test_faults.py
-                       test_bimaterials.py test_cli.py test_impact.py test_parallel.py test_restart.py"""),
+                    """crack_front files run snapshot summary test_crack_fronts.py test_thermal.py step exact_sum fragment fragment_table
+                       fragment_twin ledger probe sensor crack_tip verify test_output.py test_invariance.py test_friction.py
+                       test_viscosity.py test_bodies.py test_ceramic.py test_fragments.py test_sensors.py test_moments.py test_sides.py
+                       test_ledger.py test_spall.py test_faults.py test_bimaterials.py test_cli.py test_impact.py test_parallel.py
+                       test_restart.py"""),
     "output": (["src/output/*"],
-               """writer slab estimate fragment_table progress snapshot summary xdmf test_output.py test_export.py test_invariance.py
+               """writer slab estimate fragment_table progress snapshot summary xdmf run test_output.py test_export.py test_invariance.py
                   test_spall.py test_cli.py test_bimaterials.py test_fragments.py test_faults.py test_parallel.py test_restart.py"""),
     "restart": (["src/restart/*"],
                 """checksum slab schedule restart checkpoint checkpoint_file fuzz-checkpoint test_output.py test_faults.py test_cli.py
                    test_restart.py test_partition.py"""),
     "verify": (["src/verify/*"], "verify test_verify.py"),
     "case": (["src/case/*"],
-             """case user user_check user_law_check test_user_materials.py case_anisotropic tables presets load case_text case_echo case_ranges
-                case_rules case_boundary case_values case_mistakes keys expressions numbers strength fuzz-case test_thermal.py
-                test_equilibrium.py test_keys.py test_output.py test_laws.py test_bodies.py test_cli.py test_sensors.py test_supports.py
-                test_static.py test_loads.py test_bimaterials.py test_continuous.py test_restart.py"""),
+             """case user user_check user_law_check files body attitude law run assembly test_user_materials.py case_anisotropic tables
+                presets load case_text case_echo case_ranges case_rules case_boundary case_values case_mistakes keys expressions numbers
+                strength fuzz-case test_thermal.py test_equilibrium.py test_keys.py test_output.py test_laws.py test_bodies.py test_cli.py
+                test_sensors.py test_supports.py test_static.py test_loads.py test_bimaterials.py test_continuous.py test_restart.py"""),
     "base": (["src/*"],
              """numbers material_command apart mem stiffness exact_sum exchange error files interrupt run mesh_command h5_parallel rebalance slab checksum
                 writer fragment verify checkpoint_file fragment_table fragment_twin ledger probe summary test_keys.py test_user_materials.py
