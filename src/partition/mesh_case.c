@@ -8,6 +8,7 @@
 #include "base/first_bad.h"
 #include "base/mem.h"
 #include "case/problem.h"
+#include "case/tree.h"
 #include "mesh/file.h"
 #include "partition/material_map.h"
 #include "partition/tile_weight.h"
@@ -48,7 +49,7 @@ static char *crack_of(const char *path) {
     char *name = NULL;
     if (h->crack > 0) {
         const char *from = h->surface.name[h->crack - 1];
-        name = strcpy(RG_NEW(char, strlen(from) + 1), from);
+        name = rg_text_copy(from, strlen(from));
     }
     rg_mesh_file_close(f);
     return name;
