@@ -275,13 +275,46 @@ class Material:
         return math.sqrt(self.young / self.density)
 
 
+def voigt_means(keys):
+    """Bulk and shear modulus that an anisotropic solid has in the mean over all orientations of its stiffness."""
+    stiffness = np.zeros((6, 6))
+    if "stiffness" in keys:
+        stiffness[np.triu_indices(6)] = [float(c) for c in keys["stiffness"]]
+    else:
+        young, (nu23, nu13, nu12), shear = (np.array(keys[key], float) for key in ("young", "poisson", "shear"))
+        compliance = np.diag(np.concatenate([1 / young, 1 / shear]))
+        for (i, j), nu in {(0, 1): nu12, (0, 2): nu13, (1, 2): nu23}.items():
+            compliance[i, j] = compliance[j, i] = -nu / young[i]
+        stiffness = np.linalg.inv(compliance)
+    along, between = stiffness.trace() - stiffness[3:, 3:].trace(), stiffness[0, 1] + stiffness[0, 2] + stiffness[1, 2]
+    return (along + 2 * between) / 9, (along - between + 3 * stiffness[3:, 3:].trace()) / 15
+
+
+def moduli_of(keys):
+    """Shear modulus and Poisson's ratio of small strains; nan of a user's solid that is not described by young and poisson."""
+    model = keys["model"]
+    if model == "anisotropic":
+        bulk, shear = voigt_means(keys)
+    elif model == "mooney-rivlin":
+        bulk, shear = float(keys["bulk"]), 2 * (float(keys["c10"]) + float(keys.get("c01", 0)))
+    elif model == "ogden":
+        terms = [float(keys.get(f"mu_{n}", 0)) * float(keys.get(f"alpha_{n}", 0)) for n in (1, 2, 3)]
+        bulk, shear = float(keys["bulk"]), sum(terms) / 2
+    else:
+        given = {**keys, **keys.get("parameters", {})} if model == "user" else keys
+        if model == "user" and not ("poisson" in given and ("shear" in given or "young" in given)):
+            return math.nan, math.nan
+        poisson = float(given["poisson"])
+        return float(given["shear"]) if "shear" in given else float(given["young"]) / (2 * (1 + poisson)), poisson
+    return shear, (3 * bulk - 2 * shear) / (6 * bulk + 2 * shear)
+
+
 def material_of(keys, name="material"):
     """The material that the keys of `material` or of an entry of `materials` describe."""
     try:
-        poisson = float(keys["poisson"])
-        shear = float(keys["shear"]) if "shear" in keys else float(keys["young"]) / (2 * (1 + poisson))
+        shear, poisson = moduli_of(keys)
         return Material(keys.get("name", name), keys["model"], float(keys["density"]), shear, poisson)
-    except (KeyError, TypeError, ValueError) as error:
+    except (KeyError, TypeError, ValueError, np.linalg.LinAlgError) as error:
         raise BadInput(f"not the case of a run: material: {error} is missing or wrong") from error
 
 

@@ -282,6 +282,37 @@ def test_material_that_is_no_number():
         rhegma.material_of({**ALUMINA, "poisson": "much"})
 
 
+COPPER = [168.4e9, 121.4e9, 121.4e9, 0, 0, 0, 168.4e9, 121.4e9, 0, 0, 0, 168.4e9, 0, 0, 0, 75.4e9, 0, 0, 75.4e9, 0, 75.4e9]
+
+
+@pytest.mark.parametrize("keys, shear, bulk", [
+    ({"model": "anisotropic", "stiffness": COPPER}, (168.4e9 - 121.4e9 + 3 * 75.4e9) / 5, (168.4e9 + 2 * 121.4e9) / 3),
+    ({"model": "anisotropic", "young": [26e9] * 3, "poisson": [0.3] * 3, "shear": [10e9] * 3}, 10e9, 26e9 / 1.2),
+    ({"model": "mooney-rivlin", "bulk": 2e9, "c10": 1e6, "c01": 0.5e6}, 3e6, 2e9),
+    ({"model": "mooney-rivlin", "bulk": 2e9, "c10": 1e6}, 2e6, 2e9),
+    ({"model": "ogden", "bulk": 2e9, "mu_1": 1e6, "alpha_1": 2, "mu_3": -0.5e6, "alpha_3": -4}, 2e6, 2e9),
+    ({"model": "user", "library": "x.so", "young": 10e9, "poisson": 0.25}, 4e9, 20e9 / 3),
+    ({"model": "user", "library": "x.so", "parameters": {"shear": 4e9, "poisson": 0.25}}, 4e9, 20e9 / 3),
+    ({"model": "user", "library": "x.so", "stiff": 10e9}, math.nan, math.nan),
+    ({"model": "holmquist-johnson-cook", "young": 10e9, "poisson": 0.25}, 4e9, 20e9 / 3)])
+def test_moduli_of_every_model(keys, shear, bulk):
+    """Of those that are not given by Young's modulus too; of crystals the means over all orientations."""
+    solid = rhegma.material_of({**keys, "density": 1000})
+    assert solid.shear == pytest.approx(shear, nan_ok=True, rel=1e-12)
+    assert solid.lame + 2 / 3 * solid.shear == pytest.approx(bulk, nan_ok=True, rel=1e-9)
+
+
+def test_moduli_of_a_composite():
+    """An orthotropic solid by its compliance: what its inverse has in the mean, against the same means of the stiffness."""
+    keys = {"model": "anisotropic", "density": 1, "young": [140e9, 10e9, 9e9], "poisson": [0.4, 0.3, 0.28], "shear": [3.5e9, 5e9, 5.5e9]}
+    S = np.array([[1 / 140e9, -0.28 / 140e9, -0.3 / 140e9], [-0.28 / 140e9, 1 / 10e9, -0.4 / 10e9], [-0.3 / 140e9, -0.4 / 10e9, 1 / 9e9]])
+    C, G = np.linalg.inv(S), [3.5e9, 5e9, 5.5e9]
+    upper = [*C[0], 0, 0, 0, *C[1, 1:], 0, 0, 0, C[2, 2], 0, 0, 0, G[0], 0, 0, G[1], 0, G[2]]
+    one, other = rhegma.material_of(keys), rhegma.material_of({"model": "anisotropic", "density": 1, "stiffness": upper})
+    assert one.shear == pytest.approx(other.shear) and one.poisson == pytest.approx(other.poisson) and C.sum() / 9 == pytest.approx(
+        one.lame + 2 / 3 * one.shear)
+
+
 def test_one_material():
     case = {"material": ALUMINA}
     assert rhegma.one_material(case, "it").name == "alumina"
