@@ -19,10 +19,10 @@
 
 enum { SEED = 7 };
 
-/* Some are due, others later. */
+/* Some are due, those of an earlier entry later. */
 static random_state make(void) {
-    static const char sets[] = "interface.sets=[{where: z > 2.2e-3, open: true, at: 0.5e-7}, "
-                               "{where: z < 1.7e-3, open: true, at: 1e-3}]";
+    static const char sets[] = "interface.sets=[{where: z < 1.7e-3, open: true, at: 1e-3}, "
+                               "{where: z > 2.2e-3, open: true, at: 0.5e-7}]";
     const char *change[] = {sets, "bodies=[]"};
     random_state r = random_state_make(2, change, MPI_COMM_WORLD);
     random_state_draw(&r, SEED);
