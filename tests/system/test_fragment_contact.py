@@ -81,6 +81,22 @@ def test_bars_part_as_waves_tell(run, figure, case, one, two, restitution, bound
     assert sum(last["contact_impulse"]) == pytest.approx(2 * result.summary["contact_impulse_Ns"], rel=1e-12)
 
 
+def test_cradle_of_bars(run, figure, case):
+    """Three bars of 30 elements, one and two across in turn: the last one goes off with the momentum of the first. Of 60 as of
+    30 elements each front leaves a tail (test_bars_part_as_waves_tell), so that a part of it stays behind."""
+    length, gap = 30, 1e-3
+    starts = [b * (length + gap) * H for b in range(3)]
+    boxes = [((0, 0, z), (H, H, length * H), (1 + b % 2, 1 + b % 2, length)) for b, z in enumerate(starts)]
+    end = (4 * length + 40) * H / SPEED + gap * H
+    result = run(case("cradle", boxes, material() + HELD + f'initial: {{velocity: {{z: "z < {starts[1] - gap / 2 * H} ? 1 : 0"}}}}\n'
+                      f"time: {{end: {end}}}\noutput: {{interval: {end / 2}, fields: []}}\n"))
+    last = result.fragments[-3:]
+    velocity = last["momentum_z"] / last["mass"]
+    figure("velocity of the last bar of a cradle", velocity[2], theory=1, bound=1e-2, unit="m/s")
+    assert max(abs(velocity[:2])) < 5e-3 and result.summary["overlaps"] == 0
+    assert result.summary["energy_error_rel"] < 2e-4
+
+
 def test_pressure_goes_through_faces_that_do_not_match(run, figure, case):
     """Two blocks in a die, of 2 and 3 cells across, under a pressure that rises slowly: the same stress in all elements."""
     pressure, end = 1e8, 160 * H / SPEED
