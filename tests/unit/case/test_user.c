@@ -3,6 +3,7 @@
 #include <dlfcn.h>
 #include <math.h>
 
+#include "base/hash.h"
 #include "case/user.h"
 #include "support/case_input.h"
 
@@ -372,6 +373,21 @@ static void test_mistakes(void **state) {
     free(messages);
 }
 
+/* Of the number of bytes, then of eight at a time, the last ones with zeros behind them. */
+static uint64_t hash_of(const char *bytes, size_t size) {
+    uint64_t hash = rg_hash(0, size);
+    for (size_t i = 0; i < size; i += 8) {
+        char word[8] = {0};
+        uint64_t number;
+        for (size_t k = i; k < size && k < i + 8; k++) {
+            word[k - i] = bytes[k];
+        }
+        memcpy(&number, word, sizeof number);
+        hash = rg_hash(hash, number);
+    }
+    return hash;
+}
+
 /* Of another library a case is another one: the bytes of its file, whatever their number. */
 static void test_hash(void **state) {
     (void)state;
@@ -391,6 +407,7 @@ static void test_hash(void **state) {
             rg_case *c = read_good(path, 0, NULL);
             assert_true(again == 0 || c->material.user.library.hash == hash[i]);
             hash[i] = c->material.user.library.hash;
+            assert_true(hash[i] == hash_of(bytes[i], strlen(bytes[i])));
             rg_case_free(c);
         }
         for (int k = 0; k < i; k++) {
