@@ -20,7 +20,7 @@
 #include "usage.h"
 #include "version.h"
 
-enum { MOST_ARGUMENTS = 64 };
+enum { MOST_ARGUMENTS = 64, NAMED = 7 /* of them those whose values may have spaces */ };
 
 typedef struct {
     const char *file, *isa;
@@ -96,7 +96,7 @@ static char *find_headers(void) {
 /* Adds the words of `text`, which it cuts apart. */
 static int add_words(char *argument[], int count, char *text) {
     for (char *word = strtok(text, " "); word != NULL; word = strtok(NULL, " ")) {
-        if (count == MOST_ARGUMENTS - 1) {
+        if (count == MOST_ARGUMENTS - NAMED) {
             rg_fatal(RG_USAGE, "material: the compiler is called with more than %d words", MOST_ARGUMENTS);
         }
         argument[count++] = word;
@@ -130,18 +130,14 @@ static int compile(const arguments *a, const char *file, const char *library) {
                                  "-DRG_ISA=library -D_POSIX_C_SOURCE=200809L%s",
                                  cc, RG_KERNEL_FLAGS, flag_of(a->isa),
                                  sizeof(rg_real) == sizeof(float) ? " -DRG_SINGLE" : "");
-    char *named[] = {rg_text_format("-DRG_USER_ISA=\"%s\"", a->isa),
-                     rg_text_format("-DRG_USER_SOURCE=\"%s\"", file),
-                     rg_text_format("-I%s", headers),
-                     rg_join_path(headers, a->law ? "user/law.c" : "user/material.c"),
-                     rg_text_copy("-o", 2),
-                     rg_text_copy(library, strlen(library)),
-                     rg_text_copy("-lm", 3)};
-    enum { NAMED = sizeof named / sizeof *named };
+    char *named[NAMED] = {rg_text_format("-DRG_USER_ISA=\"%s\"", a->isa),
+                          rg_text_format("-DRG_USER_SOURCE=\"%s\"", file),
+                          rg_text_format("-I%s", headers),
+                          rg_join_path(headers, a->law ? "user/law.c" : "user/material.c"),
+                          rg_text_copy("-o", 2),
+                          rg_text_copy(library, strlen(library)),
+                          rg_text_copy("-lm", 3)};
     int count = add_words(argument, 0, words);
-    if (count + NAMED > MOST_ARGUMENTS) {
-        rg_fatal(RG_USAGE, "material: the compiler is called with more than %d words", MOST_ARGUMENTS);
-    }
     for (int i = 0; i < NAMED; i++) {
         argument[count++] = named[i];
     }
