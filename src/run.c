@@ -19,6 +19,7 @@
 #include "solver/balance.h"
 #include "solver/opening.h"
 #include "solver/step_limiter.h"
+#include "solver/relax.h"
 #include "solver/setup.h"
 #include "solver/step.h"
 #include "solver/spectrum.h"
@@ -402,16 +403,17 @@ static void make_state(run *r, double *cost, MPI_Comm comm) {
 
 /* All that a time loop needs: at rest or from a checkpoint, on a partition by `cost` (rg_part_of_case). */
 static void prepare(run *r, double *cost, MPI_Comm comm) {
-    bool settle = r->input->start == RG_START_STATIC;
+    rg_start start = r->input->start;
+    FILE *out = r->options->quiet ? NULL : stdout;
     make_state(r, cost, comm);
     measure_exchange(r->solver);
     if (!r->restart) {
         rg_solver_start(r->solver);
-        r->summary.equilibrium =
-            settle ? rg_equilibrium_find(r->solver, r->options->quiet ? NULL : stdout) : (rg_equilibrium){0};
-        if (!settle && r->solver->prestress != NULL) {
-            r->summary.stress_out_of_balance =
-                rg_equilibrium_of_stress(r->solver, r->options->quiet ? NULL : stdout);
+        r->summary.equilibrium = start == RG_START_STATIC  ? rg_equilibrium_find(r->solver, out)
+                                 : start == RG_START_RELAX ? rg_relax(r->solver, out)
+                                                           : (rg_equilibrium){0};
+        if (start == RG_START_INITIAL && r->solver->prestress != NULL) {
+            r->summary.stress_out_of_balance = rg_equilibrium_of_stress(r->solver, out);
         }
     }
     rg_free(r->summary.estimate.of_material);

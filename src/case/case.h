@@ -17,7 +17,7 @@ typedef enum { RG_FRAGMENTS_EACH, RG_FRAGMENTS_LAST, RG_FRAGMENTS_NONE } rg_frag
 typedef enum { RG_KEEP_ENERGY, RG_KEEP_OPENING } rg_keep;
 typedef enum { RG_BREAKING_BY_LAW, RG_BREAKING_NEVER } rg_breaking;
 typedef enum { RG_SHAPE_SPHERE, RG_SHAPE_PLANE, RG_SHAPE_CYLINDER, RG_SHAPE_NONE } rg_shape_kind;
-typedef enum { RG_START_INITIAL, RG_START_STATIC } rg_start;
+typedef enum { RG_START_INITIAL, RG_START_STATIC, RG_START_RELAX } rg_start;
 typedef enum { RG_MOTION_FREE, RG_MOTION_PRESCRIBED } rg_motion;
 typedef enum { RG_CONTACT_OF_INTERFACES, RG_CONTACT_GENERAL } rg_contact_model;
 
@@ -379,6 +379,10 @@ typedef struct {
         int64_t frame; /* of its fields; -1: the last */
     } stress_of;
     rg_start start;
+    struct {
+        double tolerance; /* residual over loads and reactions */
+        int64_t steps;    /* at most */
+    } relax;              /* of that start */
     int initial_sets;
     rg_initial_set *initial_set; /* the last one that has an element counts */
     int boundaries;

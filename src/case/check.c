@@ -203,6 +203,9 @@ static const char *why_unused(const scan *s, const rg_key *key, char *text, size
     if (key->group == RG_GROUP_HEAT) {
         return "not used without temperature.value";
     }
+    if (key->group == RG_GROUP_RELAX) {
+        return "not used, because start is not relax";
+    }
     if (key->group == RG_GROUP_STRESS_RUN) {
         return "not used without initial.stress.run";
     }
@@ -385,6 +388,8 @@ static void learn(rg_check *ck, const rg_key *key, const rg_node *node, bool goo
         ck->usage[RG_GROUP_RISE] = node == NULL ? RG_UNUSED : good ? RG_USED : RG_UNSURE;
     } else if (key->offset == offsetof(rg_case, temperature.value)) {
         ck->usage[RG_GROUP_HEAT] = node == NULL ? RG_UNUSED : good ? RG_USED : RG_UNSURE;
+    } else if (key->offset == offsetof(rg_case, start)) {
+        ck->usage[RG_GROUP_RELAX] = !good ? RG_UNSURE : ck->c->start == RG_START_RELAX ? RG_USED : RG_UNUSED;
     } else if (key->offset == offsetof(rg_case, stress_of.run)) {
         ck->usage[RG_GROUP_STRESS_RUN] = node == NULL ? RG_UNUSED : good ? RG_USED : RG_UNSURE;
         if (node != NULL && good) {

@@ -113,15 +113,17 @@ void rg_start_rule(const rg_entry *e) {
         flows = flows || (rg_case_material(c, i)->model == RG_MATERIAL_USER &&
                           rg_input_history(rg_case_material(c, i)) > 0);
     }
+    bool moves = false;
+    for (int i = 0; i < c->bodies; i++) {
+        moves = moves || c->body[i].motion == RG_MOTION_FREE || rg_body_is_tied(&c->body[i]);
+    }
     rg_form form = c->interface.form;
     const char *wrong =
-        c->start != RG_START_STATIC ? NULL
+        c->start == RG_START_INITIAL ? NULL
         : form == RG_FORM_INCOMPLETE || form == RG_FORM_INTRINSIC
             ? "needs form variational or continuous, whose forces have a potential without a history"
         : flows ? "not with a user's material that has a history: whether it flows on the way is not known"
-        : c->bodies > 0 ? "cannot be found with bodies, which the solid might touch on the way"
-        : c->contact.model == RG_CONTACT_GENERAL
-            ? "cannot be found with contact.model general, by which fragments might meet on the way"
+        : moves ? "not with bodies that are free or tied: they would have to come to rest with the solid"
         : any_open(c) && c->interface.friction > 0
             ? "needs interface.friction 0 with open faces: where they stick would depend on the way"
             : NULL;

@@ -246,6 +246,8 @@ bool rg_key_used(const rg_key *key, const void *base) {
         return ((const rg_case *)base)->interface.rise.rate > 0;
     case RG_GROUP_HEAT:
         return ((const rg_case *)base)->temperature.value != NULL;
+    case RG_GROUP_RELAX:
+        return ((const rg_case *)base)->start == RG_START_RELAX;
     case RG_GROUP_STRESS_RUN:
         return ((const rg_case *)base)->stress_of.run != NULL;
     case RG_GROUP_CONTACT:

@@ -52,6 +52,7 @@ typedef enum {
     RG_GROUP_WEIBULL,    /* if interface.weibull.modulus is given */
     RG_GROUP_RISE,       /* if interface.rise.rate is given */
     RG_GROUP_HEAT,       /* if temperature.value is given */
+    RG_GROUP_RELAX,      /* if start is relax */
     RG_GROUP_STRESS_RUN, /* if initial.stress.run is given */
     RG_GROUP_CONTACT,    /* if contact.model is general */
     RG_GROUP_LINE,       /* boundary entries: if a velocity or displacement is prescribed */

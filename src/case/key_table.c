@@ -123,10 +123,11 @@ static const char *const masses_meaning[] = {
 static const char *const shapes[] = {"sphere", "plane", "cylinder", "none", NULL};
 static const char *const shapes_meaning[] = {
     "of a radius", "all behind it is rigid", "of a radius, without ends", "it touches nothing: for what is tied to it"};
-static const char *const starts[] = {"initial", "static", NULL};
+static const char *const starts[] = {"initial", "static", "relax", NULL};
 static const char *const starts_meaning[] = {
     "from the state of `initial`",
-    "from the equilibrium under the loads of t = 0 and what `boundary` prescribes then (places; elsewhere along its lines it holds), with the velocities of `initial`; faces do not break on the way"};
+    "from the equilibrium under the loads of t = 0 and what `boundary` prescribes then (places; elsewhere along its lines it holds), with the velocities of `initial`; faces do not break on the way",
+    "from the same, to which damping brings the body: it may also buckle on its way, or be free where its loads balance, with interface.penalty isotropic, which leaves it no moment"};
 static const char *const motions[] = {"free", "prescribed", NULL};
 static const char *const motions_meaning[] = {
     "by the forces on it: it has a mass; with an inertia or a density it turns", "by its velocity and angular velocity at all times"};
@@ -317,6 +318,10 @@ static const rg_key case_keys[] = {
      .offset_count = offsetof(rg_case, initial_sets), MEANS("elements with values of their own in place of those of `initial`; the last one that has an element counts")},
 
     {.name = "start", EXPLAINED(starts), DEFAULT(RG_START_INITIAL), CASE(start), MEANS("how a run begins")},
+
+    {.name = "relax.tolerance", REAL, ABOVE(0), DEFAULT(1e-6), GROUP(RELAX), CASE(relax.tolerance),
+     MEANS("residual over loads and reactions at which damping ends; not below 1e-4 in single precision")},
+    {.name = "relax.steps", INTEGER, FROM(1), DEFAULT(200000), GROUP(RELAX), CASE(relax.steps), MEANS("until then the run fails")},
 
     {.name = "boundary", .type = RG_KEY_LIST, ELSE("none: a free body"), CASE(boundary), .entry = &rg_boundary_table,
      .offset_count = offsetof(rg_case, boundaries), MEANS("prescribed motion of the surface; what is not named is free")},

@@ -36,6 +36,7 @@ static void add_condition(const rg_key *key, char *text, size_t size) {
         [RG_GROUP_WEIBULL] = "with interface.weibull.modulus",
         [RG_GROUP_RISE] = "with interface.rise.rate",
         [RG_GROUP_HEAT] = "with temperature.value",
+        [RG_GROUP_RELAX] = "with start relax",
         [RG_GROUP_STRESS_RUN] = "with initial.stress.run",
         [RG_GROUP_CONTACT] = "with contact.model general",
     };

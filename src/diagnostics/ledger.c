@@ -304,7 +304,9 @@ static rg_energy energy_of(const rg_solver *s, const double *v) {
                    .viscous = v[VISCOUS],
                    .friction = v[FRICTION],
                    .radiated = rg_absorbing_radiated(s->absorbing),
-                   .external = v[EXTERNAL] + bodies.work + rg_loads_work(s->loads) + v[BRIEF],
+                   .relaxed = s->relaxed.heat,
+                   .external =
+                       v[EXTERNAL] + bodies.work + rg_loads_work(s->loads) + v[BRIEF] + s->relaxed.work,
                    .broken_area = v[BROKEN],
                    .failed_area = v[FAILED],
                    .momentum = {v[MOMENTUM], v[MOMENTUM + 1], v[MOMENTUM + 2]},
@@ -339,7 +341,7 @@ const rg_energy *rg_ledger_take(rg_ledger *l, rg_solver *s) {
     *e = energy_of(s, v);
     double stored = e->kinetic + e->bodies + e->bulk + e->penalty + e->cohesive + e->contact + e->foundation +
                     e->unresolved + e->spent;
-    e->total = stored + e->radiated - e->half_kick - e->external;
+    e->total = stored + e->radiated + e->relaxed - e->half_kick - e->external;
     if (!l->begun) {
         *l = (rg_ledger){.begun = true, .start = e->total, .last = *e};
     }
@@ -412,6 +414,9 @@ void rg_energy_header(rg_csv *t, const rg_solver *s) {
             fprintf(f, ",%s_%s", parts[k], rg_case_material_name(s->input, m));
         }
     }
+    if (s->input->start == RG_START_RELAX) {
+        fputs(",relaxed", f);
+    }
     fclose(f);
     rg_csv_header(t, columns);
     free(columns);
@@ -419,39 +424,42 @@ void rg_energy_header(rg_csv *t, const rg_solver *s) {
 
 void rg_energy_row(rg_csv *t, const rg_ledger *l, const rg_solver *s) {
     const rg_energy *e = &l->last;
-    double row[ROW + PART * RG_LEDGER_MATERIALS] = {e->time,
-                                                    e->kinetic,
-                                                    e->bodies,
-                                                    e->bulk,
-                                                    e->penalty,
-                                                    e->cohesive,
-                                                    e->contact,
-                                                    e->foundation,
-                                                    e->dissipated,
-                                                    e->plastic,
-                                                    e->damage,
-                                                    e->viscous,
-                                                    e->friction,
-                                                    e->unresolved,
-                                                    e->radiated,
-                                                    e->half_kick,
-                                                    e->external,
-                                                    e->total,
-                                                    e->error,
-                                                    e->share,
-                                                    e->broken_area,
-                                                    e->failed_area,
-                                                    e->momentum[0],
-                                                    e->momentum[1],
-                                                    e->momentum[2],
-                                                    e->angular_momentum[0],
-                                                    e->angular_momentum[1],
-                                                    e->angular_momentum[2]};
+    double row[ROW + PART * RG_LEDGER_MATERIALS + 1] = {e->time,
+                                                        e->kinetic,
+                                                        e->bodies,
+                                                        e->bulk,
+                                                        e->penalty,
+                                                        e->cohesive,
+                                                        e->contact,
+                                                        e->foundation,
+                                                        e->dissipated,
+                                                        e->plastic,
+                                                        e->damage,
+                                                        e->viscous,
+                                                        e->friction,
+                                                        e->unresolved,
+                                                        e->radiated,
+                                                        e->half_kick,
+                                                        e->external,
+                                                        e->total,
+                                                        e->error,
+                                                        e->share,
+                                                        e->broken_area,
+                                                        e->failed_area,
+                                                        e->momentum[0],
+                                                        e->momentum[1],
+                                                        e->momentum[2],
+                                                        e->angular_momentum[0],
+                                                        e->angular_momentum[1],
+                                                        e->angular_momentum[2]};
     size_t values = ROW;
     for (int m = 0; told_materials(s) > 1 && m < told_materials(s); m++) {
         row[values++] = l->material[m].kinetic;
         row[values++] = l->material[m].bulk;
         row[values++] = l->material[m].dissipated;
+    }
+    if (s->input->start == RG_START_RELAX) {
+        row[values++] = e->relaxed;
     }
     rg_csv_row(t, &e->step, 1, row, values);
 }

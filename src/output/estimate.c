@@ -323,6 +323,12 @@ void rg_estimate_print(const rg_solver *s, const rg_estimate *e, FILE *out) {
                 c->stress_of.run != NULL ? ", of the fields of " : "",
                 c->stress_of.run != NULL ? c->stress_of.run : "");
     }
+    if (c->start == RG_START_RELAX) {
+        fprintf(out,
+                "start          relax: damping brings the body to rest first, to %.2g of the loads in at "
+                "most %" PRId64 " steps\n",
+                c->relax.tolerance, c->relax.steps);
+    }
     if (c->start == RG_START_STATIC) {
         fprintf(out, "start          static: the run finds the equilibrium first, a pass over all forces an "
                      "iteration\n");

@@ -61,6 +61,10 @@ static void write_run(FILE *f, const rg_summary *m, const rg_solver *s, const rg
         rg_json_number(f, "static_residual", m->equilibrium.residual);
         rg_json_integer(f, "static_passes", m->equilibrium.passes);
     }
+    if (s->input->start == RG_START_RELAX) {
+        rg_json_number(f, "relax_heat_J", s->relaxed.heat);
+        rg_json_number(f, "relax_work_J", s->relaxed.work);
+    }
     if (s->prestress != NULL) {
         rg_json_number(f, "stress_out_of_balance", m->stress_out_of_balance);
     }

@@ -71,8 +71,9 @@ static const char *refuse_crack(const rg_case *c) {
     return c->interface.law == RG_LAW_NONE || c->interface.law == RG_LAW_FREE
                ? "needs a law of interfaces that ends (law: none in interface.sets keeps all other faces "
                  "whole)"
-           : c->start == RG_START_STATIC && c->interface.friction > 0
-               ? "needs interface.friction 0 with start: static: where it sticks would depend on the way"
+           : c->start != RG_START_INITIAL && c->interface.friction > 0
+               ? "needs interface.friction 0 with start: static or relax: where it sticks would depend on "
+                 "the way"
                : NULL;
 }
 

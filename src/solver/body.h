@@ -130,6 +130,9 @@ double rg_body_depth(const rg_body *b, const double x[3], double normal[3]);
  * all bodies. Threads call it for different tiles. */
 void rg_bodies_touch(rg_bodies *b, size_t tile, const rg_real *u, const rg_push *push, uint8_t *clear);
 
+/* Forgets the forces since the last sum: those of a search for an equilibrium move no body. */
+void rg_bodies_forget(rg_bodies *b);
+
 /* Adds the contact energy of a tile's faces at displacement u (J) to `energy`. */
 void rg_bodies_energy(const rg_bodies *b, size_t tile, const rg_real *u, const uint8_t *clear,
                       rg_exact_sum *energy);

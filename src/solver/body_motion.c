@@ -230,6 +230,13 @@ void rg_bodies_sum(rg_bodies *b) {
     rg_exact_start_allreduce(b->total, sums, b->comm, &b->request);
 }
 
+void rg_bodies_forget(rg_bodies *b) {
+    int sums = RG_BODY_SUMS * b->count * b->threads;
+    if (sums > 0) {
+        memset(b->sum, 0, (size_t)sums * sizeof *b->sum);
+    }
+}
+
 void rg_bodies_kick(rg_bodies *all, double time, double dt_last, double dt_next) {
     MPI_Wait(&all->request, MPI_STATUS_IGNORE);
     all->born_omega2 = 0;

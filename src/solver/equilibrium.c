@@ -2,7 +2,6 @@
 
 #include <inttypes.h>
 #include <math.h>
-#include <omp.h>
 #include <string.h>
 
 #include "base/error.h"
@@ -13,6 +12,7 @@
 #include "layout.h"
 #include "solver/coarse.h"
 #include "solver/limits.h"
+#include "solver/statics.h"
 #include "solver/step.h"
 
 enum { NEWTON_STEPS = 30, HALVINGS = 10, ITERATIONS = 20000, MODES = 6 };
@@ -29,114 +29,13 @@ static double rounding(void) {
 }
 
 typedef struct {
-    rg_solver *solver;
+    rg_statics on;
     rg_coarse *coarse;
-    size_t length;             /* of the fields */
-    rg_real *start, *internal; /* u, and the acceleration by internal forces, at the last Newton step */
-    rg_real *residual, *force, *change; /* acceleration; M times it; sum of the CG's steps */
+    rg_real *start, *internal;  /* u, and the acceleration by internal forces, at the last Newton step */
+    rg_real *residual, *change; /* acceleration; sum of the CG's steps */
     rg_real *search, *product, *product_force, *preconditioned;
-    double mass[RG_NODES][RG_NODES]; /* M/(rho V) */
-    rg_exact_sum *sum;               /* [threads] */
-    double nudge;                    /* largest displacement of a difference (m) */
-    int64_t passes;
+    double nudge; /* largest displacement of a difference (m) */
 } newton;
-
-/* ---- Fields ---- */
-
-static void copy(const newton *q, const rg_real *from, rg_real *to) {
-#pragma omp parallel for schedule(static)
-    for (size_t i = 0; i < q->length; i++) {
-        to[i] = from[i];
-    }
-}
-
-/* to = factor to + scale from */
-static void add(const newton *q, double scale, const rg_real *from, double factor, rg_real *to) {
-#pragma omp parallel for schedule(static)
-    for (size_t i = 0; i < q->length; i++) {
-        to[i] = (rg_real)(factor * to[i] + scale * from[i]);
-    }
-}
-
-static void hold(const newton *q, rg_real *field) {
-#pragma omp parallel for schedule(static)
-    for (size_t t = 0; t < q->solver->domain->tiles; t++) {
-        rg_constraints_hold(q->solver->constraints, t, field);
-    }
-}
-
-/* out = M field */
-static void times_mass(const newton *q, const rg_real *field, rg_real *out) {
-    const rg_domain *d = q->solver->domain;
-#pragma omp parallel for schedule(static)
-    for (size_t block = 0; block < d->blocks; block++) {
-        double mass[RG_LANES];
-        for (int l = 0; l < RG_LANES; l++) {
-            size_t slot = block * RG_LANES + (size_t)l;
-            mass[l] = d->id[slot] >= 0 ? rg_element_mass(d, q->solver->model->material, slot) : 0;
-        }
-        for (int a = 0; a < RG_NODES; a++) {
-            for (int c = 0; c < 3; c++) {
-                double sum[RG_LANES] = {0};
-                for (int b = 0; b < RG_NODES; b++) {
-                    const rg_real *v = field + rg_node_index(block * RG_LANES, b, c);
-                    for (int l = 0; l < RG_LANES; l++) {
-                        sum[l] += q->mass[a][b] * v[l];
-                    }
-                }
-                rg_real *to = out + rg_node_index(block * RG_LANES, a, c);
-                for (int l = 0; l < RG_LANES; l++) {
-                    to[l] = (rg_real)(mass[l] * sum[l]);
-                }
-            }
-        }
-    }
-}
-
-/* Of two fields over all elements; an element's own sum has an order of its own. */
-static double dot(const newton *q, const rg_real *a, const rg_real *b) {
-    const rg_domain *d = q->solver->domain;
-    memset(q->sum, 0, (size_t)q->solver->threads * sizeof *q->sum);
-#pragma omp parallel for schedule(static)
-    for (size_t block = 0; block < d->blocks; block++) {
-        double sum[RG_LANES] = {0};
-        for (size_t i = block * RG_NODE_BLOCK; i < (block + 1) * RG_NODE_BLOCK; i++) {
-            sum[i % RG_LANES] += (double)a[i] * b[i];
-        }
-        for (size_t l = 0; l < RG_LANES; l++) {
-            if (d->id[block * RG_LANES + l] >= 0) {
-                rg_exact_add(&q->sum[omp_get_thread_num()], sum[l]);
-            }
-        }
-    }
-    for (int t = 1; t < q->solver->threads; t++) {
-        rg_exact_merge(&q->sum[0], &q->sum[t]);
-    }
-    rg_exact_allreduce(&q->sum[0], 1, q->solver->comm);
-    return rg_exact_value(&q->sum[0]);
-}
-
-static double largest(const newton *q, const rg_real *field) {
-    double most = 0;
-#pragma omp parallel for schedule(static) reduction(max : most)
-    for (size_t i = 0; i < q->length; i++) {
-        double size = fabs((double)field[i]);
-        most = size > most ? size : most;
-    }
-    MPI_Allreduce(MPI_IN_PLACE, &most, 1, MPI_DOUBLE, MPI_MAX, q->solver->comm);
-    return most;
-}
-
-/* Norm of an acceleration, sqrt(a M a). */
-static double norm(const newton *q, const rg_real *field) {
-    times_mass(q, field, q->force);
-    return sqrt(dot(q, field, q->force));
-}
-
-static void accelerate(newton *q, rg_real *out, bool loaded) {
-    rg_solver_acceleration(q->solver, out, loaded);
-    q->passes++;
-}
 
 /* ---- Supports ---- */
 
@@ -150,7 +49,7 @@ typedef struct {
 static void add_line(void *to, size_t slot, int node, const double line[3]) {
     rigid *r = to;
     double x[3], arm[3], moment[3], along[MODES];
-    rg_node_position(r->of->solver->domain->corner + 12 * slot, node, x);
+    rg_node_position(r->of->on.solver->domain->corner + 12 * slot, node, x);
     rg_vector_subtract(x, r->centre, arm);
     rg_vector_cross(arm, line, moment);
     for (int k = 0; k < MODES; k++) {
@@ -163,15 +62,15 @@ static void add_line(void *to, size_t slot, int node, const double line[3]) {
 
 /* Whether the supports leave the body no motion as a rigid one: the matrix of these is definite. */
 static bool is_held(const newton *q) {
-    const double(*box)[3] = (const double(*)[3])q->solver->part->box;
+    const double(*box)[3] = (const double(*)[3])q->on.solver->part->box;
     rigid r = {.of = q, .sum = RG_NEW(rg_exact_sum, MODES * MODES)};
     for (int c = 0; c < 3; c++) {
         r.centre[c] = 0.5 * (box[0][c] + box[1][c]);
         r.size = fmax(r.size, box[1][c] - box[0][c]);
     }
-    rg_constraints_show(q->solver->constraints, add_line, &r);
-    rg_loads_show(q->solver->loads, add_line, &r);
-    rg_exact_allreduce(r.sum, MODES * MODES, q->solver->comm);
+    rg_constraints_show(q->on.solver->constraints, add_line, &r);
+    rg_loads_show(q->on.solver->loads, add_line, &r);
+    rg_exact_allreduce(r.sum, MODES * MODES, q->on.solver->comm);
     double matrix[MODES][MODES], most = 0;
     for (int i = 0; i < MODES * MODES; i++) {
         matrix[i / MODES][i % MODES] = rg_exact_value(&r.sum[i]);
@@ -192,50 +91,50 @@ static bool is_held(const newton *q) {
 }
 
 _Noreturn static void refuse(const newton *q, int status, const char *why) {
-    rg_speak(q->solver->comm);
-    rg_fatal(status, "%s: start: static: %s", q->solver->input->path, why);
+    rg_speak(q->on.solver->comm);
+    rg_fatal(status, "%s: start: static: %s", q->on.solver->input->path, why);
 }
 
 /* ---- The linear system ---- */
 
 /* product = M^-1 K search without what is held, by a difference of internal forces. */
 static void apply_tangent(newton *q) {
-    rg_solver *s = q->solver;
-    double scale = q->nudge / largest(q, q->search);
-    copy(q, q->start, s->u);
-    add(q, scale, q->search, 1, s->u);
-    accelerate(q, q->product, false);
-    add(q, 1 / scale, q->internal, -1 / scale, q->product);
-    hold(q, q->product);
+    rg_solver *s = q->on.solver;
+    double scale = q->nudge / rg_statics_largest(&q->on, q->search);
+    rg_statics_copy(&q->on, q->start, s->u);
+    rg_statics_add(&q->on, scale, q->search, 1, s->u);
+    rg_statics_accelerate(&q->on, q->product, false);
+    rg_statics_add(&q->on, 1 / scale, q->internal, -1 / scale, q->product);
+    rg_statics_hold(&q->on, q->product);
 }
 
 /* preconditioned = (1/omega^2 + P A^-1 P^T M) residual. */
 static void precondition(newton *q) {
-    add(q, 1 / q->solver->omega2, q->residual, 0, q->preconditioned);
-    rg_coarse_correct(q->coarse, q->force, q->preconditioned);
+    rg_statics_add(&q->on, 1 / q->on.solver->omega2, q->residual, 0, q->preconditioned);
+    rg_coarse_correct(q->coarse, q->on.force, q->preconditioned);
 }
 
 /* `change` becomes what takes the residual to `goal` in its norm, about. */
 static void solve(newton *q, double goal) {
-    memset(q->change, 0, q->length * sizeof *q->change);
+    memset(q->change, 0, q->on.length * sizeof *q->change);
     double before = 1, now = 0;
-    times_mass(q, q->residual, q->force);
+    rg_statics_times_mass(&q->on, q->residual, q->on.force);
     for (int k = 0; k < ITERATIONS; k++) {
-        if (sqrt(dot(q, q->residual, q->force)) <= goal) {
+        if (sqrt(rg_statics_dot(&q->on, q->residual, q->on.force)) <= goal) {
             return;
         }
         precondition(q);
-        now = dot(q, q->preconditioned, q->force);
-        add(q, 1, q->preconditioned, k == 0 ? 0 : now / before, q->search);
+        now = rg_statics_dot(&q->on, q->preconditioned, q->on.force);
+        rg_statics_add(&q->on, 1, q->preconditioned, k == 0 ? 0 : now / before, q->search);
         apply_tangent(q);
-        times_mass(q, q->product, q->product_force);
-        double curvature = dot(q, q->search, q->product_force);
+        rg_statics_times_mass(&q->on, q->product, q->product_force);
+        double curvature = rg_statics_dot(&q->on, q->search, q->product_force);
         if (!(curvature > 0)) {
             refuse(q, RG_FAILURE, "no stable equilibrium: a part of the body is not held, or it buckles");
         }
-        add(q, now / curvature, q->search, 1, q->change);
-        add(q, -now / curvature, q->product, 1, q->residual);
-        add(q, -now / curvature, q->product_force, 1, q->force);
+        rg_statics_add(&q->on, now / curvature, q->search, 1, q->change);
+        rg_statics_add(&q->on, -now / curvature, q->product, 1, q->residual);
+        rg_statics_add(&q->on, -now / curvature, q->product_force, 1, q->on.force);
         before = now;
     }
 }
@@ -244,41 +143,38 @@ static void solve(newton *q, double goal) {
 
 /* The residual at the present displacement; returns its norm, *scale: that of loads and reactions. */
 static double find_residual(newton *q, double *scale) {
-    accelerate(q, q->residual, true);
-    double whole = norm(q, q->residual);
-    hold(q, q->residual);
+    rg_statics_accelerate(&q->on, q->residual, true);
+    double whole = rg_statics_norm(&q->on, q->residual);
+    rg_statics_hold(&q->on, q->residual);
     *scale = fmax(*scale, whole);
-    return norm(q, q->residual);
+    return rg_statics_norm(&q->on, q->residual);
 }
 
 /* A step along `change` that makes the residual smaller, if there is one; returns its norm. */
 static double step(newton *q, double before, double *scale) {
     double now = INFINITY, share = 1;
     for (int k = 0; k < HALVINGS && !(now < before); k++, share *= 0.5) {
-        copy(q, q->start, q->solver->u);
-        add(q, share, q->change, 1, q->solver->u);
+        rg_statics_copy(&q->on, q->start, q->on.solver->u);
+        rg_statics_add(&q->on, share, q->change, 1, q->on.solver->u);
         now = find_residual(q, scale);
     }
     return now;
 }
 
 static void tell(const newton *q, FILE *out, double residual) {
-    if (out != NULL && q->solver->rank == 0) {
+    if (out != NULL && q->on.solver->rank == 0) {
         fprintf(out, "static start   residual %.2g of the loads after %" PRId64 " passes\n", residual,
-                q->passes);
+                q->on.passes);
         fflush(out);
     }
 }
 
 static newton make(rg_solver *s) {
-    newton q = {.solver = s, .length = s->domain->blocks * RG_NODE_BLOCK};
-    rg_real **const field[] = {&q.start,  &q.internal, &q.residual,      &q.force,         &q.change,
+    newton q = {.on = rg_statics_make(s)};
+    rg_real **const field[] = {&q.start,  &q.internal, &q.residual,      &q.change,
                                &q.search, &q.product,  &q.product_force, &q.preconditioned};
     for (size_t i = 0; i < sizeof field / sizeof *field; i++) {
-        *field[i] = RG_NEW(rg_real, q.length + 1);
-    }
-    for (int i = 0; i < RG_NODES * RG_NODES; i++) {
-        q.mass[i / RG_NODES][i % RG_NODES] = rg_mass_entry(s->input->mass, i / RG_NODES, i % RG_NODES);
+        *field[i] = rg_statics_field(&q.on);
     }
     double least = INFINITY;
     for (size_t slot = 0; slot < s->domain->blocks * RG_LANES; slot++) {
@@ -286,25 +182,25 @@ static newton make(rg_solver *s) {
     }
     MPI_Allreduce(MPI_IN_PLACE, &least, 1, MPI_DOUBLE, MPI_MIN, s->comm);
     q.nudge = (single ? 1e-2 : 1e-5) * cbrt(least);
-    q.sum = RG_NEW(rg_exact_sum, (size_t)s->threads);
     return q;
 }
 
 static void end(newton *q) {
-    void *blocks[] = {q->start,  q->internal, q->residual, q->force,         q->change,
-                      q->search, q->product,  q->sum,      q->product_force, q->preconditioned};
+    void *blocks[] = {q->start,  q->internal, q->residual,      q->change,
+                      q->search, q->product,  q->product_force, q->preconditioned};
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) {
         rg_free(blocks[i]);
     }
+    rg_statics_free(&q->on);
     rg_coarse_free(q->coarse);
 }
 
 /* Norm of the loads alone. */
 static double load_norm(newton *q) {
-    accelerate(q, q->residual, true);
-    accelerate(q, q->internal, false);
-    add(q, -1, q->internal, 1, q->residual);
-    return norm(q, q->residual);
+    rg_statics_accelerate(&q->on, q->residual, true);
+    rg_statics_accelerate(&q->on, q->internal, false);
+    rg_statics_add(&q->on, -1, q->internal, 1, q->residual);
+    return rg_statics_norm(&q->on, q->residual);
 }
 
 rg_equilibrium rg_equilibrium_find(rg_solver *s, FILE *out) {
@@ -323,8 +219,8 @@ rg_equilibrium rg_equilibrium_find(rg_solver *s, FILE *out) {
             break; /* to rounding */
         }
         last = residual;
-        copy(&q, s->u, q.start);
-        accelerate(&q, q.internal, false);
+        rg_statics_copy(&q.on, s->u, q.start);
+        rg_statics_accelerate(&q.on, q.internal, false);
         solve(&q, fmax(1e-4 * residual, 0.1 * tolerance() * scale));
         scale = loads;
         residual = step(&q, residual, &scale);
@@ -333,7 +229,7 @@ rg_equilibrium rg_equilibrium_find(rg_solver *s, FILE *out) {
     if (!(residual <= rounding() * scale)) {
         refuse(&q, RG_FAILURE, "no equilibrium found");
     }
-    rg_equilibrium found = {.residual = scale > 0 ? residual / scale : 0, .passes = q.passes};
+    rg_equilibrium found = {.residual = scale > 0 ? residual / scale : 0, .passes = q.on.passes};
     end(&q);
     rg_limits_refuse(s, "start: static");
     rg_solver_settle(s);
@@ -346,14 +242,14 @@ double rg_equilibrium_of_stress(rg_solver *s, FILE *out) {
         rg_limits_refuse(s, "initial.stress");
     }
     double loads = 0, scale = s->initial_stress.scale;
-    copy(&q, s->u, q.start);
+    rg_statics_copy(&q.on, s->u, q.start);
     rg_constraints_place(s->constraints, s->u); /* which the first step does */
     double residual = find_residual(&q, &loads), share = scale > 0 ? residual / scale : 0;
     if (out != NULL && s->rank == 0) {
         fprintf(out, "initial stress %.2g of it is not in balance at the start\n", share);
         fflush(out);
     }
-    copy(&q, q.start, s->u);
+    rg_statics_copy(&q.on, q.start, s->u);
     end(&q);
     return share;
 }

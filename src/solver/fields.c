@@ -88,6 +88,9 @@ void rg_state_of_solver(rg_state *st, rg_solver *s) {
     if (rg_case_opens(s->input)) {
         rg_state_add(st, "openings", RG_OF_RUN, RG_STATE_DOUBLE, 2, &s->openings.until);
     }
+    if (s->input->start == RG_START_RELAX) {
+        rg_state_add(st, "relaxed", RG_OF_RUN, RG_STATE_DOUBLE, 2, &s->relaxed.heat);
+    }
     rg_state_add(st, "omega2", RG_OF_RUN, RG_STATE_DOUBLE, 1, &s->omega2);
     rg_state_add(st, "limiting", RG_OF_RUN, RG_STATE_INT64, 1, &s->limiting);
     rg_state_add(st, "damping", RG_OF_RUN, RG_STATE_DOUBLE, 1, &s->damping);

@@ -44,6 +44,11 @@ typedef struct {
     double released; /* energy that was set free (J) */
 } rg_openings;
 
+/* Of a start by damping: what that took, and the work of loads and supports (J). */
+typedef struct {
+    double heat, work;
+} rg_relaxed;
+
 typedef struct rg_solver rg_solver;
 typedef struct rg_stepper rg_stepper;
 
@@ -96,6 +101,7 @@ struct rg_solver {
         double largest;         /* component (Pa) */
         double scale;           /* about the norm, in that of M^-1, of its forces on loose elements */
     } initial_stress;           /* as the case gives it; 0 after a restart, which needs it no more */
+    rg_relaxed relaxed;         /* on the way to the start (solver/relax.h) */
     rg_openings openings;       /* of faces that open at a time (solver/opening.h) */
     double opening_rate;        /* largest on all ranks (1/s) */
     double stiffening_anywhere; /* largest on all ranks; infinite if not finite */

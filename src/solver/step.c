@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/interrupt.h"
+#include "base/mem.h"
 #include "partition/material.h"
 #include "solver/ahead.h"
 #include "solver/exposure.h"
@@ -155,6 +156,7 @@ static void element_sweep(rg_solver *s, size_t tile, const rg_workspace *w, cons
     } else if (p->load) {
         rg_loads_find(s->loads, tile, s);
         rg_loads_push(s->loads, tile, &(rg_push){p->dt, 0, p->velocity, NULL});
+        rg_bodies_touch(s->bodies, tile, s->u, &(rg_push){p->dt, 0, p->velocity, NULL}, s->body_clear);
     }
     s->tile_stiffening[tile] = largest(bulk.stiffening, blocks * RG_LANES);
 }
@@ -496,6 +498,30 @@ void rg_solver_acceleration(rg_solver *s, rg_real *acceleration, bool loaded) {
     }
     publish(s);
     evaluate(s, &(impulse){.velocity = acceleration, .dt = 1, .hold = true, .load = true});
+    rg_bodies_forget(s->bodies);
+}
+
+void rg_solver_loads(rg_solver *s, rg_real *acceleration) {
+    size_t values = s->domain->blocks * RG_NODE_BLOCK;
+    rg_real *springs = RG_NEW(rg_real, values + 1);
+    memset(acceleration, 0, values * sizeof *acceleration);
+    for (int k = 0; k < 2; k++) {
+        if (k == 0) {
+            rg_loads_set(s->loads, 0, 0, 0);
+        } else {
+            rg_loads_set_springs(s->loads);
+        }
+#pragma omp parallel for schedule(static)
+        for (size_t t = 0; t < s->domain->tiles; t++) {
+            rg_loads_find(s->loads, t, s);
+            rg_loads_push(s->loads, t, &(rg_push){1, 0, k == 0 ? acceleration : springs, NULL});
+        }
+    }
+#pragma omp parallel for schedule(static)
+    for (size_t i = 0; i < values; i++) {
+        acceleration[i] -= springs[i];
+    }
+    rg_free(springs);
 }
 
 void rg_solver_flow(rg_solver *s) {

@@ -31,9 +31,13 @@ void rg_solver_step(rg_solver *s, double dt);
  * the spectrum. Collective. */
 void rg_solver_impulse(rg_solver *s, rg_real *velocity, double dt);
 
-/* M^-1 (all forces of u) of faces that cannot break yet, with the loads of t = 0 or those of foundations
- * alone, and no constraints: for equilibria. The state stays. Collective. */
+/* M^-1 (all forces of u) of faces that cannot break yet, with bodies where they are, with the loads of t = 0
+ * or those of foundations alone, and no constraints: for equilibria. The state stays. Collective. */
 void rg_solver_acceleration(rg_solver *s, rg_real *acceleration, bool loaded);
+
+/* M^-1 (loads of t = 0 at the present displacement) but for foundations, of elements that do not know that
+ * they share nodes. */
+void rg_solver_loads(rg_solver *s, rg_real *acceleration);
 
 /* The histories go on by a step to the present displacement, for which the materials of the stepper are
  * ready, and nothing else does. Collective. */

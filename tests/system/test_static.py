@@ -109,6 +109,100 @@ def test_the_same_bits_on_any_layout_and_through_a_restart(run, bar, form):
     assert f'"state_hash": "{hash_of_all}"' in (shorter.dir / "summary.json").read_text()
 
 
+# ---- Rest by damping ----
+
+
+@pytest.mark.parametrize("form", ["variational", "continuous"])
+def test_damping_comes_to_the_same_rest(run, figure, bar, form):
+    """As the equilibrium that is solved for; half of the work of a load that is there at once becomes heat."""
+    law = {"law": "none", "form": form, **({"beta_s": 2} if form == "variational" else {})}
+    sets = {"interface": law, "loads": [{"name": "pull", "set": "z+", "traction": {"z": 1e6}}], "material.poisson": 0.3, "time.steps": 100}
+    solved, damped = (run(bar, sets={**sets, "start": start}) for start in ("static", "relax"))
+    work = 1e6**2 / 70e9 * 0.5e-9
+    row, first = damped.history[0], solved.history[0]
+    figure(f"relaxed bar, form {form}: displacement of its end", row["end_uz"], theory=first["end_uz"], bound=rounding(3e-6, 3e-4), relative=True, why="the tolerance of the damping")
+    figure(f"relaxed bar, form {form}: work of the load", damped.energy["external_work"][0], theory=work, bound=rounding(3e-6, 3e-4), unit="J", relative=True, why="the tolerance of the damping")
+    figure(f"relaxed bar, form {form}: heat", damped.energy["relaxed"][0], theory=work / 2, bound=rounding(1e-10, 1e-5), unit="J", relative=True, why="of second order in the residual")
+    figure(f"relaxed bar, form {form}: stored energy and heat less work, over work", damped.energy["total"][0] / work, bound=rounding(3e-13, 1e-5), why="rounding in some thousand steps")
+    assert damped.summary["static_residual"] <= rounding(1e-6, 1e-4) and damped.summary["relax_heat_J"] == pytest.approx(damped.energy["relaxed"][-1], rel=1e-12)
+    assert np.ptp(damped.energy["relaxed"]) == 0 and damped.energy["kinetic"].max() < rounding(1e-10, 1e-6) * damped.energy["bulk"][0]
+    assert damped.history["pull_work"][0] == 0 and row["time"] == 0
+
+
+def test_damping_with_a_prescribed_end(run, figure, bar):
+    stretch = {"name": "pull", "set": "z+", "component": "z", "displacement": 1e-6}
+    done = run(bar, sets={"start": "relax", "boundary": [*SIDES, stretch], "loads": [], "material.poisson": 0.3, "time.steps": 50})
+    stored = 70e9 * 5e-4**2 / 2 * 0.5e-9
+    figure("relaxed stretched bar: stored energy", done.energy["bulk"][0], theory=stored, bound=rounding(1e-7, 1e-5), unit="J", relative=True, why="the tolerance of the damping")
+    figure("relaxed stretched bar: stored energy and heat less work, over work", done.energy["total"][0] / done.energy["external_work"][0], bound=rounding(3e-12, 1e-4), why="rounding in some thousand steps")
+
+
+def test_a_free_body_sheds_a_stress_that_nothing_balances(run, figure, bar):
+    """All that it stored becomes heat; a search for an equilibrium would refuse it, as it is not held."""
+    done = run(bar, sets={"start": "relax", "relax.tolerance": 1e-3, "loads": [], "boundary": [], "initial.stress": {"zz": 1e6}, "time.steps": 50, "interface": {"law": "none", "penalty": "isotropic"},
+                          "material": {"model": "neo-hookean", "young": 70e9, "poisson": 0.3, "density": 2700}})
+    stored = 1e12 / (2 * 70e9) * 0.5e-9
+    figure("free body under stress: heat", done.energy["relaxed"][0], theory=stored, bound=rounding(1e-4, 1e-3), unit="J", relative=True, why="the stress turns and stretches with strains of 1.4e-5")
+    assert abs(done.history["end_szz"][0]) < 1e4 and done.energy["bulk"][0] < 1e-3 * stored
+
+
+STOP = {"name": "stop", "shape": "plane", "motion": "prescribed", "at": [0, 0, 2.001e-3], "normal": [0, 0, -1]}
+
+
+@pytest.mark.parametrize("start", ["static", "relax"])
+def test_a_bar_comes_to_rest_on_a_stop(run, figure, bar, start):
+    """Pulled against it by twice and more of what closes the gap."""
+    pull, gap = 1e8, 1e-6
+    done = run(bar, sets={"start": start, "loads": [{"set": "z+", "traction": {"z": pull}}], "bodies": [STOP], "time.steps": 50, "output.interval": 10})
+    row = done.history[0]
+    depth = row["end_uz"] - gap
+    figure(f"bar on a stop, start {start}: force on it and on the support, over the load", (row["stop_fz"] - row["hold_force_z"]) / (pull * 0.25e-6), theory=1, bound=rounding(1e-6, 1e-3),
+           why="the residual at which the search ends")
+    figure(f"bar on a stop, start {start}: force on the support", -row["hold_force_z"], theory=70e9 * row["end_uz"] / 2e-3 * 0.25e-6, bound=0.001, unit="N", relative=True)
+    assert 0 < depth < 0.1e-6 and done.energy["contact"][0] > 0 and done.energy["kinetic"].max() < rounding(1e-10, 1e-4) * done.energy["bulk"][0]
+
+
+def test_a_block_comes_to_rest_on_the_floor(run, figure, bar):
+    """Held by nothing else."""
+    done = run(bar, ranks=2, sets={"start": "relax", "mesh": {"cells": [4, 4, 4], "size": [1e-3, 1e-3, 1e-3], "jitter": 0.1}, "material.poisson": 0.3, "boundary": [], "loads": [{"acceleration": {"z": -1e6}}],
+                                   "bodies": [{**STOP, "name": "floor", "at": [0, 0, 0], "normal": [0, 0, 1]}], "output.probes": [], "time.steps": 50})
+    figure("block on the floor: its weight", -done.history["floor_fz"][0], theory=2700 * 1e-9 * 1e6, bound=rounding(3e-6, 3e-3), unit="N", relative=True, why="the tolerance of the damping")
+    figure("block on the floor: stored energy and heat less work, over work", done.energy["total"][0] / done.energy["external_work"][0], bound=rounding(1e-8, 1e-3), why="its contact comes and goes")
+    assert done.energy["kinetic"].max() < rounding(1e-9, 1e-4) * done.energy["bulk"][0]
+
+
+def test_a_start_with_contact_of_all_faces_is_the_same(run, bar):
+    """Nothing touches: parts that came to lie in each other would be refused (contact.model general)."""
+    law = {"law": "linear", "strength": 1e8, "energy": 30, "contact": "potential", "beta_s": 2}
+    sets = {"interface": law, "loads": [{"set": "z+", "traction": {"z": 1e6}}], "time.steps": 20, "output.interval": 10}
+    one, other = (run(bar, sets={**sets, "contact.model": model}) for model in ("interfaces", "general"))
+    assert one.history["end_uz"][0] == other.history["end_uz"][0] and one.summary["static_residual"] == other.summary["static_residual"]
+    assert other.energy["contact"].max() == 0 and other.energy["kinetic"].max() < rounding(1e-12, 1e-6) * other.energy["bulk"][0]
+
+
+def test_damping_has_the_same_bits_anywhere_and_in_a_restart(run, bar):
+    """On six tiles, of two solids, against a stop, with a stress and loads that follow the surface."""
+    sets = {**EVERYTHING, "mesh": LARGE["mesh"], "start": "relax", "relax": {"tolerance": 2e-2, "steps": 5000}, "bodies": [{**STOP, "at": [0, 0, 2.00003e-3]}],
+            "boundary": [*CLAMP, {"where": "nx < -0.5 && z > 1e-3", "normal": 0}],
+            "initial": {"velocity": {"z": "3*z/2e-3"}, "stress": {"xx": 1e6}}, "checkpoint.steps": 20}
+    one = run(bar, sets=sets)
+    for ranks, threads in ((1, 2), (3, 1)):
+        other = run(bar, ranks=ranks, threads=threads, sets=sets)
+        for key in ("state_hash", "static_residual", "static_passes", "relax_heat_J", "relax_work_J"):
+            assert one.summary[key] == other.summary[key], key
+        assert (one.dir / "energy.csv").read_bytes() == (other.dir / "energy.csv").read_bytes()
+    shorter = run(bar, ranks=2, sets={**sets, "time.steps": 25})
+    again = launch("run", "--restart", shorter.dir, "-q", "--set", "time.steps=40", ranks=3)
+    assert again.returncode == 0, again.stderr
+    assert f'"state_hash": "{one.summary["state_hash"]}"' in (shorter.dir / "summary.json").read_text()
+    assert (shorter.dir / "energy.csv").read_text().splitlines()[-1] == (one.dir / "energy.csv").read_text().splitlines()[-1]
+
+
+def test_check_tells_of_damping(bar):
+    told = launch("check", bar, "--set", "start=relax").stdout
+    assert "start          relax: damping brings the body to rest first, to 1e-06 of the loads in at most 200000 steps\n" in told
+
+
 # ---- Solids with limits, relaxation or axes ----
 
 DOUBLE = pytest.mark.skipif(SINGLE, reason="of double precision")
@@ -262,10 +356,11 @@ def test_a_run_without_stress_is_refused(run, bar):
      "start: static: needs form variational or continuous, whose forces have a potential without a history"),
     pytest.param({"material": {"model": "j2", "young": 70e9, "poisson": 0.3, "density": 2700, "yield_stress": 1e8}, "loads": [{"set": "z+", "traction": {"z": 1.01e8}}]}, 2,
                  "start: static: beyond the limit of what flows in element 0 at (0, 0, 0): how it flowed on the way would matter", marks=DOUBLE),
-    ({"bodies": [{"name": "b", "shape": "plane", "motion": "prescribed", "at": [0, 0, 1], "normal": [0, 0, -1]}]}, 2,
-     "start: static: cannot be found with bodies, which the solid might touch on the way"),
-    ({"contact.model": "general", "interface.contact": "potential", "interface.law": "linear", "interface.strength": 1e8, "interface.energy": 30}, 2,
-     "start: static: cannot be found with contact.model general, by which fragments might meet on the way"),
+    ({"bodies": [{"name": "b", "shape": "plane", "motion": "free", "mass": 1, "at": [0, 0, 1], "normal": [0, 0, -1]}]}, 2,
+     "start: static: not with bodies that are free or tied: they would have to come to rest with the solid"),
+    ({"relax.steps": 3}, 2, "relax.steps: 3: not used, because start is not relax"),
+    ({"start": "relax", "loads": [{"set": "z+", "traction": {"z": 1e6}}], "relax.steps": 3}, 1, "start: relax: the residual is "),
+    ({"start": "relax", "boundary": [], "loads": [{"set": "z+", "traction": {"z": 1e6}}], "relax.steps": 300}, 1, "steps, more than relax.tolerance: more relax.steps, or the loads do not balance"),
     ({"loads": [{"set": "z+", "traction": {"z": -9e10}}], "material.poisson": 0.2, "boundary": CLAMP, "material.model": "neo-hookean"}, 1, "start: static: no ")])
 def test_static_starts_that_are_refused(bar, tmp_path, change, status, message):
     from conftest import overrides

@@ -18,7 +18,7 @@
 #define BLOCKS                                                                                               \
     "allowed: defaults, tables, mesh, material, materials, interface, contact, viscosity, temperature, "     \
     "mass, initial, "                                                                                        \
-    "start, "                                                                                                \
+    "start, relax, "                                                                                         \
     "boundary, "                                                                                             \
     "loads, "                                                                                                \
     "bodies, time, output, checkpoint"

@@ -500,7 +500,7 @@ static const mistake materials[] = {
      ":20:1: x: unknown key; allowed: defaults, tables, mesh, material, materials, interface, contact, "
      "viscosity, temperature, "
      "mass, "
-     "initial, start, "
+     "initial, start, relax, "
      "boundary, loads, bodies, time, output, checkpoint\n"},
     {"  model: neo-hookean\n",
      "  model: jelly\n"

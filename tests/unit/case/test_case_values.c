@@ -223,7 +223,7 @@ static const mistake keys[] = {
      "mesh:\n",
      ":1:1: unknown key; allowed: defaults, tables, mesh, material, materials, interface, contact, "
      "viscosity, temperature, mass, "
-     "initial, start, "
+     "initial, start, relax, "
      "boundary, loads, bodies, time, output, checkpoint\n"
      ":2:3: a key must be a single word\n"},
     {"mesh:\n",

@@ -1,0 +1,119 @@
+#include "solver/statics.h"
+
+#include <math.h>
+#include <omp.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "domain/element.h"
+#include "solver/step.h"
+
+rg_statics rg_statics_make(rg_solver *s) {
+    rg_statics q = {.solver = s, .length = s->domain->blocks * RG_NODE_BLOCK};
+    q.force = rg_statics_field(&q);
+    for (int i = 0; i < RG_NODES * RG_NODES; i++) {
+        q.mass[i / RG_NODES][i % RG_NODES] = rg_mass_entry(s->input->mass, i / RG_NODES, i % RG_NODES);
+    }
+    q.sum = RG_NEW(rg_exact_sum, (size_t)s->threads);
+    return q;
+}
+
+rg_real *rg_statics_field(const rg_statics *q) {
+    return RG_NEW(rg_real, q->length + 1);
+}
+
+void rg_statics_free(rg_statics *q) {
+    rg_free(q->force);
+    rg_free(q->sum);
+}
+
+void rg_statics_copy(const rg_statics *q, const rg_real *from, rg_real *to) {
+#pragma omp parallel for schedule(static)
+    for (size_t i = 0; i < q->length; i++) {
+        to[i] = from[i];
+    }
+}
+
+void rg_statics_add(const rg_statics *q, double scale, const rg_real *from, double factor, rg_real *to) {
+#pragma omp parallel for schedule(static)
+    for (size_t i = 0; i < q->length; i++) {
+        to[i] = (rg_real)(factor * to[i] + scale * from[i]);
+    }
+}
+
+void rg_statics_hold(const rg_statics *q, rg_real *field) {
+#pragma omp parallel for schedule(static)
+    for (size_t t = 0; t < q->solver->domain->tiles; t++) {
+        rg_constraints_hold(q->solver->constraints, t, field);
+    }
+}
+
+void rg_statics_times_mass(const rg_statics *q, const rg_real *field, rg_real *out) {
+    const rg_domain *d = q->solver->domain;
+#pragma omp parallel for schedule(static)
+    for (size_t block = 0; block < d->blocks; block++) {
+        double mass[RG_LANES];
+        for (int l = 0; l < RG_LANES; l++) {
+            size_t slot = block * RG_LANES + (size_t)l;
+            mass[l] = d->id[slot] >= 0 ? rg_element_mass(d, q->solver->model->material, slot) : 0;
+        }
+        for (int a = 0; a < RG_NODES; a++) {
+            for (int c = 0; c < 3; c++) {
+                double sum[RG_LANES] = {0};
+                for (int b = 0; b < RG_NODES; b++) {
+                    const rg_real *v = field + rg_node_index(block * RG_LANES, b, c);
+                    for (int l = 0; l < RG_LANES; l++) {
+                        sum[l] += q->mass[a][b] * v[l];
+                    }
+                }
+                rg_real *to = out + rg_node_index(block * RG_LANES, a, c);
+                for (int l = 0; l < RG_LANES; l++) {
+                    to[l] = (rg_real)(mass[l] * sum[l]);
+                }
+            }
+        }
+    }
+}
+
+double rg_statics_dot(const rg_statics *q, const rg_real *a, const rg_real *b) {
+    const rg_domain *d = q->solver->domain;
+    memset(q->sum, 0, (size_t)q->solver->threads * sizeof *q->sum);
+#pragma omp parallel for schedule(static)
+    for (size_t block = 0; block < d->blocks; block++) {
+        double sum[RG_LANES] = {0};
+        for (size_t i = block * RG_NODE_BLOCK; i < (block + 1) * RG_NODE_BLOCK; i++) {
+            sum[i % RG_LANES] += (double)a[i] * b[i];
+        }
+        for (size_t l = 0; l < RG_LANES; l++) {
+            if (d->id[block * RG_LANES + l] >= 0) {
+                rg_exact_add(&q->sum[omp_get_thread_num()], sum[l]);
+            }
+        }
+    }
+    for (int t = 1; t < q->solver->threads; t++) {
+        rg_exact_merge(&q->sum[0], &q->sum[t]);
+    }
+    rg_exact_allreduce(&q->sum[0], 1, q->solver->comm);
+    return rg_exact_value(&q->sum[0]);
+}
+
+double rg_statics_largest(const rg_statics *q, const rg_real *field) {
+    double most = 0;
+#pragma omp parallel for schedule(static) reduction(max : most)
+    for (size_t i = 0; i < q->length; i++) {
+        double size = fabs((double)field[i]);
+        most = size > most ? size : most;
+    }
+    MPI_Allreduce(MPI_IN_PLACE, &most, 1, MPI_DOUBLE, MPI_MAX, q->solver->comm);
+    return most;
+}
+
+double rg_statics_norm(const rg_statics *q, const rg_real *field) {
+    rg_statics_times_mass(q, field, q->force);
+    return sqrt(rg_statics_dot(q, field, q->force));
+}
+
+void rg_statics_accelerate(rg_statics *q, rg_real *out, bool loaded) {
+    rg_solver_acceleration(q->solver, out, loaded);
+    q->passes++;
+}
