@@ -65,11 +65,37 @@ static rg_dp_cone cone_of(const rg_material *m) {
     };
 }
 
+/* The first x at which the dense solid bears so much; not a number if there is none up to 1. */
+static double dense_at(const double parameter[], double pressure) {
+    const double *k = parameter;
+    double step = 1e-3, low = 0, high = 0;
+    for (int n = 0; n < 1000 && high == 0; n++) {
+        double x = (n + 1) * step;
+        double p = (k[RG_PARAMETER_BULK_1] + (k[RG_PARAMETER_BULK_2] + k[RG_PARAMETER_BULK_3] * x) * x) * x;
+        *(p < pressure ? &low : &high) = x;
+    }
+    for (int n = 0; n < 60 && high > 0; n++) {
+        double x = 0.5 * (low + high);
+        double p = (k[RG_PARAMETER_BULK_1] + (k[RG_PARAMETER_BULK_2] + k[RG_PARAMETER_BULK_3] * x) * x) * x;
+        *(p < pressure ? &low : &high) = x;
+    }
+    return high > 0 ? high : NAN;
+}
+
+rg_hjc_pores rg_hjc_pores_of(const double parameter[], double bulk) {
+    double crush = parameter[RG_PARAMETER_CRUSH_PRESSURE], lock = parameter[RG_PARAMETER_LOCK_PRESSURE];
+    double strain = parameter[RG_PARAMETER_LOCK_STRAIN];
+    double range = strain + (1 + strain) * dense_at(parameter, lock) - crush / bulk;
+    return (rg_hjc_pores){crush / bulk, range, (lock - crush) / range};
+}
+
 void rg_material_prepare(rg_material *m, double dt) {
     m->dt = dt;
     if (m->model == RG_MATERIAL_DESHPANDE_EVANS) {
         m->of.deshpande_evans.constants = rg_de_prepare(&m->of.deshpande_evans.parameters, dt);
     } else if (m->model == RG_MATERIAL_DRUCKER_PRAGER) {
         m->of.drucker_prager.cone = cone_of(m);
+    } else if (m->model == RG_MATERIAL_HOLMQUIST_JOHNSON_COOK) {
+        m->of.holmquist_johnson_cook.pores = rg_hjc_pores_of(m->of.parameter, m->lambda + 2.0 / 3 * m->mu);
     }
 }

@@ -53,6 +53,16 @@ enum {
     RG_JH_HISTORY = 10,
 };
 
+/* History of a point of material/holmquist_johnson_cook.h. Zero is the virgin material. */
+enum {
+    RG_HJC_STRAIN = 0, /* accumulated equivalent plastic strain */
+    RG_HJC_DAMAGE = 1, /* D */
+    RG_HJC_CLOSED = 2, /* largest mu so far beyond mu_c, at most mu_m - mu_c */
+    RG_HJC_LAST = 3,   /* as RG_JH_LAST */
+    RG_HJC_FLOW = 4,   /* as RG_J2_FLOW */
+    RG_HJC_HISTORY = 10,
+};
+
 /* History of a point of material/drucker_prager.h. Zero is the virgin material. */
 enum {
     RG_DP_STRAIN = 0, /* accumulated equivalent plastic strain */
@@ -98,6 +108,9 @@ enum {
     X(johnson_holmquist, JOHNSON_HOLMQUIST, "johnson-holmquist-2",                                           \
       "a ceramic or glass that is crushed, under high pressure too", RG_JH_HISTORY,                          \
       RG_TAKES_YOUNG | RG_HAS_DAMAGE | RG_HAS_PLASTIC | RG_HAS_BULKING)                                      \
+    X(holmquist_johnson_cook, HOLMQUIST_JOHNSON_COOK, "holmquist-johnson-cook",                              \
+      "concrete: pores that close under pressure, strength by pressure, damage and rate", RG_HJC_HISTORY,    \
+      RG_TAKES_YOUNG | RG_HAS_DAMAGE | RG_HAS_PLASTIC | RG_HAS_VOLUME)                                       \
     X(drucker_prager, DRUCKER_PRAGER, "drucker-prager",                                                      \
       "rock, soil or concrete: strength by pressure, with a cap and a tension cut-off", RG_DP_HISTORY,       \
       RG_TAKES_YOUNG | RG_HAS_PLASTIC | RG_HAS_VOLUME)                                                       \
@@ -169,10 +182,12 @@ typedef enum {
     X(HARDENING_POWER, "hardening_power", NULL, RG_NEEDED, RG_MATERIAL_BIT_JOHNSON_COOK,                     \
       "n: hardening goes with the plastic strain to this power")                                             \
     X(RATE_SENSITIVITY, "rate_sensitivity", NULL, RG_FROM_0,                                                 \
-      RG_MATERIAL_BIT_JOHNSON_COOK | RG_MATERIAL_BIT_JOHNSON_HOLMQUIST,                                      \
+      RG_MATERIAL_BIT_JOHNSON_COOK | RG_MATERIAL_BIT_JOHNSON_HOLMQUIST |                                     \
+          RG_MATERIAL_BIT_HOLMQUIST_JOHNSON_COOK,                                                            \
       "C: by so much strength grows per e-fold of the strain rate beyond reference_rate")                    \
     X(REFERENCE_RATE, "reference_rate", "1/s", RG_NEEDED,                                                    \
-      RG_MATERIAL_BIT_JOHNSON_COOK | RG_MATERIAL_BIT_JOHNSON_HOLMQUIST,                                      \
+      RG_MATERIAL_BIT_JOHNSON_COOK | RG_MATERIAL_BIT_JOHNSON_HOLMQUIST |                                     \
+          RG_MATERIAL_BIT_HOLMQUIST_JOHNSON_COOK,                                                            \
       "strain rate up to which strength is the quasi-static one, as a rule 1")                               \
     X(SOFTENING_POWER, "softening_power", NULL, RG_FROM_0, RG_MATERIAL_BIT_JOHNSON_COOK,                     \
       "m of the loss of strength on the way to the melting temperature; 0: heat softens nothing")            \
@@ -193,22 +208,46 @@ typedef enum {
     X(INTACT_STRENGTH, "intact_strength", NULL, RG_NEEDED, RG_MATERIAL_BIT_JOHNSON_HOLMQUIST,                \
       "A of the intact solid's strength, A (P* + T*)^N")                                                     \
     X(INTACT_POWER, "intact_power", NULL, RG_NEEDED, RG_MATERIAL_BIT_JOHNSON_HOLMQUIST, "N of it")           \
-    X(CRUSHED_STRENGTH, "crushed_strength", NULL, RG_FROM_0, RG_MATERIAL_BIT_JOHNSON_HOLMQUIST,              \
-      "B of the crushed solid's strength, B P*^M")                                                           \
-    X(CRUSHED_POWER, "crushed_power", NULL, RG_FROM_0, RG_MATERIAL_BIT_JOHNSON_HOLMQUIST, "M of it")         \
+    X(CRUSHED_STRENGTH, "crushed_strength", NULL, RG_FROM_0,                                                 \
+      RG_MATERIAL_BIT_JOHNSON_HOLMQUIST | RG_MATERIAL_BIT_HOLMQUIST_JOHNSON_COOK,                            \
+      "B of the crushed solid's strength, B P*^M; of concrete B P*^N in units of its compressive_strength")  \
+    X(CRUSHED_POWER, "crushed_power", NULL, RG_FROM_0,                                                       \
+      RG_MATERIAL_BIT_JOHNSON_HOLMQUIST | RG_MATERIAL_BIT_HOLMQUIST_JOHNSON_COOK, "M of it, N of concrete")  \
     X(CRUSHED_LIMIT, "crushed_limit", NULL, RG_FROM_0, RG_MATERIAL_BIT_JOHNSON_HOLMQUIST,                    \
       "most that B P*^M comes to; 0: no limit")                                                              \
-    X(TENSILE_LIMIT, "tensile_limit", "Pa", RG_NEEDED, RG_MATERIAL_BIT_JOHNSON_HOLMQUIST,                    \
+    X(TENSILE_LIMIT, "tensile_limit", "Pa", RG_NEEDED,                                                       \
+      RG_MATERIAL_BIT_JOHNSON_HOLMQUIST | RG_MATERIAL_BIT_HOLMQUIST_JOHNSON_COOK,                            \
       "T: hydrostatic tension that the intact solid bears")                                                  \
-    X(FAILURE_STRAIN, "failure_strain", NULL, RG_FROM_0, RG_MATERIAL_BIT_JOHNSON_HOLMQUIST,                  \
+    X(FAILURE_STRAIN, "failure_strain", NULL, RG_FROM_0,                                                     \
+      RG_MATERIAL_BIT_JOHNSON_HOLMQUIST | RG_MATERIAL_BIT_HOLMQUIST_JOHNSON_COOK,                            \
       "D1 of the plastic strain to fracture, D1 (P* + T*)^D2; 0: at once")                                   \
-    X(FAILURE_POWER, "failure_power", NULL, RG_FROM_0, RG_MATERIAL_BIT_JOHNSON_HOLMQUIST, "D2 of it")        \
-    X(BULK_2, "bulk_2", "Pa", RG_ANY_SIGN, RG_MATERIAL_BIT_JOHNSON_HOLMQUIST,                                \
+    X(FAILURE_POWER, "failure_power", NULL, RG_FROM_0,                                                       \
+      RG_MATERIAL_BIT_JOHNSON_HOLMQUIST | RG_MATERIAL_BIT_HOLMQUIST_JOHNSON_COOK, "D2 of it")                \
+    X(BULK_2, "bulk_2", "Pa", RG_ANY_SIGN,                                                                   \
+      RG_MATERIAL_BIT_JOHNSON_HOLMQUIST | RG_MATERIAL_BIT_HOLMQUIST_JOHNSON_COOK,                            \
       "K2 of the pressure, K1 mu + K2 mu^2 + K3 mu^3 with mu the change of density over that to begin "      \
-      "with; K1 follows from young and poisson")                                                             \
-    X(BULK_3, "bulk_3", "Pa", RG_ANY_SIGN, RG_MATERIAL_BIT_JOHNSON_HOLMQUIST, "K3 of it")                    \
+      "with; K1 follows from young and poisson; of concrete without pores, with bulk_1")                     \
+    X(BULK_3, "bulk_3", "Pa", RG_ANY_SIGN,                                                                   \
+      RG_MATERIAL_BIT_JOHNSON_HOLMQUIST | RG_MATERIAL_BIT_HOLMQUIST_JOHNSON_COOK, "K3 of it")                \
     X(BULKING, "bulking", NULL, RG_FROM_0, RG_MATERIAL_BIT_JOHNSON_HOLMQUIST,                                \
       "beta: share of the elastic energy lost by damage that raises the pressure, at most 1")                \
+    X(COMPRESSIVE_STRENGTH, "compressive_strength", "Pa", RG_NEEDED, RG_MATERIAL_BIT_HOLMQUIST_JOHNSON_COOK, \
+      "f_c: quasi-static strength without pressure across; the unit of pressures and strengths")             \
+    X(COHESIVE_STRENGTH, "cohesive_strength", NULL, RG_NEEDED, RG_MATERIAL_BIT_HOLMQUIST_JOHNSON_COOK,       \
+      "A of the strength A (1 - D) + B P*^N; under tension it falls to 0 at -tensile_limit (1 - D)")         \
+    X(STRENGTH_LIMIT, "strength_limit", NULL, RG_FROM_0, RG_MATERIAL_BIT_HOLMQUIST_JOHNSON_COOK,             \
+      "S_max: most that the strength comes to; 0: no limit")                                                 \
+    X(LEAST_FAILURE_STRAIN, "least_failure_strain", NULL, RG_FROM_0, RG_MATERIAL_BIT_HOLMQUIST_JOHNSON_COOK, \
+      "least plastic strain to fracture")                                                                    \
+    X(CRUSH_PRESSURE, "crush_pressure", "Pa", RG_NEEDED, RG_MATERIAL_BIT_HOLMQUIST_JOHNSON_COOK,             \
+      "P_crush: at which pores begin to close, up to which the solid is elastic")                            \
+    X(LOCK_PRESSURE, "lock_pressure", "Pa", RG_NEEDED, RG_MATERIAL_BIT_HOLMQUIST_JOHNSON_COOK,               \
+      "P_lock: at which all have closed")                                                                    \
+    X(LOCK_STRAIN, "lock_strain", NULL, RG_NEEDED, RG_MATERIAL_BIT_HOLMQUIST_JOHNSON_COOK,                   \
+      "mu_lock: change of density over that to begin with of the solid without pores, at no pressure")       \
+    X(BULK_1, "bulk_1", "Pa", RG_NEEDED, RG_MATERIAL_BIT_HOLMQUIST_JOHNSON_COOK,                             \
+      "K1 of its pressure, K1 x + K2 x^2 + K3 x^3 with x = (mu - mu_lock)/(1 + mu_lock); not below the "     \
+      "bulk modulus of young and poisson")                                                                   \
     X(COHESION, "cohesion", "Pa", RG_NEEDED, RG_MATERIAL_BIT_DRUCKER_PRAGER,                                 \
       "c: with friction_angle, of the Mohr-Coulomb solid that is as strong under compression")               \
     X(FRICTION_ANGLE, "friction_angle", "degrees", RG_FROM_0, RG_MATERIAL_BIT_DRUCKER_PRAGER,                \
@@ -262,6 +301,11 @@ typedef struct {
     double strength, slope, dilation, excess;
 } rg_dp_cone;
 
+/* The pores of material/holmquist_johnson_cook.h: mu_c, mu_m - mu_c, K_t (Pa). */
+typedef struct {
+    double crush, range, rise;
+} rg_hjc_pores;
+
 enum { RG_USER_PARAMETERS = 32 }; /* at most, of a material of the user's */
 
 /* Such a material: its library, and its parameters in the order in which that declares them. */
@@ -286,6 +330,10 @@ typedef struct {
             double given[RG_PARAMETERS]; /* the same */
             rg_dp_cone cone;             /* of these, by rg_material_prepare */
         } drucker_prager;
+        struct {
+            double given[RG_PARAMETERS]; /* the same */
+            rg_hjc_pores pores;          /* of these, by rg_material_prepare */
+        } holmquist_johnson_cook;
     } of;
 } rg_material;
 
@@ -310,5 +358,9 @@ void rg_material_prepare(rg_material *m, double dt);
 
 /* Von Mises stress that Drucker and Prager's solid bears without pressure (Pa), of its parameters. */
 double rg_dp_strength(const double parameter[]);
+
+/* Pores of the Holmquist-Johnson-Cook concrete of these parameters and the elastic bulk modulus (Pa); `range`
+ * is not a number where the dense solid does not come to its lock_pressure before it is pressed to half. */
+rg_hjc_pores rg_hjc_pores_of(const double parameter[], double bulk);
 
 #endif

@@ -1,4 +1,5 @@
 /* Rules of the case file that the materials make. */
+#include <math.h>
 #include <stdarg.h>
 #include <string.h>
 
@@ -63,6 +64,7 @@ static const int pairs[][2] = {
 static const int orders[][2] = {
     {RG_PARAMETER_ROOM_TEMPERATURE, RG_PARAMETER_MELTING_TEMPERATURE},
     {RG_PARAMETER_HUGONIOT_PRESSURE, RG_PARAMETER_HUGONIOT_LIMIT},
+    {RG_PARAMETER_CRUSH_PRESSURE, RG_PARAMETER_LOCK_PRESSURE},
 };
 /* At most so much. */
 static const struct {
@@ -144,6 +146,37 @@ static void check_cone(rg_check *ck) {
     }
 }
 
+/* Pores close under more than crush_pressure, against less than the elastic solid bears, and leave one that
+ * is no softer: then no step of theirs gives energy back. */
+static void check_pores(rg_check *ck) {
+    const rg_material_check *m = &ck->material;
+    const double *given = m->of->parameter;
+    static const int needed[] = {RG_PARAMETER_CRUSH_PRESSURE, RG_PARAMETER_LOCK_PRESSURE,
+                                 RG_PARAMETER_LOCK_STRAIN, RG_PARAMETER_BULK_1};
+    double bulk = m->of->young / (3 - 6 * m->of->poisson);
+    bool good = m->of->model == RG_MATERIAL_HOLMQUIST_JOHNSON_COOK && bulk > 0;
+    for (size_t k = 0; k < sizeof needed / sizeof *needed; k++) {
+        good = good && m->given[needed[k]] != NULL && !m->bad[needed[k]];
+    }
+    if (!good || given[RG_PARAMETER_LOCK_PRESSURE] <= given[RG_PARAMETER_CRUSH_PRESSURE]) {
+        return;
+    }
+    const rg_node *stiff = m->given[RG_PARAMETER_BULK_1], *lock = m->given[RG_PARAMETER_LOCK_PRESSURE],
+                  *strain = m->given[RG_PARAMETER_LOCK_STRAIN];
+    rg_hjc_pores pores = rg_hjc_pores_of(given, bulk);
+    if (given[RG_PARAMETER_BULK_1] < bulk) {
+        wrong(ck, stiff->at, parameter_key[RG_PARAMETER_BULK_1], stiff->text,
+              "below the bulk modulus of the elastic solid, %.6g Pa", bulk);
+    } else if (isnan(pores.range)) {
+        wrong(ck, lock->at, parameter_key[RG_PARAMETER_LOCK_PRESSURE], lock->text,
+              "bulk_1, bulk_2 and bulk_3 do not come to it before the dense solid is pressed to half");
+    } else if (pores.range <= 0 || pores.rise > bulk) {
+        wrong(ck, strain->at, parameter_key[RG_PARAMETER_LOCK_STRAIN], strain->text,
+              "too small: the way from crush_pressure to lock_pressure would be stiffer than the elastic "
+              "solid");
+    }
+}
+
 /* Each term of Ogden's solid stiffens it; there is one. */
 static void check_ogden(rg_check *ck) {
     const rg_material_check *m = &ck->material;
@@ -187,6 +220,7 @@ void rg_parameters_rule(rg_check *ck) {
     }
     check_cone(ck);
     check_ogden(ck);
+    check_pores(ck);
 }
 
 void rg_flaw_rule(rg_check *ck) {

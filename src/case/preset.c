@@ -57,6 +57,18 @@ const rg_preset rg_preset_list[RG_PRESETS] = {
      "others, "
      "Comput. Methods Appl. Mech. Eng. 217 (2012) 77",
      "brittle failure below 20 to 30 m/s of impact, where no shear band forms"},
+    {"concrete-hjc", "concrete of 48 MPa that is crushed, by Holmquist, Johnson and Cook",
+     "{model: holmquist-johnson-cook, young: 34.0414e9, poisson: 0.145403, density: 2440, reference_rate: 1, "
+     "rate_sensitivity: 0.007, compressive_strength: 48e6, cohesive_strength: 0.79, crushed_strength: 1.6, "
+     "crushed_power: 0.61, strength_limit: 7, tensile_limit: 4e6, failure_strain: 0.04, failure_power: 1, "
+     "least_failure_strain: 0.01, crush_pressure: 16e6, lock_pressure: 0.8e9, lock_strain: 0.1, bulk_1: "
+     "85e9, "
+     "bulk_2: -171e9, bulk_3: 208e9}",
+     4e6, 65,
+     "T. J. Holmquist, G. R. Johnson & W. H. Cook, 14th Int. Symp. Ballistics (1993) 591, from memory; young "
+     "and "
+     "poisson from its G and K; energy of cracks: as concrete",
+     "impact and penetration, pressures up to 2 GPa; in tension cracks between elements break it first"},
     {"alumina-jh2", "alumina that is crushed, by Johnson and Holmquist",
      "{model: johnson-holmquist-2, young: 220e9, poisson: 0.22, density: 3700, reference_rate: 1, "
      "hugoniot_limit: 2.79e9, hugoniot_pressure: 1.46e9, intact_strength: 0.93, intact_power: 0.6, "

@@ -11,7 +11,7 @@ typedef struct {
     const char *source, *validity;
 } rg_preset;
 
-enum { RG_PRESETS = 17 };
+enum { RG_PRESETS = 18 };
 extern const rg_preset rg_preset_list[RG_PRESETS];
 
 /* The one of that name; NULL: none has it. */

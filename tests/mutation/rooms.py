@@ -8,7 +8,7 @@ import fnmatch
 ROOMS = {
     "kernels": (["kernels/*"],
                 """kernels mixed_mode interface tile_faces reference laws friction viscosity elastic j2 johnson_cook johnson_holmquist
-                   drucker_prager thermal prestress rise contact_twin crack_front ledger step_limiter spectrum tie probe sides coarse
+                   drucker_prager holmquist_johnson_cook thermal prestress rise contact_twin crack_front ledger step_limiter spectrum tie probe sides coarse
                    test_thermal.py test_user_materials.py viscoelastic bulk_history anisotropic contact deshpande_evans
                    deshpande_evans_kernel cost_model material step test_invariance.py test_contact.py test_friction.py test_viscosity.py
                    test_laws.py test_ceramic.py test_solids.py test_ledger.py test_crystals.py test_fragment_contact.py test_spall.py"""),

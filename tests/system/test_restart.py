@@ -138,7 +138,9 @@ if not SINGLE:  # solids whose history grows, heats and relaxes; copper flows at
                            "materials": [{"name": "glass", "where": "z > 5e-4", "preset": "float-glass-jh2", "density": 3000, "intact_strength": 0.05},
                                          {"name": "polymer", "where": "z < -5e-4", "preset": "pmma-viscoelastic", "young": 124e9, "density": 3000},
                                          {"name": "rock", "where": "z > 0 && z < 5e-4", "preset": "berea-sandstone", "young": 124e9, "density": 3000,
-                                          "cohesion": 100e6, "cap_pressure": 150e6, "cap_ratio": 0.3}]}
+                                          "cohesion": 100e6, "cap_pressure": 150e6, "cap_ratio": 0.3},
+                                         {"name": "concrete", "where": "z > -4e-4 && z < -1e-4", "preset": "concrete-hjc", "young": 124e9, "density": 3000,
+                                          "compressive_strength": 150e6}]}
 
 
 @pytest.mark.parametrize("variant", VARIANTS)

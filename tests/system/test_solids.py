@@ -5,7 +5,7 @@ import pytest
 import rhegma
 from conftest import CASES, SINGLE, example, launch, overrides, rounding
 from figures import ROUNDING
-from test_parallel import assert_same_bits
+from test_parallel import LAYOUTS, assert_same_bits
 
 PLASTIC = CASES / "plastic.yaml"
 YOUNG, POISSON, DENSITY, YIELD, HARDENING = 70e9, 0.3, 2700, 200e6, 5e9  # of that case
@@ -27,7 +27,9 @@ SOLIDS = {
                               {"name": "polymer", "where": "z < 1e-3", "preset": "pmma-viscoelastic", "young": 124e9,
                                "density": 3000},
                               {"name": "rock", "where": "z > 1.7e-3 && z < 2.2e-3", "preset": "berea-sandstone", "young": 124e9,
-                               "density": 3000, "cohesion": 100e6, "cap_pressure": 150e6, "cap_ratio": 0.3}]},
+                               "density": 3000, "cohesion": 100e6, "cap_pressure": 150e6, "cap_ratio": 0.3},
+                              {"name": "concrete", "where": "z > 1.3e-3 && z < 1.7e-3", "preset": "concrete-hjc", "young": 124e9,
+                               "density": 3000, "compressive_strength": 150e6}]},
 }
 EACH = [pytest.param(name, marks=[double_only] if name in ("metal", "flowing") else []) for name in SOLIDS]
 SHORT = {"mesh.cells": [2, 2, 20], "mesh.jitter": 0.1, "time.end": 0.35e-6, "initial.velocity.z": "-40*cos(pi*z/4e-3)",
@@ -35,7 +37,7 @@ SHORT = {"mesh.cells": [2, 2, 20], "mesh.jitter": 0.1, "time.end": 0.35e-6, "ini
          "output.probes": [{"name": "a", "at": [0.11e-3, 0.13e-3, 1.9e-3]}]}
 
 
-@pytest.mark.parametrize("ranks, threads", [(1, 2), (2, 1), (3, 1)])
+@pytest.mark.parametrize("ranks, threads", LAYOUTS)
 @pytest.mark.parametrize("solid", EACH)
 def test_a_torn_bar_is_the_same_on_any_layout(run, solid, ranks, threads):
     sets = {**SHORT, **SOLIDS[solid]}

@@ -6,7 +6,7 @@ import shutil
 import numpy as np
 import pytest
 from conftest import CASES, ROOT, SINGLE, example, launch, overrides
-from test_parallel import FRAGMENTS, assert_same_bits
+from test_parallel import FRAGMENTS, LAYOUTS, assert_same_bits
 from test_restart import go_on
 
 SOURCES = ROOT / "tests/inputs/user"
@@ -41,7 +41,7 @@ def user(library, **parameters):
     return {"material": {"model": "user", "library": str(library), **parameters}}
 
 
-@pytest.mark.parametrize("ranks, threads", [(1, 1), (2, 1), (1, 2)])
+@pytest.mark.parametrize("ranks, threads", [(1, 1), *LAYOUTS])
 def test_a_copy_of_a_solid_gives_its_bits(run, library, ranks, threads):
     """Beside one of the program's own: tiles of blocks of both."""
     more = {**FRAGMENTS, "materials": [{"name": "other", "where": "x > 0", "model": "st-venant-kirchhoff", **SOLID}]}
@@ -84,7 +84,7 @@ def user_law(library, **parameters):
             "interface.contact": "potential", "interface.friction": 0.3, "interface.beta_s": 2}
 
 
-@pytest.mark.parametrize("ranks, threads", [(1, 1), (2, 1), (1, 2)])
+@pytest.mark.parametrize("ranks, threads", [(1, 1), *LAYOUTS])
 def test_a_copy_of_a_law_gives_its_bits(run, library, ranks, threads):
     sets = {**FRAGMENTS, "time.end": 0.15e-6, "interface.sets": [{"where": "x > 0", "energy": 20, "strength": 3e8}]}
     mine = user_law(library("linear"))

@@ -550,6 +550,25 @@ static void test_laws_of_flow(void **state) {
                     ":5:11: material.compaction: not used without material.cap_pressure\n"
                     ":5:11: material.compaction_pressure: not used without material.cap_pressure\n"
                     "--set material.friction_angle=90: material.friction_angle: 90: more than 89\n");
+    write_changed(elastic, "material:\n  preset: concrete-hjc\n");
+    static const char *const flat[] = {"material.lock_pressure=10e6"},
+                             *const yielding[] = {"material.bulk_1=1e10"},
+                             *const stiff[] = {"material.lock_strain=1e-4"},
+                             *const beyond[] = {"material.bulk_2=-3e12"};
+    expect_messages(1, flat,
+                    "--set material.lock_pressure=10e6: material.lock_pressure: 10e6: not above "
+                    "material.crush_pressure, 1.6e+07\n");
+    expect_messages(
+        1, yielding,
+        "--set material.bulk_1=1e10: material.bulk_1: 1e10: below the bulk modulus of the elastic "
+        "solid, 1.9564e+10 Pa\n");
+    expect_messages(1, stiff,
+                    "--set material.lock_strain=1e-4: material.lock_strain: 1e-4: too small: the way from "
+                    "crush_pressure to lock_pressure would be stiffer than the elastic solid\n");
+    expect_messages(
+        1, beyond,
+        ":5:11: material.lock_pressure: 0.8e9: bulk_1, bulk_2 and bulk_3 do not come to it before "
+        "the dense solid is pressed to half\n");
     write_changed(elastic, "material:\n  preset: pmma-viscoelastic\n");
     static const char *const relaxed[] = {"material.shear_fraction_3=0.8", "material.bulk_fraction_1=0.1",
                                           "material.relaxation_time_1=0"};

@@ -49,7 +49,7 @@ static void test_refused(void **state) {
     (void)state;
 #define NAMES                                                                                                \
     "allowed: alumina-seagraves, alumina-ad995, silicon-carbide, boron-carbide, soda-lime-glass, pmma, "     \
-    "granite, concrete, maraging-steel, alumina-jh2, boron-carbide-jh2, silicon-carbide-jh2, "               \
+    "granite, concrete, maraging-steel, concrete-hjc, alumina-jh2, boron-carbide-jh2, silicon-carbide-jh2, " \
     "float-glass-jh2, steel-4340, copper-ofhc, berea-sandstone, pmma-viscoelastic"
     write_bytes(of_name, strlen(of_name));
     static const char *const near[] = {"material.preset=pma"};
@@ -121,6 +121,7 @@ static void test_cracks(void **state) {
                  {"granite", 1.28e7, 24},
                  {"concrete", 3.8e6, 65},
                  {"maraging-steel", 8.44e8, 22130},
+                 {"concrete-hjc", 4e6, 65},
                  {"alumina-jh2", 2.62e8, 52},
                  {"boron-carbide-jh2", 3.5e8, 13.2},
                  {"silicon-carbide-jh2", 2.5e8, 22.6},

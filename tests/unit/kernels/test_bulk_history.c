@@ -63,7 +63,8 @@ static size_t at(int f, size_t slot, size_t row) {
 
 /* Solids that flow. Of J2: linear hardening, one that saturates soon, none. Of Johnson and Cook: all of it,
  * and no more than hardening. Of Johnson and Holmquist: silicon carbide as published, all of it with a
- * pressure that stiffens and a strength that falls slowly, one that is crushed at once. Of Drucker and
+ * pressure that stiffens and a strength that falls slowly, one that is crushed at once. Of Holmquist,
+ * Johnson and Cook: all of it, and one that is brittle. Of Drucker and
  * Prager: all of it, and cohesion alone. And one that relaxes. */
 static const struct {
     rg_material_model model;
@@ -130,6 +131,33 @@ static const struct {
       [RG_PARAMETER_INTACT_POWER] = 0.6,
       [RG_PARAMETER_TENSILE_LIMIT] = 0.3e9,
       [RG_PARAMETER_BULKING] = 1}},
+    {RG_MATERIAL_HOLMQUIST_JOHNSON_COOK,
+     {[RG_PARAMETER_RATE_SENSITIVITY] = 0.007,
+      [RG_PARAMETER_REFERENCE_RATE] = 1,
+      [RG_PARAMETER_COMPRESSIVE_STRENGTH] = 1e9,
+      [RG_PARAMETER_COHESIVE_STRENGTH] = 0.79,
+      [RG_PARAMETER_CRUSHED_STRENGTH] = 1.6,
+      [RG_PARAMETER_CRUSHED_POWER] = 0.61,
+      [RG_PARAMETER_STRENGTH_LIMIT] = 2.2,
+      [RG_PARAMETER_TENSILE_LIMIT] = 1e9,
+      [RG_PARAMETER_FAILURE_STRAIN] = 0.01,
+      [RG_PARAMETER_FAILURE_POWER] = 1,
+      [RG_PARAMETER_LEAST_FAILURE_STRAIN] = 0.005,
+      [RG_PARAMETER_CRUSH_PRESSURE] = 0.4e9,
+      [RG_PARAMETER_LOCK_PRESSURE] = 2e9,
+      [RG_PARAMETER_LOCK_STRAIN] = 0.01,
+      [RG_PARAMETER_BULK_1] = 300e9,
+      [RG_PARAMETER_BULK_2] = -171e9,
+      [RG_PARAMETER_BULK_3] = 2080e9}},
+    {RG_MATERIAL_HOLMQUIST_JOHNSON_COOK,
+     {[RG_PARAMETER_REFERENCE_RATE] = 1,
+      [RG_PARAMETER_COMPRESSIVE_STRENGTH] = 4e9,
+      [RG_PARAMETER_COHESIVE_STRENGTH] = 1,
+      [RG_PARAMETER_TENSILE_LIMIT] = 2e9,
+      [RG_PARAMETER_CRUSH_PRESSURE] = 0.2e9,
+      [RG_PARAMETER_LOCK_PRESSURE] = 1e9,
+      [RG_PARAMETER_LOCK_STRAIN] = 0.02,
+      [RG_PARAMETER_BULK_1] = 250e9}},
     {RG_MATERIAL_DRUCKER_PRAGER,
      {[RG_PARAMETER_COHESION] = 0.4e9,
       [RG_PARAMETER_FRICTION_ANGLE] = 30,
@@ -183,6 +211,14 @@ static void make_crushed(dice *d, double *history) {
     history[RG_JH_LAST] = kind < 1 ? 0 : fmax(0, 2e-3 * dice_sign(d));
 }
 
+/* Of the concrete: a third of the points is virgin, of the others some are dense; some have just flowed. */
+static void make_porous(const rg_material *m, dice *d, double *history) {
+    double kind = 3 * dice_unit(d), closed = m->of.holmquist_johnson_cook.pores.range * dice_unit(d);
+    history[RG_HJC_DAMAGE] = kind < 1 ? 0 : kind > 2.5 ? 1 : dice_unit(d);
+    history[RG_HJC_CLOSED] = kind < 1 ? 0 : kind > 2 ? m->of.holmquist_johnson_cook.pores.range : closed;
+    history[RG_HJC_LAST] = kind < 1 ? 0 : fmax(0, 2e-3 * dice_sign(d));
+}
+
 /* Of Drucker and Prager's solid: half of the points have lost volume, the others have gained some. */
 static void make_compacted(dice *d, double *history) {
     double pressed = dice_sign(d), stress = dice_sign(d);
@@ -212,6 +248,8 @@ static void make_history(const input *in, double *history) {
                 past[RG_JC_RISE] = 1e4 * ep * (1 + dice_unit(&d)); /* some beyond the melting point */
             else if (model == RG_MATERIAL_JOHNSON_HOLMQUIST)
                 make_crushed(&d, past);
+            else if (model == RG_MATERIAL_HOLMQUIST_JOHNSON_COOK)
+                make_porous(&in->material, &d, past);
             else if (model == RG_MATERIAL_DRUCKER_PRAGER)
                 make_compacted(&d, past);
             past[strain] = ep;
