@@ -107,7 +107,7 @@ typedef struct rg_key_table {
     size_t size; /* of the structure that the keys fill */
 } rg_key_table;
 
-enum { RG_MAX_KEYS = 192 }; /* at most, in a table */
+enum { RG_MAX_KEYS = 256 }; /* at most, in a table */
 
 /* A key comes after the keys that decide whether its group is used. */
 extern const rg_key_table rg_case_table, rg_material_table, rg_boundary_table, rg_body_table, rg_probe_table,
