@@ -214,6 +214,7 @@ rg_equilibrium rg_equilibrium_find(rg_solver *s, FILE *out) {
     double stress = fmax(s->prestress != NULL ? s->initial_stress.scale : 0, rg_heating_scale(s));
     double loads = fmax(load_norm(&q), stress), scale = loads, residual = find_residual(&q, &scale),
            last = INFINITY;
+    loads = fmax(loads, RG_STATICS_FIRST * scale);
     for (int k = 0; k < NEWTON_STEPS && residual > tolerance() * scale; k++) {
         if (residual > 0.5 * last && residual < rounding() * scale) {
             break; /* to rounding */

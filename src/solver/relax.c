@@ -13,19 +13,28 @@
 /* What the precision of the fields leaves to be found. */
 #define SINGLE_TOLERANCE 1e-4
 
-/* Of the critical step. */
-#define SAFETY 0.9
+/* Of the critical step; once that is shorter than this share of it was, all begins anew. */
+#define SAFETY  0.9
+#define SHORTER 0.97
+
+/* Most that the damping takes of a velocity in a step, about. */
+#define MOST_DAMPING 1.0
+
+/* The residual is measured every so many steps. */
+enum { MEASURED = 10 };
 
 /* It is told again once the residual has fallen by this. */
 #define TOLD_AGAIN 0.1
 
 typedef struct {
     rg_statics on;
-    rg_real *acceleration, *velocity; /* at the present state, and half a step before it */
+    rg_real *acceleration, *velocity; /* at the present state, and half a step before it or after */
     rg_real *now;                     /* velocity at it */
     rg_real *load;                    /* M^-1 (loads but for foundations) at it */
-    double dt, kinetic;               /* s; J at the last state */
-    double loads, scale, residual;    /* norms: of the loads, with reactions, of what nothing balances */
+    rg_real *momentum;                /* M velocity */
+    double dt;                        /* s */
+    double inertia, power;            /* of the velocity: v.Mv (J), and v.Ma at the state before it (W) */
+    double loads, scale, residual;    /* norms: least scale, with reactions, of what nothing balances */
     double work, heat;                /* J */
     double told;                      /* residual that was told last */
 } relaxing;
@@ -65,13 +74,20 @@ static double half_kick(const relaxing *r) {
     return r->dt * r->dt / 8 * norm * norm;
 }
 
-/* Begins a swing from rest. */
-static void begin_swing(relaxing *r) {
-    r->heat -= half_kick(r);
+/* Sets out from rest: of the velocities half a step before and after it, the mean is zero. */
+static void set_out(relaxing *r) {
     r->dt = stable_step(r->on.solver);
     r->heat += half_kick(r);
-    rg_statics_add(&r->on, 0.5 * r->dt, r->acceleration, 0, r->velocity);
-    r->kinetic = 0;
+    rg_statics_add(&r->on, -0.5 * r->dt, r->acceleration, 0, r->velocity);
+    r->inertia = 0;
+}
+
+/* Stops at the present state: what moved becomes heat. */
+static void stop(relaxing *r) {
+    rg_statics_copy(&r->on, r->velocity, r->now);
+    rg_statics_add(&r->on, 0.5 * r->dt, r->acceleration, 1, r->now);
+    rg_statics_times_mass(&r->on, r->now, r->on.force);
+    r->heat += 0.5 * rg_statics_dot(&r->on, r->now, r->on.force) - half_kick(r);
 }
 
 /* Work of the supports that put their nodes where they are at t = 0, by the trapezoidal rule (J). */
@@ -104,22 +120,29 @@ static void tell(relaxing *r, FILE *out, int64_t step, bool last) {
     }
 }
 
-/* A step; at the state to which it leads the swing may be over. Returns whether it is. */
-static bool step(relaxing *r) {
+/* The velocity that leads on, damped by twice the frequency of the last change of the displacement. */
+static void kick(relaxing *r) {
+    double omega2 = 0;
+    if (r->inertia > 0) {
+        omega2 = (r->power - rg_statics_dot(&r->on, r->acceleration, r->momentum)) / (r->dt * r->inertia);
+    }
+    double half = 0.5 * fmin(2 * r->dt * sqrt(fmax(omega2, 0)), MOST_DAMPING);
+    rg_statics_copy(&r->on, r->velocity, r->now);
+    rg_statics_add(&r->on, 0.5 * r->dt / (1 + half), r->acceleration, 1 / (1 + half), r->now);
+    rg_statics_times_mass(&r->on, r->now, r->on.force);
+    r->heat += 2 * half * rg_statics_dot(&r->on, r->now, r->on.force);
+    rg_statics_add(&r->on, 2, r->now, -1, r->velocity);
+    rg_statics_times_mass(&r->on, r->velocity, r->momentum);
+    r->inertia = rg_statics_dot(&r->on, r->velocity, r->momentum);
+    r->power = rg_statics_dot(&r->on, r->acceleration, r->momentum);
+}
+
+/* To the next state, with its forces. */
+static void drift(relaxing *r, bool measured) {
     rg_statics_add(&r->on, r->dt, r->velocity, 1, r->on.solver->u);
     r->work += half_work(r);
-    evaluate(r, false);
+    evaluate(r, measured);
     r->work += half_work(r);
-    rg_statics_copy(&r->on, r->velocity, r->now);
-    rg_statics_add(&r->on, 0.5 * r->dt, r->acceleration, 1, r->now);
-    rg_statics_times_mass(&r->on, r->now, r->on.force);
-    double kinetic = 0.5 * rg_statics_dot(&r->on, r->now, r->on.force);
-    bool over = !(kinetic > r->kinetic);
-    r->kinetic = kinetic;
-    if (!over) {
-        rg_statics_add(&r->on, r->dt, r->acceleration, 1, r->velocity);
-    }
-    return over;
 }
 
 _Noreturn static void refuse(const relaxing *r, int64_t steps) {
@@ -132,7 +155,7 @@ _Noreturn static void refuse(const relaxing *r, int64_t steps) {
 
 static relaxing make(rg_solver *s) {
     relaxing r = {.on = rg_statics_make(s), .told = INFINITY};
-    rg_real **const field[] = {&r.acceleration, &r.velocity, &r.now, &r.load};
+    rg_real **const field[] = {&r.acceleration, &r.velocity, &r.now, &r.load, &r.momentum};
     for (size_t i = 0; i < sizeof field / sizeof *field; i++) {
         *field[i] = rg_statics_field(&r.on);
     }
@@ -144,6 +167,7 @@ static void end(relaxing *r) {
     rg_free(r->velocity);
     rg_free(r->now);
     rg_free(r->load);
+    rg_free(r->momentum);
     rg_statics_free(&r->on);
 }
 
@@ -156,21 +180,23 @@ rg_equilibrium rg_relax(rg_solver *s, FILE *out) {
     evaluate(&r, false);
     r.loads = fmax(rg_statics_norm(&r.on, r.load), fmax(s->initial_stress.scale, rg_heating_scale(s)));
     evaluate(&r, true);
-    begin_swing(&r);
+    r.loads = fmax(r.loads, RG_STATICS_FIRST * r.scale);
+    set_out(&r);
     int64_t steps = 0;
     while (r.residual > tolerance * r.scale) {
         if (steps >= c->relax.steps || !isfinite(r.residual)) {
             refuse(&r, steps);
         }
-        steps++;
-        if (step(&r)) {
-            r.heat += r.kinetic;
-            evaluate(&r, true);
-            begin_swing(&r);
-            tell(&r, out, steps, false);
+        if (stable_step(s) < SHORTER * r.dt) {
+            stop(&r);
+            set_out(&r);
         }
+        kick(&r);
+        steps++;
+        drift(&r, steps % MEASURED == 0 || steps == c->relax.steps);
+        tell(&r, out, steps, false);
     }
-    r.heat -= half_kick(&r);
+    stop(&r);
     tell(&r, out, steps, true);
     rg_equilibrium found = {.residual = r.scale > 0 ? r.residual / r.scale : 0, .passes = r.on.passes};
     s->relaxed = (rg_relaxed){.heat = r.heat, .work = r.work};

@@ -5,6 +5,10 @@
 
 #include "solver/solver.h"
 
+/* Least share of the forces at first, which nothing balances yet, by which a residual is measured: a body may
+ * come to rest without any, as one does whose only support was turned. */
+#define RG_STATICS_FIRST 1e-3
+
 typedef struct {
     rg_solver *solver;
     size_t length;                   /* of the fields */

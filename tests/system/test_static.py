@@ -117,13 +117,13 @@ def test_damping_comes_to_the_same_rest(run, figure, bar, form):
     """As the equilibrium that is solved for; half of the work of a load that is there at once becomes heat."""
     law = {"law": "none", "form": form, **({"beta_s": 2} if form == "variational" else {})}
     sets = {"interface": law, "loads": [{"name": "pull", "set": "z+", "traction": {"z": 1e6}}], "material.poisson": 0.3, "time.steps": 100}
-    solved, damped = (run(bar, sets={**sets, "start": start}) for start in ("static", "relax"))
+    solved, damped = (run(bar, sets={**sets, "start": start, **change}) for start, change in (("static", {}), ("relax", {"relax.tolerance": 1e-7})))
     work = 1e6**2 / 70e9 * 0.5e-9
     row, first = damped.history[0], solved.history[0]
-    figure(f"relaxed bar, form {form}: displacement of its end", row["end_uz"], theory=first["end_uz"], bound=rounding(3e-6, 3e-4), relative=True, why="the tolerance of the damping")
-    figure(f"relaxed bar, form {form}: work of the load", damped.energy["external_work"][0], theory=work, bound=rounding(3e-6, 3e-4), unit="J", relative=True, why="the tolerance of the damping")
-    figure(f"relaxed bar, form {form}: heat", damped.energy["relaxed"][0], theory=work / 2, bound=rounding(1e-10, 1e-5), unit="J", relative=True, why="of second order in the residual")
-    figure(f"relaxed bar, form {form}: stored energy and heat less work, over work", damped.energy["total"][0] / work, bound=rounding(3e-13, 1e-5), why="rounding in some thousand steps")
+    figure(f"relaxed bar, form {form}: displacement of its end", row["end_uz"], theory=first["end_uz"], bound=rounding(1.5e-6, 3e-4), relative=True, why="the tolerance of the damping")
+    figure(f"relaxed bar, form {form}: work of the load", damped.energy["external_work"][0], theory=work, bound=rounding(1.5e-6, 3e-4), unit="J", relative=True, why="the tolerance of the damping")
+    figure(f"relaxed bar, form {form}: heat", damped.energy["relaxed"][0], theory=work / 2, bound=rounding(1e-12, 1e-5), unit="J", relative=True, why="of second order in the residual")
+    figure(f"relaxed bar, form {form}: stored energy and heat less work, over work", damped.energy["total"][0] / work, bound=rounding(2e-14, 1e-5), why="rounding in some thousand steps")
     assert damped.summary["static_residual"] <= rounding(1e-6, 1e-4) and damped.summary["relax_heat_J"] == pytest.approx(damped.energy["relaxed"][-1], rel=1e-12)
     assert np.ptp(damped.energy["relaxed"]) == 0 and damped.energy["kinetic"].max() < rounding(1e-10, 1e-6) * damped.energy["bulk"][0]
     assert damped.history["pull_work"][0] == 0 and row["time"] == 0
@@ -139,11 +139,21 @@ def test_damping_with_a_prescribed_end(run, figure, bar):
 
 def test_a_free_body_sheds_a_stress_that_nothing_balances(run, figure, bar):
     """All that it stored becomes heat; a search for an equilibrium would refuse it, as it is not held."""
-    done = run(bar, sets={"start": "relax", "relax.tolerance": 1e-3, "loads": [], "boundary": [], "initial.stress": {"zz": 1e6}, "time.steps": 50, "interface": {"law": "none", "penalty": "isotropic"},
-                          "material": {"model": "neo-hookean", "young": 70e9, "poisson": 0.3, "density": 2700}})
+    done = run(bar, sets={"start": "relax", "relax.tolerance": 1e-3, "loads": [], "boundary": [], "initial.stress": {"zz": 1e6}, "time.steps": 50, "material.poisson": 0.3})
     stored = 1e12 / (2 * 70e9) * 0.5e-9
     figure("free body under stress: heat", done.energy["relaxed"][0], theory=stored, bound=rounding(1e-4, 1e-3), unit="J", relative=True, why="the stress turns and stretches with strains of 1.4e-5")
     assert abs(done.history["end_szz"][0]) < 1e4 and done.energy["bulk"][0] < 1e-3 * stored
+
+
+@pytest.mark.parametrize("change", [{"loads": []}, {}], ids=["free", "loaded"])
+@pytest.mark.parametrize("start, passes, bound", [("static", 600, rounding(2e-9, 1e-3)), ("relax", 4000, rounding(6e-6, 1e-3))])
+def test_a_body_whose_only_support_was_turned(run, figure, bar, start, passes, bound, change):
+    """By an angle that each point has to follow: without loads it ends free of stress, so nothing is left to measure a residual by."""
+    done = run(bar, sets={**EVERYTHING, "boundary": EVERYTHING["boundary"][:1], "initial": {}, "materials": [], "start": start, **change, "time.steps": 5,
+                          "material": {"model": "neo-hookean", "young": 70e9, "poisson": 0.3, "density": 2700}, "output.probes": [{"name": "end", "at": [0.5e-3, 0.5e-3, 1.5e-3]}]})
+    assert done.summary["static_passes"] < passes and done.summary["static_residual"] <= (rounding(1e-8, 1e-3) if start == "static" else rounding(1e-6, 1e-4))
+    if "loads" in change:
+        figure(f"turned support, start {start}: its end", done.history["end_uy"][0], theory=0.5e-3 * (np.sin(1e-4) + np.cos(1e-4) - 1), bound=bound, unit="m", relative=True, why="the residual at which the search ends")
 
 
 STOP = {"name": "stop", "shape": "plane", "motion": "prescribed", "at": [0, 0, 2.001e-3], "normal": [0, 0, -1]}
@@ -153,7 +163,8 @@ STOP = {"name": "stop", "shape": "plane", "motion": "prescribed", "at": [0, 0, 2
 def test_a_bar_comes_to_rest_on_a_stop(run, figure, bar, start):
     """Pulled against it by twice and more of what closes the gap."""
     pull, gap = 1e8, 1e-6
-    done = run(bar, sets={"start": start, "loads": [{"set": "z+", "traction": {"z": pull}}], "bodies": [STOP], "time.steps": 50, "output.interval": 10})
+    done = run(bar, sets={"start": start, **({"relax.tolerance": 1e-7} if start == "relax" else {}), "loads": [{"set": "z+", "traction": {"z": pull}}], "bodies": [STOP], "time.steps": 50,
+                          "output.interval": 10})
     row = done.history[0]
     depth = row["end_uz"] - gap
     figure(f"bar on a stop, start {start}: force on it and on the support, over the load", (row["stop_fz"] - row["hold_force_z"]) / (pull * 0.25e-6), theory=1, bound=rounding(1e-6, 1e-3),
@@ -182,8 +193,7 @@ def test_a_start_with_contact_of_all_faces_is_the_same(run, bar):
 
 def test_damping_has_the_same_bits_anywhere_and_in_a_restart(run, bar):
     """On six tiles, of two solids, against a stop, with a stress and loads that follow the surface."""
-    sets = {**EVERYTHING, "mesh": LARGE["mesh"], "start": "relax", "relax": {"tolerance": 2e-2, "steps": 5000}, "bodies": [{**STOP, "at": [0, 0, 2.00003e-3]}],
-            "boundary": [*CLAMP, {"where": "nx < -0.5 && z > 1e-3", "normal": 0}],
+    sets = {**EVERYTHING, "mesh": LARGE["mesh"], "start": "relax", "relax": {"tolerance": 1e-3, "steps": 5000}, "bodies": [{**STOP, "at": [0, 0, 2.00003e-3]}],
             "initial": {"velocity": {"z": "3*z/2e-3"}, "stress": {"xx": 1e6}}, "checkpoint.steps": 20}
     one = run(bar, sets=sets)
     for ranks, threads in ((1, 2), (3, 1)):
