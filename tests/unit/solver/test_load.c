@@ -95,8 +95,10 @@ static void expect_near(double found, double want, double bound) {
     }
 }
 
+static const double affine[3][3] = {{0.2, -0.3, 0.1}, {0.4, -0.1, 0.25}, {-0.15, 0.3, 0.3}};
+
 static void set_affine(rg_solver *s) {
-    static const double G[3][3] = {{0.2, -0.3, 0.1}, {0.4, -0.1, 0.25}, {-0.15, 0.3, 0.3}};
+    const double(*G)[3] = affine;
     for (size_t slot = 0; slot < s->domain->blocks * RG_LANES; slot++) {
         for (int n = 0; s->domain->id[slot] >= 0 && n < RG_NODES; n++) {
             double x[3];
@@ -126,6 +128,34 @@ static void test_closed_surface(void **state) {
         expect_near(moment[k], 0, 1e-14 * size * 6e-3);
         expect_near(s->account->item[0].force[k], force[k], 1e-14 * size);
         expect_near(s->account->item[0].moment[k], moment[k], 1e-14 * size * 6e-3);
+    }
+    rg_solver_free(s);
+    rg_case_free(c);
+}
+
+/* Dead tractions of the same size on each side of the block: no force, but the moment -p V (G - G^T) of the
+ * part that turns. */
+static void test_dead_load_turns(void **state) {
+    (void)state;
+    rg_case *c = read_with("loads=[{set: x-, traction: {x: 3e6}}, {set: x+, traction: {x: -3e6}}, "
+                           "{set: y-, traction: {y: 3e6}}, {set: y+, traction: {y: -3e6}}, "
+                           "{set: z-, traction: {z: 3e6}}, {set: z+, traction: {z: -3e6}}]",
+                           NULL);
+    rg_solver *s = solver_of(c);
+    double force[3], moment[3], size;
+    set_affine(s);
+    find_forces(s, 0);
+    resultant(s, force, moment, &size);
+    for (int k = 0; k < 3; k++) {
+        int i = (k + 1) % 3, j = (k + 2) % 3;
+        double turn = -3e6 * 36e-9 * (affine[i][j] - affine[j][i]), booked = 0;
+        for (int load = 0; load < 6; load++) {
+            booked += s->account->item[load].moment[k];
+        }
+        assert_true(fabs(turn) > 1e-3 * size * 6e-3);
+        expect_near(force[k], 0, 1e-14 * size);
+        expect_near(moment[k], turn, 1e-14 * size * 6e-3);
+        expect_near(booked, turn, 1e-14 * size * 6e-3);
     }
     rg_solver_free(s);
     rg_case_free(c);
@@ -362,9 +392,9 @@ int main(int argc, char **argv) {
     omp_set_num_threads(1); /* a child has none of its parent's threads */
     MPI_Init(&argc, &argv);
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_closed_surface), cmocka_unit_test(test_pressure),
-        cmocka_unit_test(test_traction),       cmocka_unit_test(test_acceleration),
-        cmocka_unit_test(test_refused),
+        cmocka_unit_test(test_closed_surface), cmocka_unit_test(test_dead_load_turns),
+        cmocka_unit_test(test_pressure),       cmocka_unit_test(test_traction),
+        cmocka_unit_test(test_acceleration),   cmocka_unit_test(test_refused),
     };
     int failed = cmocka_run_group_tests(tests, NULL, NULL);
     MPI_Finalize();
