@@ -246,6 +246,7 @@ typedef struct {
     double common[2][3]; /* mean of the corners that they have in common: weights of those of A, of B */
     double shear;        /* of the spring that friction is while it holds (Pa/m); at most kappa */
     double friction[2];  /* Coulomb's coefficient until it slides, while it does */
+    double impedance;    /* most that damping takes of a rate of depth (Pa s/m) */
 } rg_contact_pair;
 
 /* What friction remembers of a pair that presses (contact/friction.h). */
@@ -268,6 +269,10 @@ typedef struct {
                        less deep than the limit, or have no share (m) */
     double *grip;   /* in and out: [pair][RG_GRIP]; NULL: no friction. Its spring is part of `energy` */
     double *heat;   /* out, with friction: [pair] what it took in the step that led here (J) */
+    const double *rate; /* [face][3][3] velocities (m/s); NULL: no damping (contact/damping.h) */
+    double damping, dt; /* c (s/m); step (s) that `stiffer` is for */
+    double *drag;       /* out, with damping: [pair][A, B][3 corners][3] its part of `force` (N) */
+    double *stiffer; /* likewise: [pair] with which stiffness the pair counts in a bound of the step (Pa/m) */
 } rg_contact_args;
 
 /* The box of a face, out of its corners. */

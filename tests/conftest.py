@@ -48,7 +48,7 @@ EVERYWHERE = {  # changes of fragments.yaml that must not change the bits, on an
                            {"set": "z+", "absorbing": True}, {"where": "abs(nx) > 0.5 && z > 0", "dashpot": 4e6}, {"name": "roll", "where": "nx < -0.5 && z > 0", "normal": "1e7*t*z", "until": 1.6e-7},
                            {"set": "y+", "direction": [1, 0, 2], "velocity": 3, "from": 1.4e-7},
                            {"name": "catch", "set": "y+", "component": "x", "displacement": "5*t", "from": 3e-8, "until": 1.3e-7}]},
-    "contact": {"defaults": 1, "contact": {"model": "general", "friction": 0.2, "static_friction": 0.3}, "initial.stress": {"xx": "3e7*(1 + 1e3*z)", "yz": 1e7}, "initial.velocity": {"x": "z > 0 ? 1500 : -400", "y": 0, "z": "-8e4*z"},
+    "contact": {"defaults": 1, "contact": {"model": "general", "friction": 0.2, "static_friction": 0.3, "damping": 3e-4}, "initial.stress": {"xx": "3e7*(1 + 1e3*z)", "yz": 1e7}, "initial.velocity": {"x": "z > 0 ? 1500 : -400", "y": 0, "z": "-8e4*z"},
                 "interface.sets": [{"where": "abs(z) < 5e-5 && abs(nz) > 0.8", "open": True}],
                 "bodies": [{"name": "ball", "shape": "sphere", "motion": "free", "radius": 1e-4, "at": [3.1e-4, 0, -1.3e-4], "mass": 2e-7, "velocity": {"z": 400}}],
                 "materials": [{"name": "upper", "where": "z > 0", "model": "neo-hookean", "young": 240e9, "poisson": 0.2, "density": 3690}],

@@ -1,4 +1,5 @@
 /* Contact of faces, a vector of pairs at a time. */
+#include "contact/damping.h"
 #include "contact/friction.h"
 #include "contact/pair.h"
 #include "isa.h"
@@ -41,6 +42,9 @@ static void meet(const rg_contact_args *args, const size_t pair[], int count) {
         integral sum = integrate(&m.over);
         energy = pair_forces(&m, &sum, &h, force);
         presses &= (wide_mask)(energy > 0);
+        if (args->rate != NULL) {
+            add_damping(args, pair, count, &m, &sum, &h, presses, force);
+        }
         if (args->grip != NULL) {
             energy += add_friction(args, pair, count, &m, &sum, &h, presses, force);
         }

@@ -29,7 +29,7 @@ typedef struct {
     wide corner[2][3][3];
     wide stiffness, skin, reach; /* skin: with what they have sunk; reach: d_m */
     wide fading, parting, common[2][3];
-    wide shear, friction[2];
+    wide shear, friction[2], impedance;
     wide across[2][3]; /* (x1 - x0) x (x2 - x0) */
     wide length[2];
     wide normal[2][3]; /* nA, -nB */
@@ -57,6 +57,7 @@ RG_INLINE void load_pair(meeting *m, const rg_contact_args *args, size_t i, int 
         m->friction[k][lane] = p->friction[k];
     }
     m->shear[lane] = p->shear;
+    m->impedance[lane] = p->impedance;
     m->stiffness[lane] = p->stiffness;
     m->skin[lane] = p->skin + sunk;
     m->reach[lane] = p->limit - (p->skin + sunk);

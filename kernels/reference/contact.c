@@ -343,6 +343,31 @@ static double advance_grip(const rg_contact_pair *pair, double sunk, number x[2]
     return work - (stored(grip) - before);
 }
 
+/* ---- Damping ---- */
+
+/* With the forces of the potential in `force`: adds that of damping (contact/damping.h). */
+static void damp(const rg_contact_args *args, size_t i, double sunk, number x[2][3][3], const plane *at,
+                 double *force) {
+    const rg_contact_pair *pair = &args->pair[i];
+    double by[3], rate = 0, area = creal(at->area);
+    force_of(pair, sunk, x, by);
+    args->stiffer[i] = 0;
+    memset(args->drag + 18 * i, 0, 18 * sizeof(double));
+    if (!(by[0] > 0)) {
+        return;
+    }
+    for (size_t n = 0; n < 18; n++) {
+        rate -= force[n] * args->rate[9 * (size_t)pair->face[n / 9] + n % 9] / by[0];
+    }
+    double coefficient = fmin(args->damping * by[0], pair->impedance * area);
+    double q = fmax(-1, fmin(1, coefficient * rate / by[0]));
+    args->stiffer[i] = pair->stiffness * (1 + fmax(q, 0)) + 2 * coefficient / (area * args->dt);
+    for (size_t n = 0; n < 18; n++) {
+        args->drag[18 * i + n] = q * force[n];
+        force[n] += q * force[n];
+    }
+}
+
 void rg_reference_contact(const rg_contact_args *args, size_t begin, size_t end) {
     static const line flat = {0, 0, 0};
     for (size_t i = begin; i < end; i++) {
@@ -364,13 +389,20 @@ void rg_reference_contact(const rg_contact_args *args, size_t begin, size_t end)
             k = grip[RG_GRIP_STIFFNESS];
             anchors_of(grip, anchor);
         }
+        double spring[18] = {0}; /* apart: only what the potential does is damped */
         for (int n = 0; n < 18 && presses; n++) {
             number *moved = &x[n / 9][n / 3 % 3][n % 3], kept = *moved;
             *moved += STEP * I;
             number energy = energy_of(pair, sunk, x, &flat, &deepest, NULL);
-            energy += k > 0 ? spring_energy(k, anchor, x) : 0;
+            spring[n] = k > 0 ? -cimag(spring_energy(k, anchor, x)) / STEP : 0;
             args->force[18 * i + (size_t)n] = -cimag(energy) / STEP;
             *moved = kept;
+        }
+        if (presses && args->rate != NULL) {
+            damp(args, i, sunk, x, &at, args->force + 18 * i);
+        }
+        for (size_t n = 0; n < 18 && presses; n++) {
+            args->force[18 * i + n] += spring[n];
         }
     }
 }

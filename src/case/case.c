@@ -114,6 +114,10 @@ bool rg_case_rubs(const rg_case *c) {
     return c->contact.model == RG_CONTACT_GENERAL && rubs;
 }
 
+bool rg_case_heats(const rg_case *c) {
+    return rg_case_rubs(c) || (c->contact.model == RG_CONTACT_GENERAL && c->contact.damping > 0);
+}
+
 bool rg_face_set_is_any(const rg_face_set *set) {
     return set->names == 1 && strcmp(set->between[0], "any") == 0;
 }

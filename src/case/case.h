@@ -361,6 +361,7 @@ typedef struct {
     struct {
         rg_contact_model model;
         double penalty; /* stiffness times h/(lambda + 2 mu), h the height of an element over its face */
+        double damping; /* of a depth's rate: share of the force that 1 m/s adds (s/m) */
         double friction, static_friction; /* coefficients while faces slide, until they do */
         int pairs;
         rg_contact_friction *pair; /* in place of those */
@@ -466,6 +467,9 @@ bool rg_case_opens(const rg_case *c);
 
 /* Whether fragments rub where they meet. */
 bool rg_case_rubs(const rg_case *c);
+
+/* Whether their contact takes energy. */
+bool rg_case_heats(const rg_case *c);
 
 /* Whether a set selects the faces between any two volume sets or materials. */
 bool rg_face_set_is_any(const rg_face_set *set);

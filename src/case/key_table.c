@@ -154,7 +154,7 @@ static const char *const fields_meaning[] = {
     "plastic part of the logarithm of the volume (pores that close: below 0), mean of each element",
     "pressure that crushing has added as it takes more room, mean of each element (Pa)",
     "of solids that heat themselves their own, of others what `temperature` prescribes, mean of each element (K)",
-    "with contact.model general: pressure and traction on that face of each element which others press most (Pa), with friction the heat of its contacts (J)"};
+    "with contact.model general: pressure and traction on that face of each element which others press most (Pa), with friction or damping the heat of its contacts (J)"};
 static const char *const fragments[] = {"each", "last", "none", NULL};
 static const char *const fragments_meaning[] = {
     "for each output", "for the end of the run", "no file"};
@@ -295,6 +295,8 @@ static const rg_key case_keys[] = {
      MEANS("which faces meet each other")},
     {.name = "contact.penalty", REAL, ABOVE(0), DEFAULT(4), GROUP(CONTACT), CASE(contact.penalty),
      MEANS("stiffness, in moduli over the height of an element over its face")},
+    {.name = "contact.damping", .unit = "s/m", REAL, FROM(0), DEFAULT(0), GROUP(CONTACT), CASE(contact.damping),
+     MEANS("c: faces that get deeper at a rate d' press 1 + c d' times as hard (none to twice), so that what strikes at v leaves at e v, c v (1 + e) = ln((1 + c v)/(1 - c e v)), but for waves; its heat is in `friction` of energy.csv")},
     {.name = "contact.friction", REAL, FROM(0), DEFAULT_OF(contact_friction), GROUP(CONTACT), CASE(contact.friction),
      MEANS("Coulomb's coefficient of faces that slide on each other; their heat is `friction` in energy.csv")},
     {.name = "contact.static_friction", REAL, FROM(0), DEFAULT_OF(static_friction), GROUP(CONTACT),

@@ -70,6 +70,8 @@ rg_contacts *rg_contacts_make(const rg_case *input, const rg_domain *d, const rg
     rg_contacts *c = RG_NEW(rg_contacts, 1);
     *c = (rg_contacts){.domain = d, .material = m, .comm = comm, .penalty = input->contact.penalty};
     c->rubs = rg_case_rubs(input);
+    c->damping = input->contact.damping;
+    c->values = RG_CONTACT_ROW + 1 + (c->damping > 0 ? RG_CONTACT_ROW : 0);
     c->specials = input->contact.pairs;
     c->special = RG_NEW(rg_contact_special, (size_t)c->specials + 1);
     for (int i = 0; i < c->specials; i++) {
@@ -186,13 +188,14 @@ static void give_grips(rg_contacts *c) {
 static void forget(rg_contacts *c) {
     rg_halo_free(c->halo);
     c->halo = NULL;
-    void *blocks[] = {c->face,  c->rest,    c->corner, c->last,  c->id,    c->row,
-                      c->moved, c->stepped, c->pair,   c->touch, c->force, c->energy,
-                      c->depth, c->sunk,    c->box,    c->grip,  c->heat,  c->of_material};
+    void *blocks[] = {c->face,  c->rest,    c->corner,  c->last,    c->id,    c->row,
+                      c->moved, c->stepped, c->pair,    c->touch,   c->force, c->energy,
+                      c->depth, c->sunk,    c->box,     c->grip,    c->heat,  c->of_material,
+                      c->rate,  c->drag,    c->stiffer, c->dragged, c->shift, c->power};
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) {
         rg_free(blocks[i]);
     }
-    c->grip = c->heat = NULL;
+    c->grip = c->heat = c->rate = c->drag = c->stiffer = c->dragged = c->shift = c->power = NULL;
 }
 
 /* The exposed faces of this rank, where they are now. */
@@ -207,7 +210,7 @@ static rg_exposed_face *expose(rg_contacts *c, const uint8_t *exposed, const rg_
     for (size_t t = 0; t < d->tiles; t++) {
         list_faces(c, t, exposed, c->face + c->tile_begin[t]);
     }
-    c->row = RG_NEW(rg_real, RG_CONTACT_VALUES * (c->faces + 1));
+    c->row = RG_NEW(rg_real, c->values * (c->faces + 1));
     for (size_t i = 0; i < c->faces; i++) {
         rg_contact_side *f = &c->face[i];
         size_t slot = (size_t)f->slot;
@@ -219,11 +222,12 @@ static rg_exposed_face *expose(rg_contacts *c, const uint8_t *exposed, const rg_
                                  .material = d->material[slot / RG_LANES],
                                  .modulus = rg_material_modulus(m),
                                  .shear = m->mu,
+                                 .density = m->density,
                                  .height = rg_surface_height(d, slot, f->face)};
         set_rest(c, f, e[i].rest);
-        rg_contact_set_row(c, i, u);
+        rg_contact_set_row(c, i, u, c->row + c->values * i);
         for (int k = 0; k < RG_CONTACT_ROW; k++) {
-            e[i].corner[k] = e[i].rest[k] + c->row[RG_CONTACT_VALUES * i + (size_t)k];
+            e[i].corner[k] = e[i].rest[k] + c->row[c->values * i + (size_t)k];
         }
     }
     return e;
@@ -276,7 +280,7 @@ static shared *make_rows(rg_contacts *c, const rg_exposed_face *own, const rg_ca
     rg_halo_row *send = RG_NEW(rg_halo_row, count + 1);
     int32_t *from = RG_NEW(int32_t, c->far + 1);
     rg_free(c->row);
-    c->row = RG_NEW(rg_real, RG_CONTACT_VALUES * (rows + 1));
+    c->row = RG_NEW(rg_real, c->values * (rows + 1));
     c->sunk = RG_NEW(double, rows + 1);
     c->rest = RG_NEW(double, RG_CONTACT_ROW *(rows + 1));
     c->corner = RG_NEW(double, RG_CONTACT_ROW *(rows + 1));
@@ -304,7 +308,7 @@ static shared *make_rows(rg_contacts *c, const rg_exposed_face *own, const rg_ca
         send[i] = (rg_halo_row){given[i].rank, given[i].row};
     }
     rg_halo_plan plan = {.send = send, .sends = count, .from = from, .receives = c->far, .own = c->faces};
-    c->halo = rg_halo_plan_make(&plan, RG_CONTACT_VALUES, c->row, RG_CONTACT_HALO_TAG, c->comm);
+    c->halo = rg_halo_plan_make(&plan, (int)c->values, c->row, RG_CONTACT_HALO_TAG, c->comm);
     rg_free(send);
     rg_free(from);
     rg_free(given);
@@ -383,6 +387,22 @@ static void set_friction(const rg_contacts *c, const rg_candidate *from, rg_cont
     pair->shear = pair->friction[0] > 0 ? pair->stiffness * mu / all : 0;
 }
 
+static void make_damping(rg_contacts *c) {
+    c->rate = RG_NEW(double, RG_CONTACT_ROW *(c->faces + c->far + 1));
+    c->drag = RG_NEW(double, 18 * (c->pairs + 1));
+    c->stiffer = RG_NEW(double, c->pairs + 1);
+    c->power = RG_NEW(double, 2 * c->pairs + 1);
+    c->dragged = RG_NEW(double, RG_CONTACT_ROW *(c->faces + 1));
+    c->shift = RG_NEW(double, c->faces + 1);
+}
+
+/* Damping takes no more of a rate of depth than a quarter of the impedance of both solids, as stronger ones
+ * would cost steps. */
+static double impedance_of(const rg_candidate *from) {
+    return 0.125 * (sqrt(from->face[0].density * from->face[0].modulus) +
+                    sqrt(from->face[1].density * from->face[1].modulus));
+}
+
 void rg_contacts_search(rg_contacts *c, const uint8_t *exposed, const rg_real *u) {
     keep_grips(c);
     forget(c);
@@ -396,12 +416,16 @@ void rg_contacts_search(rg_contacts *c, const uint8_t *exposed, const rg_real *u
     c->force = RG_NEW(double, 18 * (c->pairs + 1));
     c->energy = RG_NEW(double, c->pairs + 1);
     c->depth = RG_NEW(double, c->pairs + 1);
+    if (c->damping > 0) {
+        make_damping(c);
+    }
     for (size_t i = 0; i < c->pairs; i++) {
         c->pair[i] = p[i].pair;
         for (int k = 0; k < 2; k++) {
             c->pair[i].face[k] = row_of(c, &p[i].face[k], far);
         }
         set_friction(c, &p[i], &c->pair[i]);
+        c->pair[i].impedance = impedance_of(&p[i]);
     }
     make_touches(c);
     if (c->rubs) {

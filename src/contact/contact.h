@@ -44,19 +44,25 @@ void rg_contacts_search(rg_contacts *c, const uint8_t *exposed, const rg_real *u
  * have been computed; then words[size] says where. Collective. */
 bool rg_contacts_overlap(const rg_contacts *c, char *words, size_t size);
 
-/* The rows of a tile's faces at displacement u. */
-void rg_contacts_place(rg_contacts *c, size_t tile, const rg_real *u, const rg_real *sunk);
+/* The rows of a tile's faces at displacement u, with the velocity (of the half step before) that damping
+ * sees. */
+void rg_contacts_place(rg_contacts *c, size_t tile, const rg_real *u, const rg_real *velocity,
+                       const rg_real *sunk);
+
+/* Books what damping takes of a tile's elements in the half step (s) after the last push, now that its faces
+ * have the velocity of that: the energy of the solid changes by just that, to rounding. */
+void rg_contacts_settle(rg_contacts *c, size_t tile, double half, double *heat);
 
 /* Exchange of the rows; NULL where no rank has a pair with another one. */
 rg_halo *rg_contacts_halo(const rg_contacts *c);
 
-/* Forces of all pairs; `rub`: friction goes on by a step, which it does once for each state, else there is
- * none. A worksharing loop: call it from all threads; ends with a barrier. */
-void rg_contacts_meet(rg_contacts *c, const rg_kernels *kernels, bool rub);
+/* Forces of all pairs, in a step of `dt` (s), over which friction goes on: once for each state. 0: without
+ * friction and damping. A worksharing loop: call it from all threads; ends with a barrier. */
+void rg_contacts_meet(rg_contacts *c, const rg_kernels *kernels, double dt);
 
 /* What contact has done to each element: impulse[slot] grows by the forces that its faces feel, by pairs,
- * times the length of the kick (N s), heat[slot] by half of what friction took of each pair (J; NULL: there
- * is none), touches[slot] by 1 whenever it touches something and has not in the last
+ * times the length of the kick (N s), heat[slot] by half of what friction and damping took of each pair (J;
+ * NULL: there is none), touches[slot] by 1 whenever it touches something and has not in the last
  * RG_TOUCH_AFRESH steps, from which touching[slot] counts down: faces that just lean on each other flutter.
  */
 enum { RG_TOUCH_AFRESH = 100 };

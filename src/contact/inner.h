@@ -5,13 +5,8 @@
 
 #include "contact/contact.h"
 
-/* A face travels as its u^ and by how much it has sunk. */
-enum {
-    RG_CONTACT_ROW = 9,
-    RG_CONTACT_BOX = 6,
-    RG_CONTACT_VALUES = RG_CONTACT_ROW + 1,
-    RG_CONTACT_HALO_TAG = 11
-};
+/* A face travels as its u^ and by how much it has sunk; with damping also as its v^. */
+enum { RG_CONTACT_ROW = 9, RG_CONTACT_BOX = 6, RG_CONTACT_HALO_TAG = 11 };
 
 #define RG_CONTACT_NO_INTERFACE SIZE_MAX
 
@@ -56,7 +51,7 @@ struct rg_contacts {
     double *box;                  /* [faces, then far][6]: now */
     rg_gid *id;                   /* [faces, then far] */
     int32_t *of_material;         /* likewise */
-    rg_real *row;                 /* [faces, then far][RG_CONTACT_VALUES] */
+    rg_real *row;                 /* [faces, then far][values] */
     double *sunk;                 /* [faces, then far]: as it came (m) */
     double *moved;                /* [faces]: since the search, and in the last step, over what they may */
     double *stepped;
@@ -65,6 +60,13 @@ struct rg_contacts {
     rg_contact_pair *pair;
     rg_contact_touch *touch;
     double *force, *energy, *depth; /* of the pairs */
+    size_t values;                  /* of a row */
+    double damping;                 /* s/m; 0: none, and no memory for it */
+    double *rate;                   /* [faces, then far][9]: velocities (m/s) */
+    double *drag, *stiffer;         /* of the pairs (kernels.h), */
+    double *power;                  /* and that of drag on both faces, as fast as before the kick (W) */
+    double *dragged;                /* [faces][9]: drag on a face (N), */
+    double *shift;                  /* [faces]: and what its partner bears of its power (W) */
     bool rubs;
     double friction[2]; /* Coulomb's coefficient until a pair slides, while it does */
     int specials;
@@ -84,8 +86,8 @@ static inline int rg_contact_corner(const rg_contact_side *f, int i) {
  *     int l_i (u^ - u) = 0,  u^ = sum l_i u^_i,  i = 1 to 3. */
 double rg_contact_projection(int corner, int node);
 
-/* The row of face i of this rank at displacement u; its corners and box from its row. */
-void rg_contact_set_row(const rg_contacts *c, size_t i, const rg_real *u);
+/* u^ of face i of this rank, of a field u, to row[9]; its corners and box from its row. */
+void rg_contact_set_row(const rg_contacts *c, size_t i, const rg_real *u, rg_real *row);
 void rg_contact_set_corners(const rg_contacts *c, size_t i);
 
 /* What face k of an element adds to its squared frequency, over kappa: both sides of a pair bear its

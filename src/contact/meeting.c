@@ -16,7 +16,7 @@ double rg_contact_projection(int corner, int node) {
     return edge[0] == corner || edge[1] == corner ? 0.6 : -0.2;
 }
 
-void rg_contact_set_row(const rg_contacts *c, size_t i, const rg_real *u) {
+void rg_contact_set_row(const rg_contacts *c, size_t i, const rg_real *u, rg_real *row) {
     const rg_contact_side *f = &c->face[i];
     for (int k = 0; k < RG_CONTACT_ROW; k++) {
         double sum = 0;
@@ -24,17 +24,20 @@ void rg_contact_set_row(const rg_contacts *c, size_t i, const rg_real *u) {
             sum += rg_contact_projection(rg_contact_corner(f, k / 3), a) *
                    u[rg_node_index((size_t)f->slot, rg_face_node[f->face][a], k % 3)];
         }
-        c->row[RG_CONTACT_VALUES * i + (size_t)k] = (rg_real)sum;
+        row[k] = (rg_real)sum;
     }
 }
 
 void rg_contact_set_corners(const rg_contacts *c, size_t i) {
+    const rg_real *row = c->row + c->values * i;
     for (size_t k = 0; k < RG_CONTACT_ROW; k++) {
-        c->corner[RG_CONTACT_ROW * i + k] =
-            c->rest[RG_CONTACT_ROW * i + k] + c->row[RG_CONTACT_VALUES * i + k];
+        c->corner[RG_CONTACT_ROW * i + k] = c->rest[RG_CONTACT_ROW * i + k] + row[k];
+        if (c->damping > 0) {
+            c->rate[RG_CONTACT_ROW * i + k] = row[RG_CONTACT_ROW + 1 + k];
+        }
     }
     rg_contact_box(c->corner + RG_CONTACT_ROW * i, c->box + RG_CONTACT_BOX * i);
-    c->sunk[i] = c->row[RG_CONTACT_VALUES * i + RG_CONTACT_ROW];
+    c->sunk[i] = row[RG_CONTACT_ROW];
 }
 
 double rg_contact_omega2_of(const rg_contacts *c, size_t slot, int k) {
@@ -61,16 +64,37 @@ static double way(const rg_contacts *c, const double *from, const double *to) {
     return fmax(sqrt(moved) / c->fat, sqrt(rg_vector_distance2(n[0], n[1])) / RG_CONTACT_TURN);
 }
 
-void rg_contacts_place(rg_contacts *c, size_t tile, const rg_real *u, const rg_real *sunk) {
+void rg_contacts_place(rg_contacts *c, size_t tile, const rg_real *u, const rg_real *velocity,
+                       const rg_real *sunk) {
     for (size_t i = c->tile_begin[tile]; i < c->tile_begin[tile + 1]; i++) {
         size_t at = c->face[i].interface;
+        rg_real *row = c->row + c->values * i;
         double before[RG_CONTACT_ROW];
         memcpy(before, c->corner + RG_CONTACT_ROW * i, sizeof before);
-        rg_contact_set_row(c, i, u);
-        c->row[RG_CONTACT_VALUES * i + RG_CONTACT_ROW] = at == RG_CONTACT_NO_INTERFACE ? 0 : sunk[at];
+        rg_contact_set_row(c, i, u, row);
+        row[RG_CONTACT_ROW] = at == RG_CONTACT_NO_INTERFACE ? 0 : sunk[at];
+        if (c->damping > 0) {
+            rg_contact_set_row(c, i, velocity, row + RG_CONTACT_ROW + 1);
+        }
         rg_contact_set_corners(c, i);
         c->moved[i] = way(c, c->last + RG_CONTACT_ROW * i, c->corner + RG_CONTACT_ROW * i);
         c->stepped[i] = way(c, before, c->corner + RG_CONTACT_ROW * i);
+    }
+}
+
+/* Work of corners' forces per time. */
+static double power_of(const double *force, const double *rate) {
+    double sum = 0;
+    for (int k = 0; k < RG_CONTACT_ROW; k++) {
+        sum += force[k] * rate[k];
+    }
+    return sum;
+}
+
+void rg_contacts_settle(rg_contacts *c, size_t tile, double half, double *heat) {
+    for (size_t i = c->tile_begin[tile]; c->damping > 0 && i < c->tile_begin[tile + 1]; i++) {
+        double taken = power_of(c->dragged + RG_CONTACT_ROW * i, c->rate + RG_CONTACT_ROW * i);
+        heat[c->face[i].slot] -= half * (taken - c->shift[i]);
     }
 }
 
@@ -90,6 +114,7 @@ static void note_touching(rg_contacts *c, size_t tile) {
             size_t pair = c->touch[k].pair;
             if (c->energy[pair] > 0) {
                 kappa = fmax(kappa, c->pair[pair].stiffness);
+                kappa = c->damping > 0 ? fmax(kappa, c->stiffer[pair]) : kappa;
                 count += c->touch[k].side == 0;
             }
         }
@@ -100,7 +125,18 @@ static void note_touching(rg_contacts *c, size_t tile) {
     c->tile_touching[tile] = count;
 }
 
-void rg_contacts_meet(rg_contacts *c, const rg_kernels *kernels, bool rub) {
+/* Power of damping on both faces of pairs that press, while all of them have their velocity of one time: in
+ * the sweep that follows, tiles move on one by one. */
+static void note_power(rg_contacts *c, size_t begin, size_t end) {
+    for (size_t i = begin; i < end; i++) {
+        for (int k = 0; c->energy[i] > 0 && k < 2; k++) {
+            c->power[2 * i + (size_t)k] = power_of(c->drag + 18 * i + (size_t)(RG_CONTACT_ROW * k),
+                                                   c->rate + RG_CONTACT_ROW * c->pair[i].face[k]);
+        }
+    }
+}
+
+void rg_contacts_meet(rg_contacts *c, const rg_kernels *kernels, double dt) {
     enum { BATCH = 256 };
     rg_contact_args args = {.corner = c->corner,
                             .box = c->box,
@@ -109,8 +145,13 @@ void rg_contacts_meet(rg_contacts *c, const rg_kernels *kernels, bool rub) {
                             .force = c->force,
                             .energy = c->energy,
                             .depth = c->depth,
-                            .grip = rub ? c->grip : NULL,
-                            .heat = c->heat};
+                            .grip = dt > 0 ? c->grip : NULL,
+                            .heat = c->heat,
+                            .rate = dt > 0 ? c->rate : NULL,
+                            .damping = c->damping,
+                            .dt = dt,
+                            .drag = c->drag,
+                            .stiffer = c->stiffer};
     size_t batches = (c->pairs + BATCH - 1) / BATCH;
 #pragma omp for schedule(static)
     for (size_t i = c->faces; i < c->faces + c->far; i++) {
@@ -118,8 +159,11 @@ void rg_contacts_meet(rg_contacts *c, const rg_kernels *kernels, bool rub) {
     }
 #pragma omp for schedule(static)
     for (size_t b = 0; b < batches; b++) {
-        size_t end = (b + 1) * BATCH;
-        kernels->contact(&args, b * BATCH, end < c->pairs ? end : c->pairs);
+        size_t end = (b + 1) * BATCH < c->pairs ? (b + 1) * BATCH : c->pairs;
+        kernels->contact(&args, b * BATCH, end);
+        if (args.rate != NULL) {
+            note_power(c, b * BATCH, end);
+        }
     }
 #pragma omp for schedule(static)
     for (size_t t = 0; t < c->domain->tiles; t++) {
@@ -177,6 +221,28 @@ static double depth_of(const rg_contacts *c, const rg_contact_side *f) {
     return depth;
 }
 
+/* What damping takes of the pairs of a face in the half step that led here, half of it for its element, and
+ * what it takes of each half of the one to come but for what the faces change their velocity by: then the
+ * force of a pair is on both as fast as they are now, here a half of it again. */
+static void note_drag(const rg_contacts *c, const rg_contact_side *f, double before, double *heat) {
+    size_t i = (size_t)(f - c->face);
+    c->shift[i] = 0;
+    memset(c->dragged + RG_CONTACT_ROW * i, 0, RG_CONTACT_ROW * sizeof *c->dragged);
+    for (size_t k = f->touch; k < f[1].touch; k++) {
+        const rg_contact_touch *t = &c->touch[k];
+        if (!(c->energy[t->pair] > 0)) {
+            continue;
+        }
+        const double *work = c->power + 2 * t->pair;
+        for (int n = 0; n < RG_CONTACT_ROW; n++) {
+            c->dragged[RG_CONTACT_ROW * i + (size_t)n] +=
+                c->drag[18 * t->pair + (size_t)(RG_CONTACT_ROW * t->side + n)];
+        }
+        c->shift[i] += 0.5 * (work[t->side] - work[1 - t->side]);
+        heat[f->slot] -= 0.5 * before * (work[0] + work[1]);
+    }
+}
+
 /* Pushes the element of a face; returns whether it touches something. */
 static bool push_face(const rg_contacts *c, const rg_contact_side *f, const rg_push *push, double dt,
                       const rg_contact_record *to) {
@@ -189,7 +255,10 @@ static bool push_face(const rg_contacts *c, const rg_contact_side *f, const rg_p
         push_element(c, f, force, push);
         to->impulse[f->slot] += felt * dt;
     }
-    for (size_t k = f->touch; to->heat != NULL && k < f[1].touch; k++) {
+    if (c->damping > 0) {
+        note_drag(c, f, push->dt_now, to->heat);
+    }
+    for (size_t k = f->touch; c->heat != NULL && to->heat != NULL && k < f[1].touch; k++) {
         to->heat[f->slot] += 0.5 * c->heat[c->touch[k].pair];
     }
     return touches;

@@ -20,6 +20,7 @@ typedef struct {
     int32_t material;
     double modulus;   /* lambda + 2 mu (Pa) */
     double shear;     /* mu (Pa) */
+    double density;   /* kg/m3 */
     double height;    /* of its element over it (m) */
     double rest[9];   /* corners, undeformed (m) */
     double corner[9]; /* now */

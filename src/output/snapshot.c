@@ -489,7 +489,7 @@ double rg_snapshots_frame_bytes(const rg_case *c) {
                    whole = RG_FIELD_RANK | RG_FIELD_FRAGMENT | RG_FIELD_MATERIAL; /* numbers, in doubles */
     double values = 0, numbers = 0;
     if ((c->output.fields & RG_FIELD_CONTACT) != 0) {
-        values += rg_case_rubs(c) ? 5 : 4;
+        values += rg_case_heats(c) ? 5 : 4;
     }
     for (unsigned bit = 1; bit <= c->output.fields; bit *= 2) {
         values += (bit & c->output.fields & nodal) != 0 ? NODAL : 0;

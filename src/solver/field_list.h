@@ -43,8 +43,8 @@
     /* sides of exposed interfaces that have been outside all bodies since, as bits */                       \
     X(body_clear, BYTE, FACE, 1, s->input->contact.model == RG_CONTACT_GENERAL && s->input->bodies > 0,      \
       "body_clear")                                                                                          \
-    /* half of what friction took of its pairs (J) */                                                        \
-    X(contact_heat, DOUBLE, ELEMENT, 1, rg_case_rubs(s->input), "contact_heat")                              \
+    /* half of what friction and damping took of its pairs (J) */                                            \
+    X(contact_heat, DOUBLE, ELEMENT, 1, rg_case_heats(s->input), "contact_heat")                             \
     /* tangent over the undeformed one, at most (1): of elements, of tiles */                                \
     X(stiffening, REAL, ELEMENT, 1, true, NULL)                                                              \
     X(tile_stiffening, REAL, TILE, 1, true, NULL)                                                            \

@@ -169,7 +169,8 @@ static void tile_drift(rg_solver *s, size_t tile, const rg_workspace *w) {
     rg_constraints_drift(s->constraints, tile, s->u);
     rg_ties_drift(s->ties, tile, s->time, s->dt_next, s->u);
     if (s->contacts != NULL) {
-        rg_contacts_place(s->contacts, tile, s->u, s->contact_sunk);
+        rg_contacts_place(s->contacts, tile, s->u, s->velocity, s->contact_sunk);
+        rg_contacts_settle(s->contacts, tile, 0.5 * s->dt_next, s->contact_heat);
     }
     rg_trace_args traces = rg_tile_traces(s, t, w, true);
     s->kernels->send(&traces, 0, rg_tile_face_blocks(t));
@@ -343,7 +344,7 @@ static void meet(rg_solver *s, const impulse *p) {
     if (s->contacts == NULL || !p->constrain || !rg_contacts_any(s->contacts)) {
         return;
     }
-    rg_contacts_meet(s->contacts, s->kernels, true);
+    rg_contacts_meet(s->contacts, s->kernels, s->dt > 0 ? s->dt : s->dt_next);
 #pragma omp master
     {
         s->stepper->touching = rg_contacts_touching(s->contacts);
@@ -472,7 +473,7 @@ static void publish(rg_solver *s) {
 #pragma omp for schedule(static)
         for (size_t t = 0; t < d->tiles; t++) {
             if (s->contacts != NULL) {
-                rg_contacts_place(s->contacts, t, s->u, s->contact_sunk);
+                rg_contacts_place(s->contacts, t, s->u, s->velocity, s->contact_sunk);
             }
             rg_trace_args traces = rg_tile_traces(s, &d->tile[t], w, false);
             s->kernels->send(&traces, 0, rg_tile_face_blocks(&d->tile[t]));
@@ -550,7 +551,7 @@ static void start_contacts(rg_solver *s) {
     publish(s);
     rg_halo_finish(rg_contacts_halo(s->contacts));
 #pragma omp parallel
-    rg_contacts_meet(s->contacts, s->kernels, false);
+    rg_contacts_meet(s->contacts, s->kernels, 0);
     rg_exposure_refuse_overlap(s);
 }
 
@@ -619,7 +620,7 @@ static void search_contacts(rg_solver *s, bool exposed) {
     if (exposed) {
         rg_halo_finish(rg_contacts_halo(s->contacts));
 #pragma omp parallel
-        rg_contacts_meet(s->contacts, s->kernels, false);
+        rg_contacts_meet(s->contacts, s->kernels, 0);
         rg_contacts_sink(s->contacts, s->exposed, s->contact_sunk);
         rg_exposure_settle(s);
         rg_bodies_expose(s->bodies, s->exposed);

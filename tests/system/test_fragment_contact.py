@@ -97,6 +97,28 @@ def test_cradle_of_bars(run, figure, case):
     assert result.summary["energy_error_rel"] < 2e-4
 
 
+@pytest.mark.parametrize("damping", [0, 0.3, 0.8])
+def test_damped_blocks_part_as_theory_tells(run, figure, case, damping):
+    """Two blocks, stiff beside their contact, strike at v = 1 m/s: whatever its potential, f (1 + c d') leaves them e v with
+    c v (1 + e) = ln((1 + c v)/(1 - c e v)), and no momentum; what is missing is heat."""
+    boxes = [((0, 0, -2.002 * H), (2 * H, 2 * H, 2 * H), (2, 2, 2)), ((0, 0, 0), (2 * H, 2 * H, 2 * H), (3, 3, 2))]
+    path = case(f"blocks-{damping}", boxes, material(0.2) + f'initial: {{velocity: {{z: "z < {-0.001 * H} ? 0.5 : -0.5"}}}}\n'
+                "time: {end: 1.8e-6}\noutput: {interval: 0.9e-6, fields: []}\n")
+    result = run(path, sets={"contact.penalty": 0.01, "contact.damping": damping})
+    low, high = 0, 1
+    for _ in range(50 * (damping > 0)):
+        e = (low + high) / 2
+        low, high = (e, high) if np.log((1 + damping) / (1 - damping * e)) < damping * (1 + e) else (low, e)
+    last = result.fragments[-2:]
+    velocity = last["momentum_z"] / last["mass"]
+    found = velocity[1] - velocity[0]
+    figure("restitution of blocks with damped contact", found, theory=high, bound=1e-2)
+    assert abs(sum(last["momentum_z"])) < rounding(1e-12, 1e-5) * last["mass"][0]
+    lost = 0.5 * last["mass"].sum() / 4 * (1 - found**2)
+    assert result.energy["friction"][-1] == pytest.approx(lost if damping > 0 else 0, rel=1e-3)
+    figure("energy error of blocks with damped contact", result.summary["energy_error_rel"], bound=rounding(2e-5, 1e-4))
+
+
 def test_pressure_goes_through_faces_that_do_not_match(run, figure, case):
     """Two blocks in a die, of 2 and 3 cells across, under a pressure that rises slowly: the same stress in all elements."""
     pressure, end = 1e8, 160 * H / SPEED

@@ -166,8 +166,9 @@ static const mistake mistakes[] = {
      "or one twice: material\n"
      ":19:71: contact.pairs[3].static_friction: 0.1: faces at rest hold at least as well as sliding ones; "
      "allowed: number >= friction\n"},
-    {"  energy: 34\n", "  energy: 34\ncontact: {penalty: 3}\n",
-     ":13:11: contact.penalty: 3: not used, because contact.model is interfaces\n"},
+    {"  energy: 34\n", "  energy: 34\ncontact: {penalty: 3, damping: 0.1}\n",
+     ":13:11: contact.penalty: 3: not used, because contact.model is interfaces\n"
+     ":13:23: contact.damping: 0.1: not used, because contact.model is interfaces\n"},
     {"  law: linear\n", "  law: linear\n  activation: continuous\n  onset: 0.2\n",
      ":12:3: interface.onset: 0.2: not used, because interface.activation is not conserving\n"},
     {"  law: linear\n", "  law: linear\n  activation: conserving\n  onset: 0\n  contact: flux\n",

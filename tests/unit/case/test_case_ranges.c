@@ -59,6 +59,8 @@ static const struct {
      "interface.weibull.seed", "integer >= 0", NULL, NULL},
     {"contact={model: general, penalty: %s}", "1e-9", "0", "1e9", NULL, "contact.penalty", "number > 0", NULL,
      NULL},
+    {"contact={model: general, damping: %s}", "0", "-1e-9", "1e9", NULL, "contact.damping",
+     "number >= 0 (s/m)", NULL, NULL},
     {"viscosity.linear=%s", "0", "-1e-9", "1e9", NULL, "viscosity.linear", "number >= 0", NULL, NULL},
     {"viscosity.quadratic=%s", "0", "-1e-9", "1e9", NULL, "viscosity.quadratic", "number >= 0", NULL, NULL},
     {"time.end=%s", "1e-9", "0", "1e300", NULL, "time.end", "number > 0 (s)", NULL, NULL},

@@ -1,6 +1,6 @@
 /* Contact of debris drawn at random, against all pairs of faces of the whole mesh, with the faces that stand
  * for them by quadrature and the forces by their virtual work, on any number of ranks; with friction, from
- * one state to the next, over searches and a checkpoint. Prints TAP from rank 0. */
+ * one state to the next, over searches and a checkpoint; with damping. Prints TAP from rank 0. */
 #include <inttypes.h>
 #include <math.h>
 #include <string.h>
@@ -43,6 +43,8 @@ typedef struct {
     bool newly;
     double sunk, mean[RG_FNODES][3]; /* part of each node in the corners, in the order of the face's nodes */
     int order[3];                    /* corner i, of the face's nodes */
+    double rate[2][9];               /* of the corners, before the kick and after it (m/s) */
+    double impedance;                /* of its solid (Pa s/m) */
 } body_face;
 
 typedef double nodal[RG_NODES][3];
@@ -58,6 +60,7 @@ typedef struct {
     double *felt;                  /* [element]: sum of the sizes (N) */
     grip *grips;                   /* [face][face], or NULL: no friction */
     double *heat;                  /* [element] (J) */
+    double damping, *settled;      /* (s/m), [element]: and its heat in the half step after the kick (J) */
     char words[200];
 } twin;
 
@@ -110,7 +113,8 @@ static body_face make_face(const random_state *r, rg_gid e, int k) {
                           .shear = m->mu},
                    .newly = inner >= 0 && drawn_exposure(inner) == RG_NEWLY_EXPOSED,
                    .sunk = inner >= 0 ? drawn_sunk(4 * e + k) : 0,
-                   .order = {0, 1, 2}};
+                   .order = {0, 1, 2},
+                   .impedance = sqrt(m->density * rg_material_modulus(m))};
     const int *node = rg_face_node[k];
     int opposite = 6 - node[0] - node[1] - node[2];
     twice_area(x[node[0]], x[node[1]], x[node[2]], normal);
@@ -128,7 +132,10 @@ static body_face make_face(const random_state *r, rg_gid e, int k) {
         for (int c = 0; c < 3; c++) {
             double sum = 0;
             for (int n = 0; n < RG_FNODES; n++) {
-                sum += f.mean[n][f.order[i]] * moved_u(e, node[n], c);
+                double part = f.mean[n][f.order[i]];
+                sum += part * moved_u(e, node[n], c);
+                f.rate[0][3 * i + c] += part * drawn_velocity(SEED, e, node[n], c);
+                f.rate[1][3 * i + c] += part * drawn_now(SEED, e, node[n], c);
             }
             f.is.rest[3 * i + c] = x[node[f.order[i]]][c];
             f.is.corner[3 * i + c] = f.is.rest[3 * i + c] + sum;
@@ -168,21 +175,37 @@ static void feel(twin *t, const body_face *f, const double force[9]) {
  * while it does. */
 static const double FRICTION[2][2][2] = {{{0.3, 0.1}, {0.2, 0.05}}, {{0.2, 0.05}, {0, 0}}};
 
+/* Work of damping in both half steps: half of it for either element, and what it changes by as a face gets
+ * faster for that of the face. */
+static void damp(twin *t, const body_face *const f[2], const double drag[18]) {
+    double first[2] = {0, 0}, change[2] = {0, 0};
+    for (int n = 0; n < 18; n++) {
+        first[n / 9] -= DT_NOW * drag[n] * f[n / 9]->rate[0][n % 9];
+        change[n / 9] -= DT_NOW * drag[n] * (f[n / 9]->rate[1][n % 9] - f[n / 9]->rate[0][n % 9]);
+    }
+    for (int k = 0; k < 2; k++) {
+        t->heat[f[k]->is.id / 4] += 0.5 * (first[0] + first[1]);
+        t->settled[f[k]->is.id / 4] += 0.5 * (first[0] + first[1]) + change[k];
+    }
+}
+
 static void meet(twin *t, int a, int b, rg_contact_pair *pair) {
-    const body_face *f[2] = {&t->face[a], &t->face[b]};
+    const body_face *const f[2] = {&t->face[a], &t->face[b]};
     double corner[18], box[12], sunk[2] = {f[0]->sunk, f[1]->sunk}, force[18], energy, depth, heat = 0;
+    double rate[18], drag[18] = {0}, stiffer = 0;
     const double *friction = FRICTION[f[0]->is.material][f[1]->is.material];
     if (friction[0] > 0) {
         memcpy(pair->friction, friction, sizeof pair->friction);
         pair->shear =
             pair->stiffness * (f[0]->is.shear + f[1]->is.shear) / (f[0]->is.modulus + f[1]->is.modulus);
     }
-    memcpy(corner, f[0]->is.corner, sizeof f[0]->is.corner);
-    memcpy(corner + 9, f[1]->is.corner, sizeof f[1]->is.corner);
-    rg_contact_box(corner, box);
-    rg_contact_box(corner + 9, box + 6);
-    pair->face[0] = 0;
-    pair->face[1] = 1;
+    for (int k = 0; k < 2; k++) {
+        memcpy(corner + 9 * k, f[k]->is.corner, sizeof f[k]->is.corner);
+        memcpy(rate + 9 * k, f[k]->rate[0], sizeof f[k]->rate[0]);
+        rg_contact_box(corner + 9 * k, box + 6 * k);
+        pair->face[k] = k;
+    }
+    pair->impedance = 0.25 * (f[0]->impedance + f[1]->impedance) / 2;
     rg_contact_args args = {.corner = corner,
                             .box = box,
                             .sunk = sunk,
@@ -191,7 +214,12 @@ static void meet(twin *t, int a, int b, rg_contact_pair *pair) {
                             .energy = &energy,
                             .depth = &depth,
                             .grip = t->grips == NULL ? NULL : t->grips[a * t->faces + b],
-                            .heat = &heat};
+                            .heat = &heat,
+                            .rate = t->damping > 0 ? rate : NULL,
+                            .damping = t->damping,
+                            .dt = DT,
+                            .drag = drag,
+                            .stiffer = &stiffer};
     rg_reference_contact(&args, 0, 1);
     t->heat[f[0]->is.id / 4] += 0.5 * heat;
     t->heat[f[1]->is.id / 4] += 0.5 * heat;
@@ -210,15 +238,16 @@ static void meet(twin *t, int a, int b, rg_contact_pair *pair) {
                  f[0]->is.id / 4, f[1]->is.id / 4, middle[0], middle[1], middle[2]);
     }
     t->energy += energy;
-    t->pressed[a] = fmax(t->pressed[a], pair->stiffness);
-    t->pressed[b] = fmax(t->pressed[b], pair->stiffness);
+    t->pressed[a] = fmax(t->pressed[a], fmax(pair->stiffness, stiffer));
+    t->pressed[b] = fmax(t->pressed[b], fmax(pair->stiffness, stiffer));
     feel(t, f[0], force);
     feel(t, f[1], force + 9);
+    damp(t, f, drag);
 }
 
 /* grips: as twin.grips, in and out; *grips is made where it is NULL. */
-static twin make_twin(const random_state *r, grip **grips) {
-    twin t = {0};
+static twin make_twin(const random_state *r, grip **grips, double damping) {
+    twin t = {.damping = damping};
     size_t elements = (size_t)r->mesh->elements;
     list_faces(r, &t);
     if (grips != NULL && *grips == NULL) {
@@ -226,6 +255,7 @@ static twin make_twin(const random_state *r, grip **grips) {
     }
     t.grips = grips == NULL ? NULL : *grips;
     t.heat = RG_NEW(double, elements);
+    t.settled = RG_NEW(double, elements);
     t.depth_of = RG_NEW(double, (size_t)t.faces);
     t.pressed = RG_NEW(double, (size_t)t.faces);
     t.force = RG_NEW(nodal, elements);
@@ -244,12 +274,10 @@ static twin make_twin(const random_state *r, grip **grips) {
 }
 
 static void free_twin(twin *t) {
-    rg_free(t->face);
-    rg_free(t->depth_of);
-    rg_free(t->pressed);
-    rg_free(t->force);
-    rg_free(t->felt);
-    rg_free(t->heat);
+    void *blocks[] = {t->face, t->depth_of, t->pressed, t->force, t->felt, t->heat, t->settled};
+    for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) {
+        rg_free(blocks[i]);
+    }
 }
 
 /* ---- The solver's ---- */
@@ -292,14 +320,14 @@ static void draw_side(const random_state *r, rg_real *sunk, size_t interface, rg
 static void place(const random_state *r, bool rub) {
     const rg_solver *s = r->solver;
     for (size_t t = 0; t < s->domain->tiles; t++) {
-        rg_contacts_place(s->contacts, t, s->u, s->contact_sunk);
+        rg_contacts_place(s->contacts, t, s->u, s->velocity, s->contact_sunk);
     }
     rg_halo *halo = rg_contacts_halo(s->contacts);
     rg_halo_pack(halo);
     rg_halo_start(halo);
     rg_halo_finish(halo);
 #pragma omp parallel
-    rg_contacts_meet(s->contacts, s->kernels, rub);
+    rg_contacts_meet(s->contacts, s->kernels, rub ? DT : 0);
 }
 
 typedef struct {
@@ -365,22 +393,14 @@ static bool pushed_well(const random_state *r, const twin *t, const rg_real *v, 
     return good;
 }
 
-static bool impulse_good(const random_state *r, const twin *t, const double *impulse) {
+/* found[slot] over `of` is wanted[element], to rounding of the forces over a length. */
+static bool values_good(const random_state *r, const twin *t, const double *found, double of,
+                        const double *wanted, double length) {
     const rg_domain *d = r->solver->domain;
     bool good = true;
     for (size_t slot = 0; good && slot < d->blocks * RG_LANES; slot++) {
         rg_gid e = d->id[slot];
-        good = e < 0 || near(impulse[slot] / DT, t->felt[e], ROUNDED * (t->felt[e] + 1));
-    }
-    return good;
-}
-
-static bool heat_good(const random_state *r, const twin *t, const double *heat) {
-    const rg_domain *d = r->solver->domain;
-    bool good = true;
-    for (size_t slot = 0; good && slot < d->blocks * RG_LANES; slot++) {
-        rg_gid e = d->id[slot];
-        good = e < 0 || near(heat[slot], t->heat[e], ROUNDED * (t->felt[e] + 1) * 1e-6);
+        good = e < 0 || near(found[slot] / of, wanted[e], ROUNDED * (t->felt[e] + 1) * length);
     }
     return good;
 }
@@ -460,7 +480,7 @@ static void check_forces(const random_state *r, const twin *t, const char *of) {
         rg_contacts_push(s->contacts, n, &push, DT, &to);
     }
     report(pushed_well(r, t, v, DT) && pushed_well(r, t, w, DT_NOW), of, "forces on elements");
-    report(impulse_good(r, t, impulse), of, "impulse");
+    report(values_good(r, t, impulse, DT, t->felt, 1), of, "impulse");
     if (t->grips == NULL) {
         report(touches_good(r, t), of, "elements that begin to touch");
         for (size_t n = 0; n < s->domain->tiles; n++) {
@@ -469,7 +489,7 @@ static void check_forces(const random_state *r, const twin *t, const char *of) {
         report(touches_good(r, t), of, "and go on to");
     }
     if (heat != NULL) {
-        report(heat_good(r, t, heat), of, "heat of friction");
+        report(values_good(r, t, heat, 1, t->heat, 1e-6), of, "heat");
     }
     rg_free(heat);
     rg_free(impulse);
@@ -561,7 +581,7 @@ static void check(void) {
     const char *change[] = {"contact={model: general, penalty: 4}", "bodies=[]"};
     random_state r = random_state_make(2, change, MPI_COMM_WORLD);
     random_state_draw(&r, SEED);
-    twin t = make_twin(&r, NULL);
+    twin t = make_twin(&r, NULL, 0);
     visit(&r, draw_side, NULL);
     rg_contacts_search(r.solver->contacts, r.solver->exposed, r.solver->u);
     place(&r, false);
@@ -656,12 +676,12 @@ static void count_grips(const twin *t, int pressing[2]) {
     }
 }
 
+#define ROUGH                                                                                                \
+    "friction: 0.1, static_friction: 0.3, pairs: [{between: [glass, steel], friction: 0.9}, {between: "      \
+    "[steel, steel], friction: 0}, {between: [steel, glass], friction: 0.05, static_friction: 0.2}]}"
+
 static void check_friction(void) {
-    const char *change[] = {
-        "contact={model: general, penalty: 4, friction: 0.1, static_friction: 0.3, pairs: ["
-        "{between: [glass, steel], friction: 0.9}, {between: [steel, steel], friction: 0}, "
-        "{between: [steel, glass], friction: 0.05, static_friction: 0.2}]}",
-        "bodies=[]"};
+    const char *change[] = {"contact={model: general, penalty: 4, " ROUGH, "bodies=[]"};
     static const char *const of[] = {"friction, first", "friction, a step on", "friction, after a search",
                                      "friction, after a restart"};
     random_state r = random_state_make(2, change, MPI_COMM_WORLD);
@@ -680,7 +700,7 @@ static void check_friction(void) {
         if (i != 1) {
             rg_contacts_search(s->contacts, s->exposed, s->u);
         }
-        twin t = make_twin(&r, &grips);
+        twin t = make_twin(&r, &grips, 0);
         visit(&r, draw_side, NULL);
         place(&r, true);
         check_forces(&r, &t, of[i]);
@@ -692,6 +712,33 @@ static void check_friction(void) {
     rg_free(grips);
     random_state_free(&r);
     moves = 0;
+}
+
+/* ---- Damping ---- */
+
+static void check_damping(void) {
+    const char *change[] = {"contact={model: general, penalty: 4, damping: 0.05, " ROUGH, "bodies=[]"};
+    random_state r = random_state_make(2, change, MPI_COMM_WORLD);
+    rg_solver *s = r.solver;
+    size_t slots = s->domain->blocks * RG_LANES;
+    grip *grips = NULL;
+    random_state_draw(&r, SEED);
+    memset(s->contact_heat, 0, slots * sizeof *s->contact_heat);
+    visit(&r, draw_side, NULL);
+    rg_contacts_search(s->contacts, s->exposed, s->u);
+    twin t = make_twin(&r, &grips, 0.05);
+    place(&r, true);
+    check_frequencies(&r, &t);
+    check_forces(&r, &t, "damping");
+    memcpy(s->velocity, s->step_velocity, slots * 3 * RG_NODES * sizeof *s->velocity);
+    for (size_t n = 0; n < s->domain->tiles; n++) {
+        rg_contacts_place(s->contacts, n, s->u, s->velocity, s->contact_sunk);
+        rg_contacts_settle(s->contacts, n, DT_NOW, s->contact_heat);
+    }
+    report(values_good(&r, &t, s->contact_heat, 1, t.settled, 1e-6), "damping", "heat after the kick");
+    rg_free(grips);
+    free_twin(&t);
+    random_state_free(&r);
 }
 
 /* ---- Which faces are exposed ---- */
@@ -744,6 +791,7 @@ int main(int argc, char **argv) {
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);
     check();
     check_friction();
+    check_damping();
     check_exposure("interface={law: linear, strength: 400e6, energy: 34}");
     check_exposure(
         "interface={form: intrinsic, law: needleman, strength: 400e6, energy: 34, contact: potential}");

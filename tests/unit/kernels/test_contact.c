@@ -16,10 +16,11 @@ enum { PAIRS = 4000, TRIES = 400000 };
 
 typedef struct {
     double corner[2 * PAIRS][9], box[2 * PAIRS][6], sunk[2 * PAIRS], force[PAIRS][18], energy[PAIRS],
-        depth[PAIRS], grip[PAIRS][RG_GRIP], heat[PAIRS];
+        depth[PAIRS], grip[PAIRS][RG_GRIP], heat[PAIRS], rate[2 * PAIRS][9], drag[PAIRS][18], stiffer[PAIRS];
     rg_contact_pair pair[PAIRS];
     size_t count;
     bool rough; /* with friction */
+    double damping;
 } bunch;
 
 static rg_contact_args args_of(bunch *b) {
@@ -31,7 +32,12 @@ static rg_contact_args args_of(bunch *b) {
                              .energy = b->energy,
                              .depth = b->depth,
                              .grip = b->rough ? b->grip[0] : NULL,
-                             .heat = b->heat};
+                             .heat = b->heat,
+                             .rate = b->damping > 0 ? b->rate[0] : NULL,
+                             .damping = b->damping,
+                             .dt = 0.5,
+                             .drag = b->drag[0],
+                             .stiffer = b->stiffer};
 }
 
 /* The first `pairs` pairs. */
@@ -483,6 +489,93 @@ static void test_friction_value(void **state) {
     assert_true(slides && near(heat, work - stored, 1e-14) && heat > 5 * stored);
 }
 
+/* ---- Damping ---- */
+
+/* Pairs whose corners move, some so fast that the force is none or twice as large, some pressed so hard that
+ * the impedance bounds what is taken. */
+static void throw_damped_pairs(bunch *b, uint64_t seed) {
+    dice d = {seed, 0};
+    throw_rough_pairs(b, seed);
+    b->damping = 0.7;
+    for (size_t i = 0; i < PAIRS; i++) {
+        b->pair[i].impedance = 0.3 * dice_unit(&d);
+        for (int k = 0; k < 18; k++) {
+            b->rate[2 * i + (size_t)k / 9][k % 9] = 2 * dice_sign(&d);
+        }
+    }
+}
+
+static void test_damping_reference(void **state) {
+    (void)state;
+    const rg_kernels *sets[INPUT_SETS];
+    static bunch before;
+    int n = input_sets(sets, INPUT_SETS), whole = 0, none = 0, between = 0;
+    throw_damped_pairs(&before, 15);
+    expected = before;
+    meet(&rg_kernels_reference, &expected, PAIRS);
+    for (int s = 0; s < n; s++) {
+        found = before;
+        meet(sets[s], &found, PAIRS);
+        compare_grips(sets[s]->name, 1e-14);
+        for (size_t i = 0; i < PAIRS; i++) {
+            double kappa = expected.pair[i].stiffness;
+            for (int k = 0; k < 18 && expected.energy[i] > 0; k++) {
+                assert_true(near(found.drag[i][k], expected.drag[i][k], 1e-13 * kappa));
+            }
+            assert_true(!(expected.energy[i] > 0) ||
+                        near(found.stiffer[i], expected.stiffer[i], 1e-12 * kappa));
+        }
+    }
+    for (size_t i = 0; i < PAIRS; i++) { /* it takes energy, and never pulls */
+        double power = 0, size = 0;
+        for (int k = 0; k < 18 && expected.energy[i] > 0; k++) {
+            power += expected.drag[i][k] * expected.rate[2 * i + (size_t)k / 9][k % 9];
+            size += fabs(expected.drag[i][k]);
+        }
+        assert_true(power <= 1e-15);
+        none += size == 0;
+        whole += expected.stiffer[i] > 1.99 * expected.pair[i].stiffness;
+        between += size > 0;
+    }
+    assert_true(between > 1000 && whole > 100 && none > 100);
+}
+
+static void test_damping_momenta(void **state) {
+    (void)state;
+    throw_damped_pairs(&found, 16);
+    meet(rg_kernels_select(), &found, PAIRS);
+    check_momenta();
+}
+
+/* A face that sinks into a larger one: N (1 + c d') until the impedance says less, and for B and the step. */
+static void test_damping_value(void **state) {
+    (void)state;
+    static const double x[18] = {0, 0, 0.01, 1, 0, 0.01, 0, 1, 0.01, -3, -3, 0, -3, 9, 0, 9, -3, 0};
+    static const double normal = 3 * 0.5 * 0.01 * (1 - 4e-4) * (1 - 12e-4);
+    static const double rate[] = {-9, -0.5, 0, 0.5, 1.2, 9}, q[] = {-1, -0.35, 0, 0.35, 0.84, 1};
+    bunch *b = &found;
+    memset(b, 0, sizeof *b);
+    memcpy(b->corner, x, sizeof x);
+    b->damping = 0.7;
+    b->pair[0] = (rg_contact_pair){.face = {0, 1}, .stiffness = 3, .limit = 0.5, .impedance = 1};
+    for (int k = 0; k < 12; k++) {
+        double most = k < 6 ? 1 : 0.25 * 0.7 * normal / 0.5; /* a quarter of c N over the area */
+        double factor = k < 6 ? q[k] : fmax(-1, fmin(1, 0.25 * 0.7 * rate[k - 6]));
+        b->pair[0].impedance = most;
+        for (int i = 0; i < 3; i++) {
+            b->rate[0][3 * i + 2] = 3 + rate[k % 6];
+            b->rate[1][3 * i + 2] = 3;
+        }
+        meet(rg_kernels_select(), b, 1);
+        double push = b->force[0][11] + b->force[0][14] + b->force[0][17];
+        double drag = b->drag[0][11] + b->drag[0][14] + b->drag[0][17];
+        assert_true(near(push, (1 + factor) * normal, 1e-14));
+        assert_true(near(drag, factor * normal, 1e-14));
+        double taken = fmin(0.7 * normal / 0.5, most);
+        assert_true(near(b->stiffer[0], 3 * (1 + fmax(factor, 0)) + 2 * taken / 0.5, 1e-13));
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_reference),
@@ -495,6 +588,9 @@ int main(void) {
         cmocka_unit_test(test_friction_reference),
         cmocka_unit_test(test_friction_momenta),
         cmocka_unit_test(test_friction_value),
+        cmocka_unit_test(test_damping_reference),
+        cmocka_unit_test(test_damping_momenta),
+        cmocka_unit_test(test_damping_value),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
