@@ -183,7 +183,7 @@ static void test_headings(void **state) {
         assert_true(i > 0 || from == text);
     }
     assert_non_null(strstr(from, "\n\n## Expressions\n\n| write"));
-    assert_int_equal(headings, 19);
+    assert_int_equal(headings, 20);
     free(text);
 }
 
