@@ -119,6 +119,22 @@ def test_damped_blocks_part_as_theory_tells(run, figure, case, damping):
     figure("energy error of blocks with damped contact", result.summary["energy_error_rel"], bound=rounding(2e-5, 1e-4))
 
 
+def test_a_run_that_fails_has_its_last_energies_once(run, case):
+    """Where damping shortens the step by more than the case allows, the row of the state that follows is that of a run that goes
+    on: forces are computed once more for it, but what they take is not taken twice."""
+    boxes = [((0, 0, -2.002 * H), (2 * H, 2 * H, 2 * H), (2, 2, 2)), ((0, 0, 0), (2 * H, 2 * H, 2 * H), (3, 3, 2))]
+    velocity = f'x: "z < {-0.001 * H} ? 0.2 : 0", z: "z < {-0.001 * H} ? 0.5 : -0.5"'
+    path = case("fails", boxes, material(0.2) + f"initial: {{velocity: {{{velocity}}}}}\ntime: {{end: 0.6e-6}}\n"
+                "output: {interval: 1, fields: [], fragments: none}\n")
+    sets = {"contact.penalty": 0.01, "contact.damping": 0.8, "contact.friction": 0.2}
+    whole = run(path, sets=sets)
+    failed = run(path, sets={**sets, "time.collapse": 0.9, "output.interval": 1000}, expect=1)
+    at = list(whole.energy["step"]).index(failed.energy["step"][-1])
+    assert failed.energy["friction"][-1] > 0 and failed.energy["time"][-1] > 0.4e-6
+    for part in ("time", "kinetic", "bulk", "contact", "friction"):
+        assert failed.energy[part][-1] == whole.energy[part][at], part
+
+
 def test_pressure_goes_through_faces_that_do_not_match(run, figure, case):
     """Two blocks in a die, of 2 and 3 cells across, under a pressure that rises slowly: the same stress in all elements."""
     pressure, end = 1e8, 160 * H / SPEED
