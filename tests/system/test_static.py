@@ -109,6 +109,30 @@ def test_the_same_bits_on_any_layout_and_through_a_restart(run, bar, form):
     assert f'"state_hash": "{hash_of_all}"' in (shorter.dir / "summary.json").read_text()
 
 
+def test_everything_at_once_from_equilibrium_on_five_layouts(run, bar):
+    """Loads of every kind, supports that begin and end, a crack that is there and one that opens, a rigid body that presses, a stress; then through a restart."""
+    loads = [*EVERYTHING["loads"], {"name": "push", "set": "y+", "force": {"y": "0.1*(1 + rise(t))"}}, {"name": "bed", "set": "x+", "foundation": 1e13},
+             {"name": "spin", "where": "z > 0.5e-3", "centrifugal": {"speed": 1e4, "axis": [1, 2, 0]}}, {"name": "gas", "cracks": True, "pressure": 1e6}]
+    boundary = [{**EVERYTHING["boundary"][0], "angle": "1e-4 + 1e3*t"}, EVERYTHING["boundary"][1], {"set": "z+", "absorbing": True}, {"where": "ny < -0.5", "dashpot": 4e6},
+                {"name": "catch", "where": "nx < -0.5 && z < 0.4e-3", "component": "y", "velocity": 1, "from": 2e-8, "until": 4e-8}]
+    sets = {**EVERYTHING, "loads": loads, "boundary": boundary, "tables": {"rise": {"points": [[0, 0], [5e-8, 1]], "smooth": True}}, "start": "static",
+            "interface": {"law": "linear", "strength": 1e9, "energy": 30, "contact": "potential", "beta_s": 2,
+                          "sets": [{"where": "abs(z - 0.75e-3) < 5e-5 && abs(nz) > 0.8", "open": True, "at": 3e-8}, {"where": "abs(z - 0.25e-3) < 5e-5 && abs(nz) > 0.8 && x > 0.25e-3", "open": True}]},
+            "bodies": [{**STOP, "at": [0, 0, 1.50001e-3], "velocity": {"z": -1}}], "initial": {**EVERYTHING["initial"], "stress": {"xx": 1e6}}, "checkpoint.steps": 10, "checkpoint.keep": 10}
+    one = run(bar, sets=sets)
+    assert one.summary["static_residual"] < rounding(1e-8, 1e-3)
+    for column in ("pull_work", "push_work", "bed_work", "spin_work", "gas_work", "catch_work", "hold_work", "stop_fz"):
+        assert np.ptp(one.history[column]) > 0, column
+    for ranks, threads in ((1, 2), (2, 2), (3, 1), (5, 1)):
+        other = run(bar, ranks=ranks, threads=threads, sets=sets)
+        assert (one.summary["state_hash"], one.summary["static_passes"]) == (other.summary["state_hash"], other.summary["static_passes"])
+        assert (one.dir / "history.csv").read_bytes() == (other.dir / "history.csv").read_bytes()
+    shorter = run(bar, ranks=2, sets={**sets, "time.steps": 15})
+    again = launch("run", "--restart", shorter.dir, "-q", "--set", "time.steps=40", ranks=3)
+    assert again.returncode == 0, again.stderr
+    assert f'"state_hash": "{one.summary["state_hash"]}"' in (shorter.dir / "summary.json").read_text()
+
+
 # ---- Rest by damping ----
 
 
