@@ -235,7 +235,7 @@ typedef enum {
       "f_c: quasi-static strength without pressure across; the unit of pressures and strengths")             \
     X(COHESIVE_STRENGTH, "cohesive_strength", NULL, RG_NEEDED, RG_MATERIAL_BIT_HOLMQUIST_JOHNSON_COOK,       \
       "A of the strength A (1 - D) + B P*^N; under tension it falls to 0 at -tensile_limit (1 - D)")         \
-    X(STRENGTH_LIMIT, "strength_limit", NULL, RG_FROM_0, RG_MATERIAL_BIT_HOLMQUIST_JOHNSON_COOK,             \
+    X(LARGEST_STRENGTH, "largest_strength", NULL, RG_FROM_0, RG_MATERIAL_BIT_HOLMQUIST_JOHNSON_COOK,         \
       "S_max: most that the strength comes to; 0: no limit")                                                 \
     X(LEAST_FAILURE_STRAIN, "least_failure_strain", NULL, RG_FROM_0, RG_MATERIAL_BIT_HOLMQUIST_JOHNSON_COOK, \
       "least plastic strain to fracture")                                                                    \

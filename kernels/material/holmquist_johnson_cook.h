@@ -57,7 +57,7 @@ typedef struct {
 
 RG_INLINE rg_hjc_constants rg_hjc_constants_of(const rg_material *m) {
     const double *given = m->of.parameter, unit = given[RG_PARAMETER_COMPRESSIVE_STRENGTH];
-    const double limit = given[RG_PARAMETER_STRENGTH_LIMIT];
+    const double limit = given[RG_PARAMETER_LARGEST_STRENGTH];
     const rg_hjc_pores *pores = &m->of.holmquist_johnson_cook.pores;
     return (rg_hjc_constants){
         .bulk = m->lambda + 2.0 / 3 * m->mu,

@@ -87,7 +87,7 @@ static double failure_strain(const solid *s, double p) {
 
 /* von Mises part of tau. */
 static double strength(const solid *s, double J, double p, double D, double speed) {
-    double A = s->p[RG_PARAMETER_COHESIVE_STRENGTH], S = s->p[RG_PARAMETER_STRENGTH_LIMIT];
+    double A = s->p[RG_PARAMETER_COHESIVE_STRENGTH], S = s->p[RG_PARAMETER_LARGEST_STRENGTH];
     double B = s->p[RG_PARAMETER_CRUSHED_STRENGTH], N = s->p[RG_PARAMETER_CRUSHED_POWER];
     double sum = p > 0 ? A * (1 - D) + B * pow(p / s->fc, N) : A * (1 - D + p / s->T);
     return J * s->fc * fmax(fmin(sum * speed, S > 0 ? S : INFINITY), 0);

@@ -60,7 +60,7 @@ const rg_preset rg_preset_list[RG_PRESETS] = {
     {"concrete-hjc", "concrete of 48 MPa that is crushed, by Holmquist, Johnson and Cook",
      "{model: holmquist-johnson-cook, young: 34.0414e9, poisson: 0.145403, density: 2440, reference_rate: 1, "
      "rate_sensitivity: 0.007, compressive_strength: 48e6, cohesive_strength: 0.79, crushed_strength: 1.6, "
-     "crushed_power: 0.61, strength_limit: 7, tensile_limit: 4e6, failure_strain: 0.04, failure_power: 1, "
+     "crushed_power: 0.61, largest_strength: 7, tensile_limit: 4e6, failure_strain: 0.04, failure_power: 1, "
      "least_failure_strain: 0.01, crush_pressure: 16e6, lock_pressure: 0.8e9, lock_strain: 0.1, bulk_1: "
      "85e9, "
      "bulk_2: -171e9, bulk_3: 208e9}",

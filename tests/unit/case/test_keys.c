@@ -166,9 +166,9 @@ static void test_markdown(void **state) {
 /* One heading for each block, also of lists and single keys, with an empty line before all but the first. */
 static void test_headings(void **state) {
     (void)state;
-    static const char *const blocks[] = {"defaults",  "tables",  "mesh",      "material", "materials",
-                                         "interface", "contact", "viscosity", "mass",     "initial",
-                                         "boundary",  "bodies",  "time",      "output",   "checkpoint"};
+    static const char *const blocks[] = {
+        "defaults", "tables", "mesh",  "material", "materials", "interface", "contact", "viscosity", "mass",
+        "initial",  "start",  "relax", "boundary", "bodies",    "time",      "output",  "checkpoint"};
     char *text = NULL, heading[64];
     int keys = print(rg_reference_markdown, "", &text), headings = 0;
     const char *from = text;

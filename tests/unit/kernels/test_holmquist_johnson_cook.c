@@ -30,7 +30,7 @@ static rg_material concrete(void) {
                                       [RG_PARAMETER_COHESIVE_STRENGTH] = 0.79,
                                       [RG_PARAMETER_CRUSHED_STRENGTH] = 1.6,
                                       [RG_PARAMETER_CRUSHED_POWER] = 0.61,
-                                      [RG_PARAMETER_STRENGTH_LIMIT] = 7,
+                                      [RG_PARAMETER_LARGEST_STRENGTH] = 7,
                                       [RG_PARAMETER_TENSILE_LIMIT] = T,
                                       [RG_PARAMETER_FAILURE_STRAIN] = 0.04,
                                       [RG_PARAMETER_FAILURE_POWER] = 1,

@@ -178,7 +178,7 @@ static void check_cracks_refused(void) {
     check_crack_refused("start=static", "", NULL);
     check_crack_refused(
         "interface.friction=0.2", "start=static",
-        "needs interface.friction 0 with start: static: where it sticks would depend on the way");
+        "needs interface.friction 0 with start: static or relax: where it sticks would depend on the way");
 }
 
 /* ---- sets ---- */
