@@ -195,7 +195,7 @@ def test_a_bar_comes_to_rest_on_a_stop(run, figure, bar, start):
     depth = row["end_uz"] - gap
     figure(f"bar on a stop, start {start}: force on it and on the support, over the load", (row["stop_fz"] - row["hold_force_z"]) / (pull * 0.25e-6), theory=1, bound=rounding(1e-6, 1e-3),
            why="the residual at which the search ends")
-    figure(f"bar on a stop, start {start}: force on the support", -row["hold_force_z"], theory=70e9 * row["end_uz"] / 2e-3 * 0.25e-6, bound=rounding(0.001, 0.002), unit="N", relative=True)
+    figure(f"bar on a stop, start {start}: force on the support", -row["hold_force_z"], theory=70e9 * row["end_uz"] / 2e-3 * 0.25e-6, bound=rounding(5e-4, 0.002), unit="N", relative=True)
     assert 0 < depth < 0.1e-6 and done.energy["contact"][0] > 0 and done.energy["kinetic"].max() < rounding(1e-10, 1e-4) * done.energy["bulk"][0]
 
 
