@@ -6,8 +6,9 @@
  * with an Fp as if the solid had been relieved of it, det Fp = 1, in Drucker and Prager's with a plastic
  * volume, in Johnson and Holmquist's with a pressure like that of bulking. In metals, whose limits know no
  * pressure, the mean of it is beside: a Kirchhoff stress of p at any strain, of energy p log J. The ceramic
- * of Deshpande and Evans has no such state: its flaws and their wings would depend on how it came there; nor
- * is one known of a user's material with a history. */
+ * of Deshpande and Evans has no such state: its flaws and their wings would depend on how it came there, as
+ * the pores of Holmquist, Johnson and Cook's concrete would; nor is one known of a user's material with a
+ * history. */
 #ifndef RG_STRESSED_H
 #define RG_STRESSED_H
 
@@ -17,7 +18,7 @@
 
 /* Models that take no stress; that take one into their history; whose stress beside is a pressure alone. */
 enum {
-    RG_STRESS_NONE = RG_MATERIAL_BIT_DESHPANDE_EVANS,
+    RG_STRESS_NONE = (int)RG_MATERIAL_BIT_DESHPANDE_EVANS | (int)RG_MATERIAL_BIT_HOLMQUIST_JOHNSON_COOK,
     RG_STRESS_PRESSURE = (int)RG_MATERIAL_BIT_J2 | (int)RG_MATERIAL_BIT_JOHNSON_COOK,
     RG_STRESS_INSIDE = (int)RG_STRESS_PRESSURE | (int)RG_MATERIAL_BIT_DRUCKER_PRAGER |
                        (int)RG_MATERIAL_BIT_JOHNSON_HOLMQUIST,

@@ -80,7 +80,9 @@ void rg_stress_rule(const rg_entry *e) {
             char *what = rg_text_format(
                 "not with %s, which is %s: %s", rg_case_material_name(c, i), rg_material_word(model),
                 user ? "how a history of the user's own would begin with it is not known"
-                     : "how far its cracks have grown would depend on how the stress came there");
+                : model == RG_MATERIAL_DESHPANDE_EVANS
+                    ? "how far its cracks have grown would depend on how the stress came there"
+                    : "how far its pores have closed would depend on how the stress came there");
             rg_entry_wrong(e, "initial.stress", e->item->at, (rg_subject){0}, what);
             rg_free(what);
             return;

@@ -169,7 +169,7 @@ static const char *const fragments_meaning[] = {
     INITIAL(path "velocity.x", "m/s", (at_) + offsetof(rg_initial, velocity[0]), "velocity along x at the start") \
     INITIAL(path "velocity.y", "m/s", (at_) + offsetof(rg_initial, velocity[1]), "along y")                  \
     INITIAL(path "velocity.z", "m/s", (at_) + offsetof(rg_initial, velocity[2]), "along z")                  \
-    INITIAL(path "stress.xx", "Pa", (at_) + offsetof(rg_initial, stress[0]), "stress before anything is displaced, along the axes of reference: it turns and stretches with the element, and in solids that flow it counts against their limits; not of deshpande-evans") \
+    INITIAL(path "stress.xx", "Pa", (at_) + offsetof(rg_initial, stress[0]), "stress before anything is displaced, along the axes of reference: it turns and stretches with the element, and in solids that flow it counts against their limits; not of deshpande-evans and holmquist-johnson-cook") \
     INITIAL(path "stress.yy", "Pa", (at_) + offsetof(rg_initial, stress[1]), "stress") \
     INITIAL(path "stress.zz", "Pa", (at_) + offsetof(rg_initial, stress[2]), "stress") \
     INITIAL(path "stress.yz", "Pa", (at_) + offsetof(rg_initial, stress[3]), "stress") \

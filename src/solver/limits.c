@@ -11,13 +11,16 @@
 /* A step so long that no rate counts; and one in which what goes on in time stands still (s). */
 static const double slow = 1e9, at_once = 1e-15;
 
-/* Values of a point's history that grow where it flows, and nowhere else: the first ones. */
+/* Values of a point's history that grow where it flows or its pores close, and nowhere else: the first ones.
+ */
 static int flow_values(const rg_material *m) {
     switch (m->model) {
     case RG_MATERIAL_J2:
     case RG_MATERIAL_JOHNSON_COOK:
     case RG_MATERIAL_JOHNSON_HOLMQUIST:
         return 1;
+    case RG_MATERIAL_HOLMQUIST_JOHNSON_COOK:
+        return RG_HJC_CLOSED + 1;
     case RG_MATERIAL_DRUCKER_PRAGER:
         return RG_DP_RISE + 1;
     default:

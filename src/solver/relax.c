@@ -93,19 +93,14 @@ static void stop(relaxing *r) {
 /* Work of the supports that put their nodes where they are at t = 0, by the trapezoidal rule (J). */
 static double place(relaxing *r) {
     rg_solver *s = r->on.solver;
-    double work = 0;
-    for (int k = 0; k < 2; k++) {
-        rg_real *force = k == 0 ? r->acceleration : r->load;
-        rg_statics_accelerate(&r->on, force, false);
-        if (k == 0) {
-            rg_statics_copy(&r->on, s->u, r->now);
-            rg_constraints_place(s->constraints, s->u);
-        }
-    }
+    rg_statics_accelerate(&r->on, r->acceleration, false);
+    rg_statics_copy(&r->on, s->u, r->now);
+    rg_constraints_place(s->constraints, s->u);
+    rg_statics_accelerate(&r->on, r->load, false);
     rg_statics_add(&r->on, 1, s->u, -1, r->now);
     rg_statics_add(&r->on, 1, r->load, 1, r->acceleration);
     rg_statics_times_mass(&r->on, r->acceleration, r->on.force);
-    work = -0.5 * rg_statics_dot(&r->on, r->on.force, r->now);
+    double work = -0.5 * rg_statics_dot(&r->on, r->on.force, r->now);
     rg_statics_add(&r->on, 0, r->load, 0, r->load);
     return work;
 }
