@@ -40,7 +40,7 @@ int rg_folder_list(const char *folder, int64_t **steps) {
     if (dir != NULL) {
         closedir(dir);
     }
-    if (count > 0) {
+    if (*steps != NULL) {
         qsort(*steps, (size_t)count, sizeof **steps, newest_first);
     }
     return count;

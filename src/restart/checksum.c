@@ -105,8 +105,9 @@ static void render(char checksum[RG_CHECKSUM], int64_t step, int64_t bytes, uint
                         step, bytes, sum);
     uint64_t word[RG_CHECKSUM / 8];
     memcpy(word, checksum, RG_CHECKSUM);
-    snprintf(checksum + used, (size_t)(RG_CHECKSUM - used), "check %016" PRIx64 "\n",
-             hash_words(0, word, RG_CHECKSUM / 8));
+    char line[32];
+    snprintf(line, sizeof line, "check %016" PRIx64 "\n", hash_words(0, word, RG_CHECKSUM / 8));
+    memcpy(checksum + used, line, strlen(line));
 }
 
 static int64_t size_of(const char *path) {

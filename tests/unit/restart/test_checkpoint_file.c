@@ -28,6 +28,7 @@ enum { STEEL_ROWS = RG_GAUSS * RG_J2_HISTORY + RG_RELEASED, WINDOW = 7 };
 
 /* ---- stand-ins: the end of the run, warnings, small windows, disks that fail ---- */
 
+static bool last_rank;
 static int warnings;
 static char warned[1000];
 
@@ -60,6 +61,16 @@ bool __wrap_rg_sync_folder(const char *path) {
 size_t __wrap_rg_slab_window(size_t bytes) {
     (void)bytes;
     return WINDOW;
+}
+
+/* Reads of the last rank since the first that counts, and which of them fails there; -1: none. */
+static int reads, failing_read = -1;
+bool __wrap_rg_h5_read(hid_t group, const rg_h5_slab *s, void *data);
+bool __real_rg_h5_read(hid_t group, const rg_h5_slab *s, void *data);
+
+bool __wrap_rg_h5_read(hid_t group, const rg_h5_slab *s, void *data) {
+    bool ok = __real_rg_h5_read(group, s, data);
+    return (reads++ != failing_read || !last_rank) && ok;
 }
 
 /* ---- runs ---- */
@@ -350,6 +361,43 @@ static void check_content(void) {
     free_run(x);
 }
 
+/* ---- reads that fail on one rank: all ranks go back to the checkpoint before ---- */
+
+static void check_reads(void) {
+    run *x = make_run(in("reads"), 0, NULL, MPI_COMM_WORLD),
+        *before = make_run(in("reads"), 0, NULL, MPI_COMM_WORLD);
+    char name[500], aside[520];
+    snprintf(name, sizeof name, "%s", in("reads/checkpoints/step-000000000102.h5"));
+    snprintf(aside, sizeof aside, "%s.damaged", name);
+    for (uint64_t seed = 1; seed <= 2; seed++) {
+        draw(x, seed);
+        rg_checkpoint_write(&x->k, 2);
+    }
+    draw(before, 1);
+    bool good = true;
+    int failed = 0;
+    do {
+        draw(x, 9);
+        reads = 0;
+        failing_read = failed;
+        rg_checkpoint_load(&x->k);
+        if (x->r.solver->step == 101) {
+            good = same_state(x, before) && good;
+            failed++;
+        }
+        if (rank == 0) {
+            rename(aside, name);
+        }
+        MPI_Barrier(MPI_COMM_WORLD);
+    } while (x->r.solver->step == 101);
+    failing_read = -1;
+    report(good && failed > x->state.arrays && (rank != 0 || warnings == failed), "reads",
+           "each fails on one rank");
+    warnings = 0;
+    free_run(x);
+    free_run(before);
+}
+
 /* ---- files that are not what they should be; rank 0 alone ---- */
 
 static const char unfit[] = ": it does not hold the state of this case: ";
@@ -594,7 +642,10 @@ static void check_refusals(void) {
 
 int main(int argc, char **argv) {
     MPI_Init(&argc, &argv);
+    int ranks;
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+    MPI_Comm_size(MPI_COMM_WORLD, &ranks);
+    last_rank = rank == ranks - 1;
     snprintf(place, sizeof place, "/tmp/test_checkpoint_file.XXXXXX");
     if (rank == 0 && mkdtemp(place) == NULL) {
         rg_fatal(RG_FAILURE, "cannot make %s", place);
@@ -605,6 +656,7 @@ int main(int argc, char **argv) {
                            "boundary=[]"};
     check_round_trip("plain", 5, plain);
     check_content();
+    check_reads();
     check_refusals();
     if (rank == 0) {
         char command[300];

@@ -12,11 +12,21 @@
 #include "base/mem.h"
 #include "support/tap.h"
 
-enum { PLANNED = 10, BYTES = RG_CHECKSUM + 2 * (1 << 20) + 12345, RANDOM = 1000 };
+enum { PLANNED = 12, PART = 1 << 20, BYTES = RG_CHECKSUM + 2 * (1 << 20) + 12345, RANDOM = 1000 };
 
 static int ranks;
 static char path[200], reason[300];
 static bool agreed = true;
+
+/* Where the file seems to end: it may get shorter after its size was asked for. */
+static off_t seen_end = INT64_MAX;
+ssize_t __wrap_pread64(int file, void *data, size_t size, off_t at);
+ssize_t __real_pread64(int file, void *data, size_t size, off_t at);
+
+ssize_t __wrap_pread64(int file, void *data, size_t size, off_t at) {
+    off_t left = seen_end > at ? seen_end - at : 0;
+    return __real_pread64(file, data, left < (off_t)size ? (size_t)left : size, at);
+}
 
 /* What rank 0 finds, so that all ranks go on alike; notes whether all found that. */
 static bool holds(void) {
@@ -60,18 +70,68 @@ static bool noticed(off_t position, int bit) {
     return good;
 }
 
-static void write_file(void) {
-    char *data = RG_NEW(char, BYTES);
-    for (size_t i = RG_CHECKSUM; i < BYTES; i++) {
-        data[i] = (char)rg_mix(i / 3); /* also runs of the same byte */
+/* Also runs of the same byte. */
+static char byte_at(size_t i) {
+    return i < RG_CHECKSUM ? 0 : (char)rg_mix(i / 3);
+}
+
+static void write_bytes(size_t bytes) {
+    char *data = RG_NEW(char, bytes);
+    for (size_t i = 0; i < bytes; i++) {
+        data[i] = byte_at(i);
     }
     int file = open(path, O_WRONLY | O_CREAT | O_TRUNC, 0666);
-    if (file < 0 || write(file, data, BYTES) != BYTES) {
+    if (file < 0 || write(file, data, bytes) != (ssize_t)bytes) {
         printf("Bail out! %s cannot be written\n", path);
         MPI_Abort(MPI_COMM_WORLD, 1);
     }
     close(file);
     rg_free(data);
+}
+
+static void write_file(void) {
+    write_bytes(BYTES);
+}
+
+/* The sum of such a file, word after word: each goes on with one of four chains of its part. */
+static uint64_t plain_sum(size_t bytes) {
+    uint64_t sum = 0;
+    for (size_t part = RG_CHECKSUM, p = 1; part < bytes; part += PART, p++) {
+        uint64_t h[4] = {rg_hash(p, 0), rg_hash(p, 1), rg_hash(p, 2), rg_hash(p, 3)};
+        for (size_t i = 0; i < PART && part + i < bytes; i += 8) {
+            uint64_t word = 0;
+            char *byte = (char *)&word;
+            for (size_t k = 0; k < 8 && part + i + k < bytes; k++) {
+                byte[k] = byte_at(part + i + k);
+            }
+            h[i / 8 % 4] = rg_hash(h[i / 8 % 4], word);
+        }
+        sum += rg_hash(rg_hash(h[0], h[1]), rg_hash(h[2], h[3]));
+    }
+    return sum;
+}
+
+/* Files that end at the end of a part, of a word and of four words, and one byte before and after it. */
+static void check_sums(void) {
+    static const size_t ends[] = {8, 16, 24, 32, 40, PART - 8, PART, PART + 8, 2 * PART - 24, 2 * PART};
+    bool good = true;
+    for (size_t k = 0; k < 3 * sizeof ends / sizeof *ends; k++) {
+        size_t bytes = RG_CHECKSUM + ends[k / 3] + k % 3 - 1;
+        if (rank == 0) {
+            write_bytes(bytes);
+        }
+        MPI_Barrier(MPI_COMM_WORLD);
+        good = rg_checksum_put(path, 5, MPI_COMM_WORLD) && good;
+        if (rank == 0) {
+            char found[RG_CHECKSUM + 1] = {0};
+            int file = open(path, O_RDONLY);
+            const char *sum =
+                pread(file, found, RG_CHECKSUM, 0) == RG_CHECKSUM ? strstr(found, "sum ") : NULL;
+            good = sum != NULL && strtoull(sum + 4, NULL, 16) == plain_sum(bytes) && good;
+            close(file);
+        }
+    }
+    report(good, "checksum", "its sum, word after word");
 }
 
 static void check_bits(void) {
@@ -108,6 +168,13 @@ static void check_length(void) {
         good = refused(lengths[i] < 100 ? "its head is not that of a checkpoint" : why) && good;
     }
     report(good, "checksum", "any other length");
+}
+
+static void check_end(void) {
+    seen_end = BYTES - 1;
+    bool good = refused("it cannot be read to its end") && !rg_checksum_put(path, 77, MPI_COMM_WORLD);
+    seen_end = INT64_MAX;
+    report(good && holds(), "checksum", "a file that gets shorter while it is read");
 }
 
 /* What is written stays readable for later versions: of a file of 3 parts, by any number of ranks. */
@@ -159,7 +226,9 @@ int main(int argc, char **argv) {
     check_text();
     check_reasons();
     check_bits();
+    check_end();
     check_length();
+    check_sums();
     if (rank == 0) {
         unlink(path);
     }
