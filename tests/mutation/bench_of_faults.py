@@ -13,6 +13,7 @@ import time
 from rooms import touches
 
 PYTHON = "/usr/bin/python3"
+TOO_LONG = "too long"  # what tells of a test that ran out of time, and of one with a run of the program that did
 ENVIRONMENT = {
     **os.environ,
     "PATH": "/usr/bin:" + os.environ["PATH"],
@@ -136,4 +137,5 @@ class Bench:
         shutil.rmtree(self.scratch, ignore_errors=True)
         if passed:
             return True, seconds, ""
-        return False, seconds, "too long" if status is None else words[0][:200] if words else f"status {status}"
+        late = status is None or name in self.files and "TimeoutExpired" in output
+        return False, seconds, TOO_LONG if late else words[0][:200] if words else f"status {status}"

@@ -118,8 +118,8 @@ def test_a_test_that_no_row_names_touches_all_of_src():
 class FakeBench:
     """A tree of one file, whose fault `a - c` one test notices; another one fails whatever the file holds."""
 
-    def __init__(self, tree):
-        self.tree, self.runs = tree, []
+    def __init__(self, tree, words="", busy=False):
+        self.tree, self.runs, self.words, self.busy = tree, [], words, busy
 
     def compiles(self):
         return True
@@ -129,22 +129,36 @@ class FakeBench:
 
     def run(self, name, limit):
         self.runs.append(name)
-        return name == "sees" and "a + c" in (self.tree / "src/a.c").read_text(), 1.0, ""
+        good = name == "sees" and not self.busy and "a + c" in (self.tree / "src/a.c").read_text()
+        return good, 1.0, "" if good else self.words
 
 
-def test_a_test_that_fails_without_a_fault_kills_none(tmp_path):
+def planted(tmp_path, **of_bench):
+    """What becomes of the fault in such a tree, tried twice; and the bench."""
     loader = importlib.machinery.SourceFileLoader("mutate", str(ROOT / "tests" / "mutate"))
     mutate = importlib.util.module_from_spec(importlib.util.spec_from_loader("mutate", loader))
     loader.exec_module(mutate)
     (tmp_path / "src").mkdir()
     (tmp_path / "src/a.c").write_text("{\n    b = a + c;\n}\n")
-    campaign, bench = mutate.Campaign(tmp_path / "none", {}, {}), FakeBench(tmp_path)
+    campaign, bench = mutate.Campaign(tmp_path / "none", {}, {}), FakeBench(tmp_path, **of_bench)
     fault = faults_of("src/a.c", (tmp_path / "src/a.c").read_text())["sign"][0]
-    for _ in range(2):
-        result = mutate.attempt(bench, campaign, "base", fault, 900)
-        assert (result["verdict"], result["by"]) == ("killed", "sees")
-    assert bench.runs.count("broken") == 2 and bench.runs.count("sees") == 3
+    results = [mutate.attempt(bench, campaign, "base", fault, 900) for _ in range(2)]
     assert "a + c" in (tmp_path / "src/a.c").read_text()
+    return [(result["verdict"], result["by"]) for result in results], bench
+
+
+def test_a_test_that_fails_without_a_fault_kills_none(tmp_path):
+    results, bench = planted(tmp_path)
+    assert results == 2 * [("killed", "sees")]
+    assert bench.runs.count("broken") == 2 and bench.runs.count("sees") == 3
+
+
+def test_a_test_that_takes_too_long_without_a_fault_kills_none(tmp_path):
+    results, bench = planted(tmp_path, words="too long")
+    assert results == 2 * [("killed", "sees")] and bench.runs.count("sees") == 5  # with the fault, and each time without it
+    (tmp_path / "busy").mkdir()
+    results, bench = planted(tmp_path / "busy", words="too long", busy=True)
+    assert results == 2 * [("survived", "")]
 
 
 def test_shares_add_up():
