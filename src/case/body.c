@@ -40,9 +40,16 @@ static void check_shape(const rg_entry *e, const rg_body_input *b) {
         rg_entry_wrong(e, "tied", e->item->at, (rg_subject){0},
                        "missing: a body that touches nothing has no other use");
     }
-    const rg_node *until = rg_entry_given(e, "tied_until");
-    if (until != NULL && !rg_body_is_tied(b)) {
-        rg_entry_wrong(e, "tied_until", until->key_at, (rg_subject){0}, "not used: nothing is tied to it");
+    const char *const times[] = {"tied_from", "tied_until"};
+    for (int i = 0; i < 2; i++) {
+        const rg_node *node = rg_entry_given(e, times[i]);
+        if (node != NULL && !rg_body_is_tied(b)) {
+            rg_entry_wrong(e, times[i], node->key_at, (rg_subject){0}, "not used: nothing is tied to it");
+        }
+    }
+    if (b->tied_until > 0 && b->tied_until <= b->tied_from) {
+        rg_entry_wrong(e, "tied_until", rg_entry_given(e, "tied_until")->at, (rg_subject){0},
+                       "not after `tied_from`");
     }
     check_direction(e, "normal", b->shape == RG_SHAPE_PLANE, b->normal, "it belongs to a plane");
     check_direction(e, "axis", b->shape == RG_SHAPE_CYLINDER, b->axis, "it belongs to a cylinder");

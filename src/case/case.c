@@ -64,6 +64,14 @@ bool rg_body_is_tied(const rg_body_input *b) {
     return b->ties > 0 || b->tied_where != NULL;
 }
 
+bool rg_case_joins(const rg_case *c) {
+    bool joins = false;
+    for (int i = 0; i < c->bodies; i++) {
+        joins = joins || c->body[i].tied_from > 0;
+    }
+    return joins;
+}
+
 bool rg_body_turns(const rg_body_input *b) {
     bool central = b->shape == RG_SHAPE_SPHERE && !rg_body_is_tied(b);
     return rg_body_spins(b) || (b->motion == RG_MOTION_FREE && rg_body_has_inertia(b) && !central);

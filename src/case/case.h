@@ -311,6 +311,7 @@ typedef struct {
     int ties; /* sets of faces that move with it */
     char **tied;
     rg_expr *tied_where; /* and those of the surface where it is not 0; NULL: no others */
+    double tied_from;    /* from this time on they do (s) */
     double tied_until;   /* from this time on they do no more (s); 0: they do to the end */
     double penalty; /* contact stiffness times h/(lambda + 2 mu), h the height of an element over its face */
 } rg_body_input;
@@ -450,6 +451,9 @@ bool rg_body_has_inertia(const rg_body_input *b);
 
 /* Whether faces move with it. */
 bool rg_body_is_tied(const rg_body_input *b);
+
+/* Whether sets become tied to bodies in the run. */
+bool rg_case_joins(const rg_case *c);
 bool rg_body_spins(const rg_body_input *b);
 
 /* Whether a load acts on elements, not on faces. */

@@ -117,7 +117,8 @@ void rg_start_rule(const rg_entry *e) {
     }
     bool moves = false;
     for (int i = 0; i < c->bodies; i++) {
-        moves = moves || c->body[i].motion == RG_MOTION_FREE || rg_body_is_tied(&c->body[i]);
+        const rg_body_input *b = &c->body[i];
+        moves = moves || b->motion == RG_MOTION_FREE || (rg_body_is_tied(b) && !(b->tied_from > 0));
     }
     rg_form form = c->interface.form;
     const char *wrong =

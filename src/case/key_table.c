@@ -547,6 +547,8 @@ static const rg_key body_keys[] = {
      .offset_count = offsetof(rg_body_input, ties), MEANS("sets of faces that move and turn with it: their forces and moments are the body's")},
     {.name = "tied_where", .type = RG_KEY_EXPR, ELSE("none"), .no_time = true, .normal = true, BODY(tied_where),
      MEANS("faces of the surface that do, too: where it is not 0, by their middle and outward normal")},
+    {.name = "tied_from", .unit = "s", REAL, ABOVE(0), ELSE("the start"), BODY(tied_from),
+     MEANS("from the first step at this time on they do, where they and the body then are; the kinetic energy that goes is `joined` in the ledger")},
     {.name = "tied_until", .unit = "s", REAL, ABOVE(0), ELSE("the end of the run"), BODY(tied_until),
      MEANS("from the first step at this time on they are let go, with the velocities that they have")},
     {.name = "penalty", REAL, ABOVE(0), DEFAULT(4), BODY(penalty),

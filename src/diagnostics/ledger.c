@@ -305,6 +305,7 @@ static rg_energy energy_of(const rg_solver *s, const double *v) {
                    .friction = v[FRICTION],
                    .radiated = rg_absorbing_radiated(s->absorbing),
                    .relaxed = s->relaxed.heat,
+                   .joined = rg_ties_taken(s->ties),
                    .external =
                        v[EXTERNAL] + bodies.work + rg_loads_work(s->loads) + v[BRIEF] + s->relaxed.work,
                    .broken_area = v[BROKEN],
@@ -341,7 +342,7 @@ const rg_energy *rg_ledger_take(rg_ledger *l, rg_solver *s) {
     *e = energy_of(s, v);
     double stored = e->kinetic + e->bodies + e->bulk + e->penalty + e->cohesive + e->contact + e->foundation +
                     e->unresolved + e->spent;
-    e->total = stored + e->radiated + e->relaxed - e->half_kick - e->external;
+    e->total = stored + e->radiated + e->relaxed + e->joined - e->half_kick - e->external;
     if (!l->begun) {
         *l = (rg_ledger){.begun = true, .start = e->total, .last = *e};
     }
@@ -417,6 +418,9 @@ void rg_energy_header(rg_csv *t, const rg_solver *s) {
     if (s->input->start == RG_START_RELAX) {
         fputs(",relaxed", f);
     }
+    if (rg_case_joins(s->input)) {
+        fputs(",joined", f);
+    }
     fclose(f);
     rg_csv_header(t, columns);
     free(columns);
@@ -424,7 +428,7 @@ void rg_energy_header(rg_csv *t, const rg_solver *s) {
 
 void rg_energy_row(rg_csv *t, const rg_ledger *l, const rg_solver *s) {
     const rg_energy *e = &l->last;
-    double row[ROW + PART * RG_LEDGER_MATERIALS + 1] = {e->time,
+    double row[ROW + PART * RG_LEDGER_MATERIALS + 2] = {e->time,
                                                         e->kinetic,
                                                         e->bodies,
                                                         e->bulk,
@@ -460,6 +464,9 @@ void rg_energy_row(rg_csv *t, const rg_ledger *l, const rg_solver *s) {
     }
     if (s->input->start == RG_START_RELAX) {
         row[values++] = e->relaxed;
+    }
+    if (rg_case_joins(s->input)) {
+        row[values++] = e->joined;
     }
     rg_csv_row(t, &e->step, 1, row, values);
 }

@@ -1,5 +1,5 @@
 /* The energy ledger: kinetic + bulk + penalty + cohesive + contact + foundation + dissipated + plastic +
- * damage + viscous + friction + radiated + relaxed - external work = constant. */
+ * damage + viscous + friction + radiated + relaxed + joined - external work = constant. */
 #ifndef RG_LEDGER_H
 #define RG_LEDGER_H
 
@@ -24,6 +24,7 @@ typedef struct {
                          * opened because their time had come (J) */
     double radiated;    /* taken out of the body by absorbing sides and dashpots (J) */
     double relaxed;     /* taken by damping on the way to the start (J) */
+    double joined;      /* kinetic energy that went as sets were tied to rigid bodies (J) */
     double half_kick;   /* dt^2/8 a . M a: by so much what a central difference keeps is below the sum (J) */
     double external;    /* work done by prescribed motions and loads, also on the way to the start (J) */
     double total;       /* sum of the parts less the external work (J) */

@@ -51,12 +51,19 @@ typedef struct {
     double moment[3]; /* of the solid's forces on it, then (N m) */
 } rg_body_turn;
 
+/* Momentum of nodes, angular momentum about the centre of their body, kinetic energy. */
+typedef struct {
+    double momentum[3], angular[3], energy;
+} rg_body_motion;
+
 /* What the nodes that are tied to a body add to its mass, along its own axes at the start, and the momentum
  * and angular momentum about its centre that they would have without the body after a kick. */
 typedef struct {
-    bool any;
+    bool any, joins;                     /* now, and from this kick on */
     double mass, first[3], second[3][3]; /* kg, kg m, kg m^2 */
     double momentum[3], angular[3];
+    rg_body_motion before; /* of a kick from which on they are tied: as they moved at its time */
+    double joined, taken;  /* 1 once such a kick has been; the kinetic energy that went in it (J) */
 } rg_body_tied;
 
 typedef struct {

@@ -82,23 +82,12 @@ static void tied_impulse(const rg_body *b, const double v[3], double dt, double 
     }
 }
 
-/* In space, at present: the inertia of the body, and with what is tied to it, as it answers to moments. */
-static void inertias(const rg_body *b, double own[3][3], double all[9]) {
-    double first[3], axis[3][3];
-    memset(own, 0, 9 * sizeof(double));
-    memset(all, 0, 9 * sizeof(double));
+/* In space, at present: the inertia of what is tied to it about its centre. */
+static void tied_inertia(const rg_body *b, double out[3][3]) {
+    double axis[3][3], trace = 0;
     for (int k = 0; k < 3; k++) {
-        double about[3];
         const double unit[3] = {k == 0, k == 1, k == 2};
-        rg_body_arm(b, b->inertia.axis[k], about);
         rg_body_arm(b, unit, axis[k]);
-        for (int n = 0; n < 9; n++) {
-            own[n / 3][n % 3] += b->inertia.moment[k] * about[n / 3] * about[n % 3];
-        }
-    }
-    rg_body_arm(b, b->tied.first, first);
-    double mass = b->mass + b->tied.mass, trace = 0, square = rg_vector_dot(first, first);
-    for (int k = 0; k < 3; k++) {
         trace += b->tied.second[k][k];
     }
     for (int n = 0; n < 9; n++) {
@@ -107,10 +96,77 @@ static void inertias(const rg_body *b, double own[3][3], double all[9]) {
         for (int k = 0; k < 9; k++) {
             second += b->tied.second[k / 3][k % 3] * axis[k / 3][i] * axis[k % 3][j];
         }
-        all[n] =
-            own[i][j] + (i == j ? trace : 0) - second - ((i == j ? square : 0) - first[i] * first[j]) / mass;
+        out[i][j] = (i == j ? trace : 0) - second;
+    }
+}
+
+/* Likewise that of the body, and with what is tied to it, as it answers to moments. */
+static void inertias(const rg_body *b, double own[3][3], double all[9]) {
+    double first[3], tied[3][3];
+    memset(own, 0, 9 * sizeof(double));
+    for (int k = 0; k < 3; k++) {
+        double about[3];
+        rg_body_arm(b, b->inertia.axis[k], about);
+        for (int n = 0; n < 9; n++) {
+            own[n / 3][n % 3] += b->inertia.moment[k] * about[n / 3] * about[n % 3];
+        }
+    }
+    rg_body_arm(b, b->tied.first, first);
+    tied_inertia(b, tied);
+    double mass = b->mass + b->tied.mass, square = rg_vector_dot(first, first);
+    for (int n = 0; n < 9; n++) {
+        int i = n / 3, j = n % 3;
+        all[n] = own[i][j] + tied[i][j] - ((i == j ? square : 0) - first[i] * first[j]) / mass;
     }
     rg_dense_invert(3, all);
+}
+
+/* Twice the kinetic energy of what is tied to it, as it moves with v and spin. */
+static double tied_energy(const rg_body *b, const double v[3], const double spin[3]) {
+    double first[3], inertia[3][3], across[3];
+    rg_body_arm(b, b->tied.first, first);
+    rg_vector_cross(spin, first, across);
+    tied_inertia(b, inertia);
+    double sum = b->tied.mass * rg_vector_dot(v, v) + 2 * rg_vector_dot(v, across);
+    for (int n = 0; n < 9; n++) {
+        sum += spin[n / 3] * inertia[n / 3][n % 3] * spin[n % 3];
+    }
+    return sum;
+}
+
+/* What the kinetic energy falls by as a free body, which would move with v and `momentum` at the time of the
+ * kick, and what is tied to it from then on become one. */
+static double joined_free(const rg_body *b, const double v[3], const double momentum[3]) {
+    const rg_body_motion *nodes = &b->tied.before;
+    double own[3][3], inverse[9], first[3], p[3], l[3], rest[3], spin[3] = {0, 0, 0}, own_spin[3], across[3];
+    double mass = b->mass + b->tied.mass;
+    inertias(b, own, inverse);
+    rg_body_arm(b, b->tied.first, first);
+    rg_inertia_spin(&b->inertia, b->turn.rotation, momentum, own_spin);
+    for (int c = 0; c < 3; c++) {
+        p[c] = b->mass * v[c] + nodes->momentum[c];
+        l[c] = momentum[c] + nodes->angular[c];
+    }
+    rg_vector_cross(first, p, across);
+    for (int c = 0; c < 3; c++) {
+        rest[c] = l[c] - across[c] / mass;
+    }
+    for (int n = 0; n < 9; n++) {
+        spin[n / 3] += inverse[n] * rest[n % 3];
+    }
+    rg_vector_cross(spin, first, across);
+    for (int c = 0; c < 3; c++) {
+        rest[c] = (p[c] - across[c]) / mass; /* velocity after it */
+    }
+    return nodes->energy + 0.5 * (b->mass * rg_vector_dot(v, v) + rg_vector_dot(momentum, own_spin) -
+                                  rg_vector_dot(p, rest) - rg_vector_dot(l, spin));
+}
+
+/* Likewise of one whose motion is prescribed: less what it does in it. */
+static double joined_prescribed(const rg_body *b, const double v[3], const double spin[3]) {
+    const rg_body_motion *nodes = &b->tied.before;
+    return nodes->energy - rg_vector_dot(nodes->momentum, v) - rg_vector_dot(nodes->angular, spin) +
+           0.5 * tied_energy(b, v, spin);
 }
 
 /* A free body kicked for h by its own force and moment, before a step dt: v, the angular momentum and the
@@ -163,6 +219,15 @@ static void kick_free(rg_body *b, const double force[3], double dt_last, double 
         double v[3], momentum[3];
         memcpy(v, b->v, sizeof v);
         memcpy(momentum, t->momentum, sizeof momentum);
+        if (b->tied.joins) {
+            double now[3], about[3];
+            for (int c = 0; c < 3; c++) {
+                now[c] = v[c] + 0.5 * dt_last * force[c] / b->mass;
+                about[c] = momentum[c] + 0.5 * dt_last * t->moment[c];
+            }
+            b->tied.taken = joined_free(b, now, about);
+            b->tied.joins = false;
+        }
         kick_with_ties(b, force, h, dt_next);
         for (int c = 0; c < 3; c++) {
             b->seen.force[c] = b->mass * (b->v[c] - v[c]) / h;
@@ -201,6 +266,10 @@ static void kick_prescribed(rg_bodies *all, int i, double time, double dt_last, 
         step[c] = dt_next * t->spin[c];
     }
     rg_rotation_by(step, t->step);
+    if (b->tied.joins) {
+        b->tied.taken = joined_prescribed(b, b->seen.v, t->seen_spin);
+        b->tied.joins = false;
+    }
     if (b->tied.any) {
         double impulse[3], angular[3];
         tied_impulse(b, b->v, dt_next, impulse, angular);

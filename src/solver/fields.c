@@ -100,5 +100,6 @@ void rg_state_of_solver(rg_state *st, rg_solver *s) {
 #undef SAVE
     rg_constraints_register(s->constraints, st);
     rg_bodies_register(s->bodies, st);
+    rg_ties_register(s->ties, st);
     rg_account_register(s->account, st);
 }

@@ -197,7 +197,7 @@ static void tile_complete(rg_solver *s, size_t tile, const rg_workspace *w, cons
         rg_push damp = {p->dt, 0.5 * s->dt, p->velocity, step_velocity_of(s, tile, p)};
         rg_absorbing_damp(s->absorbing, tile, &damp);
         rg_constraints_kick(s->constraints, tile, s->u, p->velocity, step_velocity_of(s, tile, p));
-        rg_ties_gather(s->ties, tile, s->time, p->velocity);
+        rg_ties_gather(s->ties, tile, s->time, s->u, p->velocity, step_velocity_of(s, tile, p));
     }
     if (!(p->constrain && rg_ties_any(s->ties))) {
         tile_finish(s, tile, w, p);
@@ -596,6 +596,7 @@ void rg_solver_resume(rg_solver *s) {
         rg_bodies_expose(s->bodies, s->exposed);
         rg_contacts_search(s->contacts, s->exposed, s->u);
     }
+    rg_ties_resume(s->ties);
     publish(s);
 }
 
@@ -678,6 +679,11 @@ void rg_solver_drift(rg_solver *s) {
 }
 
 void rg_solver_step(rg_solver *s, double dt) {
+    if (rg_ties_due(s->ties, s->time)) { /* which asks for velocities at its time */
+        rg_solver_kick(s, dt);
+        rg_solver_drift(s);
+        return;
+    }
     impulse p = prepare(s, dt);
     p.move = true;
     evaluate(s, &p);

@@ -21,7 +21,7 @@ typedef struct {
     double mass;
 } entry;
 
-enum { SUMS = 6, CARRIED = 13 };
+enum { SUMS = 6, CARRIED = 13, ENERGY = SUMS, JOINING };
 
 struct rg_ties {
     const rg_domain *domain;
@@ -34,20 +34,62 @@ struct rg_ties {
     entry *entry;
     double *area;      /* [bodies]: of the faces tied to each (m^2) */
     rg_exact_sum *sum; /* [threads][bodies][SUMS] */
+
+    /* Of bodies that are tied from a time on; NULL if there are none. */
+    double (*joint)[RG_NODES][3]; /* [entries]: as a node was seen from its body when it was tied, less where
+                                     it was at the start (m) */
+    int64_t *key;                 /* [entries]: of the state */
+    rg_exact_sum *joining;        /* [threads][bodies][JOINING]: momenta and energy just before */
 };
 
 /* ---- In time ---- */
 
-/* Whether what is tied to a body is still in a kick at `time`, and up to the next one. */
+/* Whether what is tied to a body is so in a kick at `time`, and up to the next one. */
 static bool holds(const rg_body *b, double time) {
-    return b->input->tied_until <= 0 || time < b->input->tied_until;
+    return time >= b->input->tied_from && (b->input->tied_until <= 0 || time < b->input->tied_until);
 }
 
-/* From the body's centre, at the start. */
+/* Whether it becomes so in that kick. */
+static bool joins(const rg_body *b, double time) {
+    return b->input->tied_from > 0 && b->tied.joined == 0 && holds(b, time);
+}
+
+bool rg_ties_due(const rg_ties *t, double time) {
+    bool due = false;
+    for (int i = 0; t->joint != NULL && i < t->bodies->count; i++) {
+        due = due || (rg_body_is_tied(t->bodies->body[i].input) && joins(&t->bodies->body[i], time));
+    }
+    return due;
+}
+
+/* From the body's centre, at the start; of nodes that were tied later, where they would have been then. */
 static void arm_at_start(const rg_ties *t, const entry *e, int i, double arm[3]) {
     double x[3];
     rg_node_position(t->domain->corner + 12 * (size_t)e->slot, e->pattern->node[i], x);
     rg_vector_subtract(x, t->bodies->body[e->body].input->at, arm);
+    for (int c = 0; t->joint != NULL && c < 3; c++) {
+        arm[c] += t->joint[e - t->entry][e->pattern->node[i]][c];
+    }
+}
+
+/* Ties the nodes of an entry where they are by now. */
+static void join(rg_ties *t, const entry *e, const rg_real *u) {
+    const rg_body *b = &t->bodies->body[e->body];
+    const double *q = b->turn.rotation, back[4] = {q[0], -q[1], -q[2], -q[3]};
+    for (int i = 0; i < e->pattern->constrained; i++) {
+        int node = e->pattern->node[i];
+        double x[3], place[3], turned[3];
+        rg_node_position(t->domain->corner + 12 * (size_t)e->slot, node, x);
+        for (int c = 0; c < 3; c++) {
+            place[c] = x[c] + u[rg_node_index((size_t)e->slot, node, c)] - b->x[c];
+        }
+        rg_rotation_move(back, place, turned);
+        for (int c = 0; c < 3; c++) {
+            /* what the place differs by, plus what turning back moves it */
+            t->joint[e - t->entry][node][c] =
+                u[rg_node_index((size_t)e->slot, node, c)] - (b->x[c] - b->input->at[c]) + turned[c];
+        }
+    }
 }
 
 /* Momenta that impulses would have to give the nodes at rest to have the velocities of a field. */
@@ -64,38 +106,88 @@ static void momenta(const entry *e, const rg_real *velocity, double out[RG_NODES
     }
 }
 
-void rg_ties_gather(rg_ties *t, size_t tile, double time, const rg_real *velocity) {
-    for (size_t n = t->tile_begin[tile]; n < t->tile_begin[tile + 1]; n++) {
-        const entry *e = &t->entry[n];
-        const rg_body *b = &t->bodies->body[e->body];
-        rg_exact_sum *sum = t->sum + SUMS * (omp_get_thread_num() * t->bodies->count + e->body);
-        double momentum[RG_NODES][3], all[SUMS] = {0};
-        if (!holds(b, time)) {
-            continue;
-        }
-        momenta(e, velocity, momentum);
-        for (int i = 0; i < e->pattern->constrained; i++) {
-            double start[3], arm[3], angular[3];
-            arm_at_start(t, e, i, start);
-            rg_body_arm(b, start, arm);
-            rg_vector_cross(arm, momentum[i], angular);
-            for (int c = 0; c < 3; c++) {
-                all[c] += momentum[i][c];
-                all[3 + c] += angular[c];
-            }
-        }
-        for (int c = 0; c < SUMS; c++) {
-            rg_exact_add(&sum[c], all[c]);
+/* Momentum and angular momentum about the body of an entry at a velocity, and twice its energy. */
+static void add_momenta(const rg_ties *t, const entry *e, const rg_real *velocity, double all[JOINING]) {
+    double momentum[RG_NODES][3];
+    momenta(e, velocity, momentum);
+    for (int i = 0; i < e->pattern->constrained; i++) {
+        double start[3], arm[3], angular[3];
+        arm_at_start(t, e, i, start);
+        rg_body_arm(&t->bodies->body[e->body], start, arm);
+        rg_vector_cross(arm, momentum[i], angular);
+        for (int c = 0; c < 3; c++) {
+            all[c] += momentum[i][c];
+            all[3 + c] += angular[c];
+            all[ENERGY] += momentum[i][c] * velocity[rg_node_index((size_t)e->slot, e->pattern->node[i], c)];
         }
     }
 }
 
-void rg_ties_close(rg_ties *t, double time) {
-    int sums = SUMS * t->bodies->count;
-    for (int i = sums; i < sums * t->threads; i++) {
-        rg_exact_merge(&t->sum[i % sums], &t->sum[i]);
+static void add_sums(rg_exact_sum *sum, const double *x, int count) {
+    for (int c = 0; c < count; c++) {
+        rg_exact_add(&sum[c], x[c]);
     }
-    rg_exact_allreduce(t->sum, sums, t->comm);
+}
+
+void rg_ties_gather(rg_ties *t, size_t tile, double time, const rg_real *u, const rg_real *velocity,
+                    const rg_real *now) {
+    for (size_t n = t->tile_begin[tile]; n < t->tile_begin[tile + 1]; n++) {
+        const entry *e = &t->entry[n];
+        const rg_body *b = &t->bodies->body[e->body];
+        int row = omp_get_thread_num() * t->bodies->count + e->body;
+        double all[JOINING] = {0}, before[JOINING] = {0};
+        if (!holds(b, time)) {
+            continue;
+        }
+        if (joins(b, time)) {
+            join(t, e, u);
+            add_momenta(t, e, now, before);
+            add_sums(t->joining + JOINING * row, before, JOINING);
+        }
+        add_momenta(t, e, velocity, all);
+        add_sums(t->sum + SUMS * row, all, SUMS);
+    }
+}
+
+/* Sums of all threads and ranks, which then begin anew. */
+static void close_sums(const rg_ties *t, rg_exact_sum *sum, int each) {
+    int sums = each * t->bodies->count;
+    for (int i = sums; i < sums * t->threads; i++) {
+        rg_exact_merge(&sum[i % sums], &sum[i]);
+    }
+    rg_exact_allreduce(sum, sums, t->comm);
+}
+
+static void forget_sums(const rg_ties *t, rg_exact_sum *sum, int each) {
+    memset(sum, 0, (size_t)(each * t->bodies->count * t->threads) * sizeof *sum);
+}
+
+static void tell_bodies(const rg_ties *t);
+
+/* Bodies to which something is tied in this kick learn what, and what it moved by. */
+static void close_joints(rg_ties *t, double time) {
+    close_sums(t, t->joining, JOINING);
+    for (int i = 0; i < t->bodies->count; i++) {
+        rg_body *b = &t->bodies->body[i];
+        if (rg_body_is_tied(b->input) && joins(b, time)) {
+            b->tied.joined = 1;
+            b->tied.joins = true;
+            for (int c = 0; c < 3; c++) {
+                b->tied.before.momentum[c] = rg_exact_value(&t->joining[JOINING * i + c]);
+                b->tied.before.angular[c] = rg_exact_value(&t->joining[JOINING * i + 3 + c]);
+            }
+            b->tied.before.energy = 0.5 * rg_exact_value(&t->joining[JOINING * i + ENERGY]);
+        }
+    }
+    forget_sums(t, t->joining, JOINING);
+    tell_bodies(t);
+}
+
+void rg_ties_close(rg_ties *t, double time) {
+    if (rg_ties_due(t, time)) {
+        close_joints(t, time);
+    }
+    close_sums(t, t->sum, SUMS);
     for (int i = 0; i < t->bodies->count; i++) {
         rg_body_tied *tied = &t->bodies->body[i].tied;
         for (int c = 0; c < 3; c++) {
@@ -103,10 +195,10 @@ void rg_ties_close(rg_ties *t, double time) {
             tied->angular[c] = rg_exact_value(&t->sum[SUMS * i + 3 + c]);
         }
         if (!holds(&t->bodies->body[i], time)) {
-            *tied = (rg_body_tied){.any = false};
+            tied->any = false;
         }
     }
-    memset(t->sum, 0, (size_t)(sums * t->threads) * sizeof *t->sum);
+    forget_sums(t, t->sum, SUMS);
 }
 
 /* Brings the tied nodes of an element to `target`; the others follow. Velocities at the time of the step go
@@ -157,11 +249,14 @@ void rg_ties_kick(const rg_ties *t, size_t tile, double time, double dt_last, do
 }
 
 /* What a node has moved since the start when its body is at x, turned by `rotation`. */
-static void moved(const rg_body *b, const double x[3], const double rotation[4], const double start[3],
+static void moved(const rg_ties *t, const entry *e, int i, const double x[3], const double rotation[4],
                   double u[3]) {
+    double start[3];
+    arm_at_start(t, e, i, start);
     rg_rotation_move(rotation, start, u);
     for (int c = 0; c < 3; c++) {
-        u[c] += x[c] - b->input->at[c];
+        u[c] += x[c] - t->bodies->body[e->body].input->at[c];
+        u[c] += t->joint != NULL ? t->joint[e - t->entry][e->pattern->node[i]][c] : 0;
     }
 }
 
@@ -169,7 +264,7 @@ void rg_ties_drift(const rg_ties *t, size_t tile, double time, double dt, rg_rea
     for (size_t n = t->tile_begin[tile]; n < t->tile_begin[tile + 1]; n++) {
         const entry *e = &t->entry[n];
         const rg_body *b = &t->bodies->body[e->body];
-        double x[3], rotation[4], start[3], to[3];
+        double x[3], rotation[4], to[3];
         if (!holds(b, time)) {
             continue;
         }
@@ -178,8 +273,7 @@ void rg_ties_drift(const rg_ties *t, size_t tile, double time, double dt, rg_rea
             x[c] = b->x[c] + dt * b->v[c];
         }
         for (int i = 0; i < e->pattern->constrained; i++) {
-            arm_at_start(t, e, i, start);
-            moved(b, x, rotation, start, to);
+            moved(t, e, i, x, rotation, to);
             for (int c = 0; c < 3; c++) {
                 u[rg_node_index((size_t)e->slot, e->pattern->node[i], c)] = (rg_real)to[c];
             }
@@ -191,10 +285,13 @@ void rg_ties_start(const rg_ties *t, rg_real *u, rg_real *velocity) {
     for (size_t n = 0; n < t->entries; n++) {
         const entry *e = &t->entry[n];
         const rg_body *b = &t->bodies->body[e->body];
+        if (!holds(b, 0)) {
+            continue;
+        }
         for (int i = 0; i < e->pattern->constrained; i++) {
             double start[3], to[3], turn[3];
             arm_at_start(t, e, i, start);
-            moved(b, b->x, b->turn.rotation, start, to);
+            moved(t, e, i, b->x, b->turn.rotation, to);
             rg_vector_cross(b->turn.spin, start, turn);
             for (int c = 0; c < 3; c++) {
                 size_t at = rg_node_index((size_t)e->slot, e->pattern->node[i], c);
@@ -212,9 +309,41 @@ bool rg_ties_any(const rg_ties *t) {
 }
 
 void rg_ties_describe(const rg_ties *t, int i, char *words, size_t size) {
+    const rg_body_input *in = t->bodies->body[i].input;
+    char from[40] = "", until[40] = "";
     words[0] = '\0';
-    if (t->bodies->body[i].tied.any) {
-        snprintf(words, size, "%.4g m2", t->area[i]);
+    if (in->tied_from > 0) {
+        snprintf(from, sizeof from, " from %g s on", in->tied_from);
+    }
+    if (in->tied_until > 0) {
+        snprintf(until, sizeof until, " until %g s", in->tied_until);
+    }
+    if (rg_body_is_tied(in)) {
+        snprintf(words, size, "%.4g m2%s%s", t->area[i], from, until);
+    }
+}
+
+double rg_ties_taken(const rg_ties *t) {
+    double taken = 0;
+    for (int i = 0; i < t->bodies->count; i++) {
+        taken += t->bodies->body[i].tied.taken;
+    }
+    return taken;
+}
+
+void rg_ties_register(rg_ties *t, rg_state *st) {
+    if (t->joint == NULL) {
+        return;
+    }
+    rg_state_add_rows(st, "joined", RG_STATE_DOUBLE, 2, &t->bodies->body[0].tied.joined,
+                      sizeof *t->bodies->body, (size_t)t->bodies->count);
+    rg_state_add_list(st, "joint", RG_STATE_DOUBLE, 3 * RG_NODES, t->joint[0][0], sizeof *t->joint,
+                      t->entries, t->key);
+}
+
+void rg_ties_resume(rg_ties *t) {
+    if (t->joint != NULL) {
+        tell_bodies(t);
     }
 }
 
@@ -326,7 +455,7 @@ static void tell_bodies(const rg_ties *t) {
         for (int k = 0; k < CARRIED; k++) {
             value[k] = rg_exact_value(&sum[CARRIED * i + k]);
         }
-        b->tied.any = rg_body_is_tied(b->input);
+        b->tied.any = rg_body_is_tied(b->input) && (!(b->input->tied_from > 0) || b->tied.joined > 0);
         b->tied.mass = value[0];
         memcpy(b->tied.first, value + 1, sizeof b->tied.first);
         for (int k = 0; k < 9; k++) { /* symmetric to the last bit */
@@ -336,14 +465,27 @@ static void tell_bodies(const rg_ties *t) {
     rg_free(sum);
 }
 
+/* Room for what is tied from a time on. */
+static void make_joints(rg_ties *t) {
+    t->joint = rg_alloc(t->entries + 1, sizeof *t->joint);
+    memset(t->joint, 0, (t->entries + 1) * sizeof *t->joint);
+    t->key = RG_NEW(int64_t, t->entries + 1);
+    for (size_t n = 0; n < t->entries; n++) {
+        t->key[n] = 4 * t->domain->id[t->entry[n].slot];
+    }
+    t->joining = RG_NEW(rg_exact_sum, (size_t)(JOINING * t->bodies->count * t->threads));
+}
+
 rg_ties *rg_ties_make(const rg_case *c, const rg_domain *d, const rg_part *part, const rg_material *m,
                       rg_assembly *shared, rg_bodies *bodies, const rg_constraints *constraints, int threads,
                       MPI_Comm comm) {
     rg_ties *t = RG_NEW(rg_ties, 1);
     *t = (rg_ties){.domain = d, .bodies = bodies, .comm = comm, .threads = threads, .patterns.mass = c->mass};
     t->tile_begin = RG_NEW(size_t, d->tiles + 1);
+    bool later = false;
     for (int i = 0; i < c->bodies; i++) {
         t->any = t->any || rg_body_is_tied(&c->body[i]);
+        later = later || c->body[i].tied_from > 0;
     }
     if (!t->any) {
         return t;
@@ -374,6 +516,9 @@ rg_ties *rg_ties_make(const rg_case *c, const rg_domain *d, const rg_part *part,
         rg_free(nodes[i]);
     }
     rg_free(nodes);
+    if (later) {
+        make_joints(t);
+    }
     tell_bodies(t);
     return t;
 }
@@ -381,7 +526,7 @@ rg_ties *rg_ties_make(const rg_case *c, const rg_domain *d, const rg_part *part,
 void rg_ties_free(rg_ties *t) {
     if (t != NULL) {
         rg_patterns_clear(&t->patterns);
-        void *blocks[] = {t->tile_begin, t->entry, t->area, t->sum, t};
+        void *blocks[] = {t->tile_begin, t->entry, t->area, t->sum, t->joint, t->key, t->joining, t};
         for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) {
             rg_free(blocks[i]);
         }

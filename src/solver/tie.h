@@ -6,7 +6,12 @@
  * places x + R a. What all of them take is linear in v and R', with coefficients that the body knows from the
  * start, but for sums over v*: six numbers a body and step, exact, so that all ranks move it alike. Both
  * momenta of body and solid together stay to rounding, and the critical step is what it was: what is held
- * vibrates no faster. Nodes that are let go (tied_until) keep their velocities, and so does the body. */
+ * vibrates no faster. Nodes that are let go (tied_until) keep their velocities, and so does the body.
+ *
+ * Nodes that are tied from a time on (tied_from) are so where they and the body then are. In that kick they
+ * and the body take impulses between them that give them the motion of one rigid body: momenta stay, and what
+ * the kinetic energy falls by is taken from the ledger, as `joined`: with v the velocities at that time and P
+ * v those after it, in the inner product of the masses P is a projection, so it is (v.v - Pv.Pv)/2 >= 0. */
 #ifndef RG_TIE_H
 #define RG_TIE_H
 
@@ -15,6 +20,7 @@
 #include "domain/assembly.h"
 #include "solver/body.h"
 #include "solver/constraint.h"
+#include "solver/state.h"
 
 typedef struct rg_ties rg_ties;
 
@@ -31,9 +37,14 @@ bool rg_ties_any(const rg_ties *t);
 /* Puts the nodes where the bodies are at the start, with their velocities. */
 void rg_ties_start(const rg_ties *t, rg_real *u, rg_real *velocity);
 
+/* Whether nodes become tied in the kick at `time`. On all ranks the same. */
+bool rg_ties_due(const rg_ties *t, double time);
+
 /* What the nodes of a tile would have after a kick at `time` without the bodies; then, once all tiles have:
- * their sums, for rg_bodies_kick. The latter collective; it tells bodies whose nodes are let go. */
-void rg_ties_gather(rg_ties *t, size_t tile, double time, const rg_real *velocity);
+ * their sums, for rg_bodies_kick. The latter collective; it tells bodies whose nodes are let go or become
+ * tied. `now`: velocities at `time`; NULL where nothing becomes tied. */
+void rg_ties_gather(rg_ties *t, size_t tile, double time, const rg_real *u, const rg_real *velocity,
+                    const rg_real *now);
 void rg_ties_close(rg_ties *t, double time);
 
 /* Once the bodies are kicked at `time`, between a step of dt_last and one of dt_next: velocities of a tile,
@@ -43,6 +54,14 @@ void rg_ties_kick(const rg_ties *t, size_t tile, double time, double dt_last, do
 
 /* Before the bodies drift from `time` on: puts the nodes of a tile where that takes them. */
 void rg_ties_drift(const rg_ties *t, size_t tile, double time, double dt, rg_real *u);
+
+/* Kinetic energy that went when nodes became tied, so far (J). */
+double rg_ties_taken(const rg_ties *t);
+
+/* Registers where nodes were tied; and what follows from that, once it is there again. The latter collective.
+ */
+void rg_ties_register(rg_ties *t, rg_state *st);
+void rg_ties_resume(rg_ties *t);
 
 /* What is tied to body i in words: "2.5e-09 m2"; nothing if there is none. */
 void rg_ties_describe(const rg_ties *t, int i, char *words, size_t size);

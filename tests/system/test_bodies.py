@@ -236,6 +236,39 @@ def test_a_head_that_is_let_go(run, figure):
     assert np.ptp(held["head_vx"][before + 1:]) > 0.1 and np.ptp(after["head_wy"]) > 0
 
 
+@pytest.mark.parametrize("form, bound", [("variational", 4e-6), ("continuous", 2e-5)])
+def test_a_head_that_is_caught(run, figure, form, bound):
+    """It flies freely beside a bar that tumbles, and is tied to its end where both then are: momenta stay, and the ledger holds what the kinetic energy falls by."""
+    since = 0.4e-5
+    interface = TUMBLING["interface"] if form == "variational" else {"law": "none", "form": form}
+    caught = run(CASES / "bounce.yaml", sets={**TUMBLING, "interface": interface, "bodies": [{**HEAD, "tied_from": since}]})
+    history, energy = caught.history, caught.energy
+    linear, angular = momenta(energy)
+    figure(f"head that is caught, {form}: change of linear momentum, relative", linear, bound=rounding(1e-14, 1e-5), why=ROUNDING)
+    figure(f"head that is caught, {form}: change of angular momentum, relative", angular, bound=rounding(1e-14, 1e-5), why=ROUNDING)
+    figure(f"head that is caught, {form}: energy error", caught.summary["energy_error_rel"], bound=bound)
+    before, joined = history["time"] < since, energy["joined"]
+    assert np.ptp(history["head_vx"][before]) == 0 and joined[energy["time"] < since].max() == 0 and np.ptp(history["head_vx"][~before]) > 1
+    assert len(set(joined[energy["time"] >= since])) == 1 and joined[-1] > 3e-4 * energy["kinetic"][0]
+
+
+@pytest.mark.parametrize("motion", ["free", "prescribed"])
+def test_what_a_catch_takes(run, figure, motion):
+    """Of a mass that moves along a bar at rest: m M/(m + M) V^2/2, M the mass of the nodes that it takes along; of one whose motion is prescribed M V^2/2."""
+    same, apart, beside, across, edge, edges = 100, 10, 2.5, 10, 28.75, -6.875  # of the inverse mass of an element, times its mass: corners, edges
+    inverse = [[same, apart, apart, beside, across, beside], [apart, same, apart, beside, beside, across], [apart, apart, same, across, beside, beside],
+               [beside, beside, across, edge, edges, edges], [across, beside, beside, edges, edge, edges], [beside, across, beside, edges, edges, edge]]
+    mass, end = 2e-6, 1200 * 1e-6 * 0.25e-3 / 3 * np.linalg.inv(inverse).sum()  # a third of the elements of the last cells have a face there
+    body = {"name": "head", "shape": "none", "motion": motion, "at": [0, 0, 10.5e-3], "velocity": {"z": -1}, "tied": ["z+"], "tied_from": 1e-6}
+    bar = run(CASES / "bounce.yaml", sets={
+        **TUMBLING, "mesh": {"cells": [2, 2, 40], "size": [1e-3, 1e-3, 10e-3], "origin": [-5e-4, -5e-4, 0]}, "initial": {}, "time": {"end": 2e-6, "safety": 0.9},
+        "material": {"model": "linear-elastic", "young": 2e9, "poisson": 0, "density": 1200}, "interface": {"law": "none"},
+        "bodies": [{**body, **({"mass": mass, "inertia": [1e-12, 1e-12, 1e-12, 0, 0, 0]} if motion == "free" else {})}]})
+    theory = 0.5 * (mass * end / (mass + end) if motion == "free" else end)
+    figure(f"{motion} mass tied to a bar at rest: kinetic energy that goes", bar.energy["joined"][-1], theory=theory, bound=rounding(1e-11, 1e-5), unit="J", relative=True, why=ROUNDING)
+    figure(f"{motion} mass tied to a bar at rest: energy error", bar.summary["energy_error_rel"], bound=2e-4)
+
+
 def test_a_mass_tied_to_a_bar_is_slowed_as_in_theory(run, figure):
     """V exp(-rho c A t/m) while the wave is on its way; Poisson's ratio 0, so the bar does not bulge."""
     mass, speed, area = 2e-6, math.sqrt(2e9 / 1200), 1e-6
@@ -287,6 +320,8 @@ def test_a_plate_that_is_hit_beside_its_middle_turns(run, figure):
     ({"boundary": [{"set": "x-", "component": "x", "velocity": 0}]}, "elements with nodes that are tied to a body have others whose motion `boundary` prescribes"),
     ({"bodies": [{**HEAD, "tied_where": "nz > 2"}]}, "bodies[0]: no face of the surface is in it, where: nz > 2"),
     ({"bodies": [{**FREE, "shape": "sphere", "radius": 1e-3, "tied_until": 1e-6}]}, "bodies[0].tied_until: not used: nothing is tied to it"),
+    ({"bodies": [{**FREE, "shape": "sphere", "radius": 1e-3, "tied_from": 1e-6}]}, "bodies[0].tied_from: not used: nothing is tied to it"),
+    ({"bodies": [{**HEAD, "tied_from": 1e-6, "tied_until": 1e-6}]}, "bodies[0].tied_until: not after `tied_from`"),
     ({"bodies": [HEAD, {**HEAD, "name": "other", "tied": ["x-"]}]}, "elements with nodes that are tied to two bodies")])
 def test_ties_that_contradict_are_refused(scratch, sets, words):
     process = launch("check", CASES / "bounce.yaml", *overrides({**TUMBLING, **sets}))
@@ -295,7 +330,9 @@ def test_ties_that_contradict_are_refused(scratch, sets, words):
 
 def test_check_tells_what_turns():
     told = launch("check", CASES / "bounce.yaml", *overrides(TUMBLING)).stdout
-    assert "body           head: 4e-06 kg, principal moments 2.894e-12, 4.081e-12, 5.025e-12 kg m2, tied to 1e-06 m2" in told
+    assert "body           head: 4e-06 kg, principal moments 2.894e-12, 4.081e-12, 5.025e-12 kg m2, tied to 1e-06 m2\n" in told
+    told = launch("check", CASES / "bounce.yaml", *overrides({**TUMBLING, "bodies": [{**HEAD, "tied_from": 1e-6, "tied_until": 2e-6}]})).stdout
+    assert "kg m2, tied to 1e-06 m2 from 1e-06 s on until 2e-06 s\n" in told
 
 
 # ---- the same bits on any layout ----

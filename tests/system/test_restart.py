@@ -229,7 +229,9 @@ def test_sets_inside_on_any_layout_and_restart(run, grains, tmp_path):
 AT_ONCE = {
     **EVERYWHERE["loads"], "mesh": {"cells": [4, 4, 24], "size": [0.4e-3, 0.4e-3, 3.2e-3], "origin": [-0.2e-3, -0.2e-3, -1.6e-3]}, "time.end": 0.1e-6,
     "materials": [{"name": "soft", "where": "z > 0.8e-3", "model": "neo-hookean", "density": 2500, "young": 70e9, "poisson": 0.3}],
-    "bodies": [{"name": "ball", "shape": "sphere", "motion": "free", "at": [-1.2e-3, 0, -0.9e-3], "radius": 1e-3, "density": 8000, "velocity": {"x": 30}, "spin": {"y": 1e4}}],
+    "bodies": [{"name": "ball", "shape": "sphere", "motion": "free", "at": [-1.2e-3, 0, -0.9e-3], "radius": 1e-3, "density": 8000, "velocity": {"x": 30}, "spin": {"y": 1e4}},
+               {"name": "rider", "shape": "none", "motion": "free", "at": [0.4e-3, 0.1e-3, 0.3e-3], "mass": 1e-7, "inertia": [1e-15, 1.2e-15, 1.5e-15, 0, 0, 1e-16], "velocity": {"y": 20},
+                "spin": {"z": 2e4}, "tied_where": "nx > 0.5 && abs(z - 0.3e-3) < 1.2e-4", "tied_from": 3e-8}],
     "output.fields": [], "output.interval": 1e-8, "output.energy_limit": 1e9, "checkpoint.steps": 20, "checkpoint.keep": 100,
     "output.probes": [{"name": "a", "at": [0.01e-3, 0.03e-3, 0.5e-3], "strain": True}],
     "output.crack_fronts": [{"name": name, "at": [0, 0, 0], "direction": [-1, 0, 0], "normal": [0, 0, 1], "radius": {"inner": 4e-5, "outer": 1.5e-4}, "values": ["KI", "KII", "KIII"],
@@ -242,7 +244,7 @@ def test_everything_at_once_on_any_layout_and_through_a_restart(run, tmp_path):
     one = run(FRAGMENTS, sets=AT_ONCE)
     steps, history = one.summary["steps"], one.history
     assert one.summary["broken_area_m2"] > 0 and steps > 80
-    for name in ("pull_work", "gas_work", "bed_work", "fall_work", "hold_work", "roll_work", "catch_work", "ball_fx", "end_szz_max", "left_tip", "front_KI", "still_KI", "a_exy"):
+    for name in ("pull_work", "gas_work", "bed_work", "fall_work", "hold_work", "roll_work", "catch_work", "ball_fx", "rider_vx", "rider_wx", "end_szz_max", "left_tip", "front_KI", "still_KI", "a_exy"):
         assert np.any(history[name] != 0) and np.ptp(history[name][np.isfinite(history[name])]) > 0, name
     for ranks, threads in ((1, 2), (5, 1)):
         assert_same_results(run(FRAGMENTS, ranks=ranks, threads=threads, sets=AT_ONCE), one, frames=-1)

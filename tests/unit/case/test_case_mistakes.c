@@ -302,9 +302,11 @@ static const mistake mistakes[] = {
      ":24:22: bodies[8].shape: ball: not one of the allowed words; allowed: sphere, plane, cylinder, none\n"
      ":24:36: bodies[8].motion: loose: not one of the allowed words; allowed: free, prescribed\n"
      ":24:43: bodies[8].colour: unknown key; allowed: name, shape, motion, at, radius, normal, axis, "
-     "density, length, mass, inertia, velocity, spin, faces, tied, tied_where, tied_until, penalty\n"
+     "density, length, mass, inertia, velocity, spin, faces, tied, tied_where, tied_from, "
+     "tied_until, penalty\n"
      ":25:5: bodies[9]: 3: not a mapping of keys; allowed: list of {name, shape, motion, at, radius, normal, "
-     "axis, density, length, mass, inertia, velocity, spin, faces, tied, tied_where, tied_until, penalty}\n"},
+     "axis, density, length, mass, inertia, velocity, spin, faces, tied, tied_where, tied_from, "
+     "tied_until, penalty}\n"},
     {"output:\n", "output:\n  times: [1e-7, 1e-7]\n",
      ":18:10: output.times: [1e-7, 1e-7]: not ascending; allowed: ascending list, each number >= 0 (s)\n"},
     {"output:\n", "output:\n  times: [1e-7, 2e-6]\n",

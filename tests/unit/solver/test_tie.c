@@ -95,7 +95,7 @@ static step take(rg_solver *s) {
         of.before[i] = motion_of(&b->body[i]);
     }
     for (size_t t = 0; t < s->domain->tiles; t++) {
-        rg_ties_gather(s->ties, t, TIME, s->velocity);
+        rg_ties_gather(s->ties, t, TIME, s->u, s->velocity, NULL);
     }
     rg_ties_close(s->ties, TIME);
     rg_bodies_sum(b);
