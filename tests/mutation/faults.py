@@ -206,8 +206,9 @@ ARRAY = re.compile(r"\s*(?:static |const |unsigned |struct |_Alignas\(\w+\) )*[A
 # made up for by the gap that alignment leaves behind every block.)
 BLOCK = re.compile(r"RG_NEW\([\w ]+\*?, ((?:[^(),]|\([^()]*(?:\([^()]*\)[^()]*)*\))*)\)")
 
-# What lets something begin early, and nothing else: memory on its way to the cache, messages on theirs. Whoever needs either waits for it.
-HINT = re.compile(r"\w*(?:prefetch|_poll|Testall|madvise)\w*\(")
+# What lets something begin early, and nothing else: memory on its way to the cache, messages on theirs, bytes to the disk.
+# Whoever needs them waits for them.
+HINT = re.compile(r"\w*(?:prefetch|_poll|Testall|madvise|start_sync)\w*\(")
 
 
 def is_integer(operand, integers):

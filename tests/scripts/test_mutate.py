@@ -72,7 +72,8 @@ def test_what_a_block_has_to_spare_is_left_alone():
 
 def test_hints_are_left_alone():
     text = "RG_INLINE void prefetch_cracks(int n) {\n    if (n > 0) {\n        n = n + 1;\n    }\n}\n\nvoid f(int n) {\n    g(n + 1);\n"
-    faults = [fault for found in faults_of("a.c", text + "    prefetch_cracks(n + 1);\n}\n").values() for fault in found]
+    hints = "    prefetch_cracks(n + 1);\n    rg_h5_start_sync(f);\n}\n"
+    faults = [fault for found in faults_of("a.c", text + hints).values() for fault in found]
     assert faults and {fault.line for fault in faults} == {"    g(n + 1);"}
 
 
