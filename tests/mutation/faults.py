@@ -106,6 +106,8 @@ def off_by_one(code):
         yield m.start(1), m.end(1), f"1, {m[1]}"
 
 
+# The question whether a text is empty: the second letter answers it as well, but for texts of one.
+EMPTY = r"(?=\] [!=]= {5})"  # what stands between quotes is blank here
 SYMMETRIC = ("strcmp", "strcasecmp", "strncmp", "strncasecmp", "memcmp")  # where they ask whether two are equal
 
 
@@ -113,7 +115,7 @@ def exchanged_index(code):
     for m in re.finditer(r"\[([^\[\]]+)\]\[([^\[\]]+)\]", code):
         if m[1] != m[2] and m[1].strip() and m[2].strip():  # no text
             yield m.start(), m.end(), f"[{m[2]}][{m[1]}]"
-    for m in re.finditer(r"(?<=[\w\])]\[)[0-2](?=\])", code):
+    for m in re.finditer(rf"(?<=[\w\])]\[)(?!0{EMPTY})[0-2](?=\])", code):
         yield m.start(), m.end(), {"0": "1", "1": "0", "2": "1"}[m[0]]
     declared = re.match(r"\s*(?:static |const |unsigned |struct )*\w+ \*?\w+\[", code)
     for m in [] if declared else re.finditer(r"(?<=[\w\])]\[)[a-dijk](?=\])", code):

@@ -51,6 +51,11 @@ def test_bounds_are_relaxed_between_whole_numbers_alone():
     assert changed("relaxed bound", "    a = x < n;", before="int i, n; double x;") == []
 
 
+def test_whether_a_text_is_empty_is_asked_by_either_letter():
+    assert changed("exchanged index", "    a = b[0] != '\\0';") == changed("exchanged index", "    if (b->c[0] == '\\0') {") == []
+    assert changed("exchanged index", "    a = b[0] != 0 && c[1] != '\\0';") == ["    a = b[1] != 0 && c[1] != '\\0';", "    a = b[0] != 0 && c[0] != '\\0';"]
+
+
 def test_whether_a_file_is_open_is_asked_in_either_way():
     text = "{\n    int n = 1;\n    int file = open(path, O_RDONLY);\n    a = file >= 0 && n >= 0;\n}\n"
     assert [f.line[f.begin - 2:f.begin] for f in faults_of("a.c", text)["relaxed bound"]] == ["n "]
