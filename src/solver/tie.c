@@ -136,15 +136,12 @@ void rg_ties_gather(rg_ties *t, size_t tile, double time, const rg_real *u, cons
         const rg_body *b = &t->bodies->body[e->body];
         int row = omp_get_thread_num() * t->bodies->count + e->body;
         double all[JOINING] = {0}, before[JOINING] = {0};
-        if (!holds(b, time)) {
-            continue;
-        }
         if (joins(b, time)) {
             join(t, e, u);
             add_momenta(t, e, now, before);
             add_sums(t->joining + JOINING * row, before, JOINING);
         }
-        add_momenta(t, e, velocity, all);
+        add_momenta(t, e, velocity, all); /* of nodes that are not tied now nobody asks for it */
         add_sums(t->sum + SUMS * row, all, SUMS);
     }
 }
