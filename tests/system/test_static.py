@@ -1,8 +1,11 @@
 """Static starts: equilibria against closed forms, rest afterwards, the same bits on any layout and through a restart."""
 
+import json
+import re
+
 import numpy as np
 import pytest
-from conftest import SINGLE, launch, rounding
+from conftest import SINGLE, launch, overrides, rounding
 
 BAR = """
 defaults: 0
@@ -152,6 +155,17 @@ def test_damping_comes_to_the_same_rest(run, figure, bar, form):
     assert damped.summary["static_residual"] <= rounding(1e-6, 1e-4) and damped.summary["relax_heat_J"] == pytest.approx(damped.energy["relaxed"][-1], rel=1e-12)
     assert np.ptp(damped.energy["relaxed"]) == 0 and damped.energy["kinetic"].max() < rounding(1e-10, 1e-6) * damped.energy["bulk"][0]
     assert damped.history["pull_work"][0] == 0 and row["time"] == 0
+
+
+def test_damping_is_told_each_time_the_residual_has_fallen_tenfold(bar, tmp_path):
+    told = launch("run", bar, "-o", tmp_path / "out", *overrides({"start": "relax", "loads": [{"set": "z+", "traction": {"z": 1e6}}], "relax.tolerance": 1e-4, "time.steps": 1}))
+    assert told.returncode == 0, told.stderr
+    rows = re.findall(r"relax +residual (\S+) of the loads after (\d+) steps, heat (\S+) J", told.stdout)
+    share, steps, heat = ([float(row[k]) for row in rows] for k in range(3))
+    summary = json.loads((tmp_path / "out/summary.json").read_text())
+    assert 4 <= len(rows) <= 6 and share[0] > 0.01 and share[-1] == pytest.approx(summary["static_residual"], rel=0.05) and share[-1] <= 1e-4
+    assert all(after < 0.11 * before for before, after in zip(share, share[1:-1])) and share[-1] < share[-2]
+    assert steps[0] == 1 and all(after % 10 == 0 and after > before for before, after in zip(steps, steps[1:])) and heat[-1] == pytest.approx(summary["relax_heat_J"], rel=1e-3)
 
 
 def test_damping_with_a_prescribed_end(run, figure, bar):
