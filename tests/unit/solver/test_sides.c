@@ -353,6 +353,48 @@ static void check_held(const held_case *c, const char *mass) {
     random_state_free(&r);
 }
 
+/* Nodes that elements share are held in all of them, also in those that only touch the side: [2] slots. */
+typedef struct {
+    unsigned *nodes[2];
+    bool good;
+} shown;
+
+static void show(void *to, size_t slot, int node, const double line[3]) {
+    shown *of = to;
+    int side = fabs(line[0]) > 0.5;
+    const double wanted[3] = {side, side - 1, 0};
+    for (int c = 0; c < 3; c++) {
+        of->good = near(line[c], wanted[c], 1e-15) && of->good;
+    }
+    of->good = (of->nodes[side][slot] >> node & 1) == 0 && of->good;
+    of->nodes[side][slot] |= 1u << node;
+}
+
+static void check_shared(void) {
+    const char *change[] = {"interface={law: none, form: continuous}",
+                            "boundary=[{set: y-, normal: 3}, {set: x+, normal: 0}]", "bodies=[]"};
+    random_state r = random_state_make(3, change, MPI_COMM_WORLD);
+    const rg_domain *d = r.solver->domain;
+    const double *low = r.input->mesh.origin, *size = r.input->mesh.size;
+    shown of = {{RG_NEW(unsigned, d->blocks *RG_LANES), RG_NEW(unsigned, d->blocks *RG_LANES)}, true};
+    rg_constraints_set(r.solver->constraints, TIME, DT_LAST, DT);
+    rg_constraints_show(r.solver->constraints, show, &of);
+    for (size_t slot = 0; slot < d->blocks * RG_LANES; slot++) {
+        unsigned wanted[2] = {0, 0};
+        for (int n = 0; n < RG_NODES && d->id[slot] >= 0; n++) {
+            double x[3];
+            mesh_node(r.mesh, d->id[slot], n, x);
+            wanted[0] |= fabs(x[1] - low[1]) < 1e-9 ? 1u << n : 0;
+            wanted[1] |= fabs(x[0] - low[0] - size[0]) < 1e-9 ? 1u << n : 0;
+        }
+        of.good = of.nodes[0][slot] == wanted[0] && of.nodes[1][slot] == wanted[1] && of.good;
+    }
+    report(of.good, "shared nodes", "are held wherever they are, along the mean normal");
+    rg_free(of.nodes[0]);
+    rg_free(of.nodes[1]);
+    random_state_free(&r);
+}
+
 static void check_words(void) {
     static const char entries[] =
         "boundary=[{set: z+, component: z, velocity: 6}, {set: y-, normal: 3}, {where: nx < -0.5, direction: "
@@ -493,6 +535,7 @@ int main(int argc, char **argv) {
         }
         check_damped(mass[m]);
     }
+    check_shared();
     check_words();
     return finish_with_nothing_left();
 }
