@@ -535,6 +535,73 @@ static void test_paths(void **state) {
     rg_mesh_free(unwritten);
 }
 
+/* ---- calls of HDF5 that fail while a file is written: the linker puts these before them ---- */
+
+static int calls, failing = -1; /* which of them does; -1: none */
+
+#define MAY_FAIL(type, name, parameters, arguments)                                                          \
+    type __wrap_##name parameters;                                                                           \
+    type __real_##name parameters;                                                                           \
+    type __wrap_##name parameters {                                                                          \
+        type found = __real_##name arguments;                                                                \
+        return calls++ == failing ? -1 : found;                                                              \
+    }
+
+MAY_FAIL(hid_t, H5Fcreate, (const char *name, unsigned flags, hid_t plan, hid_t access),
+         (name, flags, plan, access))
+MAY_FAIL(herr_t, H5Fclose, (hid_t file), (file))
+MAY_FAIL(hid_t, H5Gcreate2, (hid_t at, const char *name, hid_t links, hid_t plan, hid_t access),
+         (at, name, links, plan, access))
+MAY_FAIL(herr_t, H5Gclose, (hid_t group), (group))
+MAY_FAIL(hid_t, H5Acreate2, (hid_t at, const char *name, hid_t type, hid_t space, hid_t plan, hid_t access),
+         (at, name, type, space, plan, access))
+MAY_FAIL(herr_t, H5Awrite, (hid_t attribute, hid_t type, const void *data), (attribute, type, data))
+MAY_FAIL(herr_t, H5Aclose, (hid_t attribute), (attribute))
+MAY_FAIL(hid_t, H5Dcreate2,
+         (hid_t at, const char *name, hid_t type, hid_t space, hid_t links, hid_t plan, hid_t access),
+         (at, name, type, space, links, plan, access))
+MAY_FAIL(herr_t, H5Dwrite,
+         (hid_t dataset, hid_t type, hid_t memory, hid_t space, hid_t plan, const void *data),
+         (dataset, type, memory, space, plan, data))
+MAY_FAIL(herr_t, H5Dclose, (hid_t dataset), (dataset))
+
+static void write_with_a_failure(void) {
+    calls = 0;
+    rg_mesh_file_write(damaged, unwritten, 0, NULL);
+    _exit(calls > failing ? 99 : 0);
+}
+
+/* Each of them, one after the other: the write ends with words, and what was there before stays. */
+static void test_failures(void **state) {
+    (void)state;
+    const int64_t cells[3] = {1, 1, 1};
+    const double origin[3] = {0, 0, 0}, size[3] = {1, 1, 1};
+    rg_mesh *m = rg_mesh_box(cells, origin, size, 0, 3);
+    char said[600], temporary[sizeof damaged + 8], found[8] = "";
+    int status = RG_FAILURE;
+    rg_mesh_sort(m);
+    rg_mesh_connect(m);
+    unwritten = m;
+    for (failing = 0; status != 0; failing++) {
+        store("before", 6);
+        status = run_child(write_with_a_failure, said, sizeof said);
+        snprintf(temporary, sizeof temporary, "%s.part", damaged);
+        assert_int_equal(access(temporary, F_OK), -1);
+        if (status != 0) {
+            FILE *f = fopen(damaged, "rb");
+            assert_int_equal(fread(found, 1, 7, f), 6);
+            fclose(f);
+            if (status != RG_FAILURE || strstr(said, ": cannot write ") == NULL ||
+                strcmp(found, "before") != 0) {
+                fail_msg("call %d: status %d, said: %s", failing, status, said);
+            }
+        }
+    }
+    assert_true(failing > 100);
+    failing = -1;
+    rg_mesh_free(m);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_whole),           cmocka_unit_test(test_overlapping),
@@ -544,6 +611,7 @@ int main(void) {
         cmocka_unit_test(test_damage_is_named), cmocka_unit_test(test_same_mesh_same_file),
         cmocka_unit_test(test_large_numbers),   cmocka_unit_test(test_unsound),
         cmocka_unit_test(test_parts),           cmocka_unit_test(test_paths),
+        cmocka_unit_test(test_failures),
     };
     int failed = cmocka_run_group_tests(tests, write_file, remove_file);
     return failed + (rg_alloc_blocks() > 0); /* all is given back */
