@@ -109,6 +109,14 @@ static const held_case held[] = {
       {0, {0, -0.6, 0.8}, true, shove},
       {3, {0, 1, 0}, false, back},
       {2, {0, -1, 0}, false, ramp}}},
+    {"a line that two others imply",
+     "boundary=[{name: a, set: x-, direction: [0, 0, 2], velocity: -4 - 2e3*y}, "
+     "{name: b, set: x-, direction: [1, 0, 0], velocity: 6 + 1e3*x + 4e6*t}, "
+     "{name: c, set: z+, direction: [1, 0, 1], velocity: -4 - 2e3*y}]",
+     3,
+     {{0, {0, 0, 1}, false, back},
+      {0, {1, 0, 0}, false, ramp},
+      {5, {0.70710678118654752, 0, 0.70710678118654752}, false, back}}},
     {"a rigid side",
      "boundary=[{name: a, set: z+, direction: [1, 2, 2], velocity: 6 + 1e3*x + 4e6*t}, "
      "{name: b, set: x+, angle: 2e3*t, axis: [0, 3, 4], at: [1e-3, 2e-3, 3e-3], translation: {x: 3*t, "
