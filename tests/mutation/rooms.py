@@ -40,7 +40,7 @@ ROOMS = {
                   test_open_faces.py test_ledger.py test_spall.py test_parallel.py"""),
     "solver": (["src/solver/*"],
                """heat opening contact_twin crack_front rebalance probe sensor crack_tip step spectrum balance body attitude
-                  law load sides coarse initial tie mixed_mode checkpoint step_limiter strength patch material verify case
+                  law load sides coarse initial tie rest mixed_mode checkpoint step_limiter strength patch material verify case
                   checkpoint_file ledger snapshot estimate fragment fragment_twin fuzz-checkpoint assembly test_thermal.py
                   test_equilibrium.py test_invariance.py test_contact.py test_friction.py test_viscosity.py test_bodies.py
                   test_output.py test_continuous.py test_ceramic.py test_laws.py test_ledger.py test_spall.py test_solids.py
