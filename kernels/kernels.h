@@ -43,6 +43,8 @@ typedef struct {
     size_t history_stride;    /* values from one block's history to the next: its own, or more where other
                                  blocks are of a material with a longer one */
     rg_real *thermal;         /* [block][RG_THERMAL][lane], in/out: of solids that heat expands; or NULL */
+    const rg_real *turn;      /* [block][RG_TURN][lane]: axes of anisotropic solids whose stiffness is given
+                                 along those; NULL: along the axes of the mesh */
     bool advance;             /* history goes on by the step that ends here; else it stays as it is */
     rg_real *force;           /* out: internal nodal force of the bulk, -dW/du (N) */
     rg_real *traction;        /* out: area-weighted corner tractions area_f P N_outward (N) */

@@ -150,6 +150,8 @@ enum {                           /* of an element that heat expands, values at i
        RG_THERMAL_BLOCK = RG_THERMAL * RG_LANES,
 };
 
+enum { RG_TURN = 9, RG_TURN_BLOCK = RG_TURN * RG_LANES }; /* rows: axes 1, 2, 3 of an anisotropic solid */
+
 /* Nodes of local face f in the order both neighbours share. */
 static const int rg_face_node[RG_FACES][RG_FNODES] = {
     {1, 2, 3, 5, 9, 8}, {0, 2, 3, 6, 9, 7}, {0, 1, 3, 4, 8, 7}, {0, 1, 2, 4, 5, 6}};
@@ -169,6 +171,10 @@ static inline size_t rg_traction_index(size_t e, int f, int i, int c) {
 
 static inline size_t rg_geom_index(size_t e, int k) {
     return (e / RG_LANES) * RG_GEOM_BLOCK + (size_t)k * RG_LANES + e % RG_LANES;
+}
+
+static inline size_t rg_turn_index(size_t e, int k) {
+    return (e / RG_LANES) * RG_TURN_BLOCK + (size_t)k * RG_LANES + e % RG_LANES;
 }
 
 static inline size_t rg_link_index(size_t e, int f) {

@@ -93,9 +93,59 @@ RG_INLINE rg_vec expansion_work(rg_real *thermal, int g, rg_vec force, bool adva
     return advance ? work : rg_splat(0.0);
 }
 
-/* thermal: NULL where nothing expands. */
+/* Solids whose axes, the rows of Q, differ from element to element: W of them is W(Q F Q^T), so P = Q^T P(Q F
+ * Q^T) Q, of a material that defines RG_TURNED. */
+#ifdef RG_TURNED
+enum { TURNED = 1 };
+#else
+enum { TURNED = 0 };
+#endif
+
+RG_INLINE const rg_real *turn_of(const rg_bulk_args *args, size_t block, int lane) {
+    return TURNED == 0 || args->turn == NULL ? NULL : args->turn + block * RG_TURN_BLOCK + lane;
+}
+
+RG_INLINE void load_turn(const rg_real *turn, rg_vec Q[3][3]) {
+    for (int k = 0; k < RG_TURN; k++) {
+        Q[k / 3][k % 3] = rg_load(turn + k * RG_LANES);
+    }
+}
+
+/* T becomes Q T Q^T. */
+RG_INLINE void take_turn(const rg_real *turn, rg_vec T[3][3]) {
+    rg_vec Q[3][3], half[3][3];
+    load_turn(turn, Q);
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 3; j++) {
+            half[i][j] = rg_dot(T[i], Q[j]);
+        }
+    }
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 3; j++) {
+            T[i][j] = Q[i][0] * half[0][j] + Q[i][1] * half[1][j] + Q[i][2] * half[2][j];
+        }
+    }
+}
+
+/* T becomes Q^T T Q. */
+RG_INLINE void put_turn(const rg_real *turn, rg_vec T[3][3]) {
+    rg_vec Q[3][3], half[3][3];
+    load_turn(turn, Q);
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 3; j++) {
+            half[i][j] = T[i][0] * Q[0][j] + T[i][1] * Q[1][j] + T[i][2] * Q[2][j];
+        }
+    }
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 3; j++) {
+            T[i][j] = Q[0][i] * half[0][j] + Q[1][i] * half[1][j] + Q[2][i] * half[2][j];
+        }
+    }
+}
+
+/* thermal: NULL where nothing expands; turn: NULL where nothing has axes of its own. */
 RG_INLINE void bulk_vector(const rg_bulk_args *args, size_t block, int lane, rg_gradient gradient,
-                           rg_real *thermal) {
+                           rg_real *thermal, const rg_real *turn) {
     element e;
     load_element(&e, args, block, lane, gradient);
     vec3 common[4], q[4][RG_GAUSS], Q[4] = {{{0}}};
@@ -110,10 +160,16 @@ RG_INLINE void bulk_vector(const rg_bulk_args *args, size_t block, int lane, rg_
             if (thermal != NULL) {
                 take_expansion(thermal, first + i, H[i]);
             }
+            if (turn != NULL) {
+                take_turn(turn, H[i]);
+            }
             load_history(past, first + i, history[i]);
         }
         material_steps(args, H, history, P, point);
         for (int i = 0; i < RG_TOGETHER; i++) {
+            if (turn != NULL) {
+                put_turn(turn, P[i]);
+            }
             if (thermal != NULL) {
                 rg_vec force = put_expansion(thermal, first + i, H[i], P[i], &point[i].stiffening);
                 heated += weight * expansion_work(thermal, first + i, force, args->advance);
@@ -148,22 +204,39 @@ RG_INLINE void bulk_vector(const rg_bulk_args *args, size_t block, int lane, rg_
 static __attribute__((noinline)) void heated_blocks(const rg_bulk_args *args, size_t begin, size_t end) {
     for (size_t b = begin; b < end; b++) {
         for (int lane = 0; lane < RG_LANES; lane += RG_VLEN) {
-            bulk_vector(args, b, lane, args->gradient, thermal_of(args, b, lane));
+            bulk_vector(args, b, lane, args->gradient, thermal_of(args, b, lane), NULL);
         }
     }
 }
+
+#ifdef RG_TURNED
+/* Likewise. */
+static __attribute__((noinline)) void turned_blocks(const rg_bulk_args *args, size_t begin, size_t end) {
+    for (size_t b = begin; b < end; b++) {
+        for (int lane = 0; lane < RG_LANES; lane += RG_VLEN) {
+            bulk_vector(args, b, lane, args->gradient, NULL, turn_of(args, b, lane));
+        }
+    }
+}
+#endif
 
 void BULK_KERNEL(rg_bulk)(const rg_bulk_args *args, size_t begin, size_t end) {
     if (args->thermal != NULL) {
         heated_blocks(args, begin, end);
         return;
     }
+#ifdef RG_TURNED
+    if (args->turn != NULL) {
+        turned_blocks(args, begin, end);
+        return;
+    }
+#endif
     for (size_t b = begin; b < end; b++) {
         for (int lane = 0; lane < RG_LANES; lane += RG_VLEN) {
             if (args->gradient == RG_GRADIENT_LIFTED) {
-                bulk_vector(args, b, lane, RG_GRADIENT_LIFTED, NULL);
+                bulk_vector(args, b, lane, RG_GRADIENT_LIFTED, NULL, NULL);
             } else {
-                bulk_vector(args, b, lane, RG_GRADIENT_OWN, NULL);
+                bulk_vector(args, b, lane, RG_GRADIENT_OWN, NULL, NULL);
             }
         }
     }
@@ -185,7 +258,8 @@ RG_INLINE void state_vector(const rg_bulk_state_args *args, size_t block, size_t
     load_element(&e, args->bulk, block, lane, gradient);
     vec3 common[4];
     common_derivatives(&e, gradient, common);
-    const rg_real *past = history_of(args->bulk, block, lane), *thermal = thermal_of(args->bulk, block, lane);
+    const rg_real *past = history_of(args->bulk, block, lane), *thermal = thermal_of(args->bulk, block, lane),
+                  *turn = turn_of(args->bulk, block, lane);
     rg_vec energy = {0};
     for (int g = 0; g < RG_GAUSS; g++) {
         rg_vec H[3][3], history[RG_HISTORY + 1];
@@ -195,9 +269,16 @@ RG_INLINE void state_vector(const rg_bulk_state_args *args, size_t block, size_t
         if (thermal != NULL) {
             take_expansion(thermal, g, H);
         }
+        if (turn != NULL) {
+            take_turn(turn, H);
+        }
         load_history(past, g, history);
         material_state(&args->bulk->material, H, history, args->cauchy != NULL, &s);
         energy += 0.25 * e.volume * s.energy;
+        if (turn != NULL && args->cauchy != NULL) {
+            put_turn(turn, H);
+            put_turn(turn, s.P);
+        }
         if (args->cauchy != NULL) {
             s.J *= thermal == NULL ? rg_splat(1.0) : grown_volume(thermal, g); /* P F^T = Pe Fe^T */
             store_cauchy(args->cauchy + at * 6 * RG_LANES + lane, H, &s);

@@ -19,6 +19,8 @@
  *                                   rg_point_state *out);
  *         The state at F as it is; P only if `stress`.
  *
+ *     With #define RG_TURNED the kernel turns H into the element's own axes (rg_bulk_args.turn), and P back.
+ *
  * All lanes are on their own: what is computed in one must not depend on the others. */
 #ifndef RG_MATERIAL_POINT_H
 #define RG_MATERIAL_POINT_H

@@ -1,12 +1,13 @@
 /* Bulk kernel of the elastic solid of any symmetry: W = 1/2 E:C:E of the Green strain E = 1/2 (F^T F - I),
- * S = dW/dE = C:E, P = F S, with the 21 constants C in the axes of the mesh (J. F. Nye, Physical Properties
- * of Crystals, 1985, chapter 8): what bulk_st_venant_kirchhoff.c is with two.
+ * S = dW/dE = C:E, P = F S, with the 21 constants C in the axes of the mesh, or in those of each element (J.
+ * F. Nye, Physical Properties of Crystals, 1985, chapter 8): what bulk_st_venant_kirchhoff.c is with two.
  *
  * Objective, but for moderate strains, as that one. */
 #include "element/material_point.h"
 
 #define RG_MATERIAL anisotropic
 #define RG_HISTORY  0
+#define RG_TURNED
 
 /* Strain and stress in Voigt's order, shear strains twice those of the tensor. */
 typedef struct {

@@ -173,11 +173,29 @@ static rg_real *thermal(const rg_bulk_args *args, size_t e, int row) {
     return &args->thermal[e / RG_LANES * RG_THERMAL_BLOCK + (size_t)row * RG_LANES + e % RG_LANES];
 }
 
+/* The same of a solid with the rows of Q as axes: its deformation is F Q^T, and P the derivative by F. */
+static rg_reference_point turned(const rg_bulk_args *args, bool advance, size_t e, int g, double f[3][3],
+                                 double p[3][3]) {
+    if (args->turn == NULL || args->material.model != RG_MATERIAL_ANISOTROPIC)
+        return material(args, advance, e, g, f, p);
+    double q[3][3], own[3][3] = {{0}}, stress[3][3];
+    for (int k = 0; k < RG_TURN; k++)
+        q[k / 3][k % 3] = args->turn[rg_turn_index(e, k)];
+    for (int k = 0; k < 27; k++)
+        own[k / 9][k / 3 % 3] += f[k / 9][k % 3] * q[k / 3 % 3][k % 3];
+    rg_reference_point point = material(args, advance, e, g, own, stress);
+    for (int k = 0; k < 9; k++)
+        p[k / 3][k % 3] = 0;
+    for (int k = 0; k < 27; k++)
+        p[k / 9][k / 3 % 3] += stress[k / 9][k % 3] * q[k % 3][k / 3 % 3];
+    return point;
+}
+
 /* The same of a solid that heat has expanded by s - 1: W(F/s); `step`: with the work of the expansion. */
 static rg_reference_point heated(const rg_bulk_args *args, bool step, bool advance, size_t e, int g,
                                  double volume, double f[3][3], double p[3][3]) {
     if (args->thermal == NULL)
-        return material(args, advance, e, g, f, p);
+        return turned(args, advance, e, g, f, p);
     double s = 1 + *thermal(args, e, RG_THERMAL_EXPANSION + g), elastic[3][3], force = 0;
     for (int k = 0; k < 9; k++)
         elastic[k / 3][k % 3] = f[k / 3][k % 3] / s;

@@ -93,6 +93,16 @@ void rg_stiffness_turn(double c[RG_STIFFNESS], const double axis[3][3]) {
     }
 }
 
+void rg_stiffness_axes(const double angles[3], double axis[3][3]) {
+    const double degree = 0.017453292519943295769;
+    double c1 = cos(angles[0] * degree), c = cos(angles[1] * degree), c2 = cos(angles[2] * degree);
+    double s1 = sin(angles[0] * degree), s = sin(angles[1] * degree), s2 = sin(angles[2] * degree);
+    const double rows[3][3] = {{c1 * c2 - s1 * s2 * c, s1 * c2 + c1 * s2 * c, s2 * s},
+                               {-c1 * s2 - s1 * c2 * c, -s1 * s2 + c1 * c2 * c, c2 * s},
+                               {s1 * s, -c1 * s, c}};
+    memcpy(axis, rows, sizeof rows);
+}
+
 void rg_stiffness_mean(const double c[RG_STIFFNESS], double *bulk, double *shear) {
     double along = 0, across = 0, shears = 0;
     for (int i = 0; i < 3; i++) {

@@ -22,6 +22,10 @@ double rg_stiffness_least(const double c[RG_STIFFNESS]);
 /* From the axes of the solid, axis[i] its i-th as a unit vector, into those of the mesh. */
 void rg_stiffness_turn(double c[RG_STIFFNESS], const double axis[3][3]);
 
+/* Axes that Euler angles after Bunge (degrees) turn x, y, z into: by the first about z, by the second about
+ * the new x, by the third about the new z. */
+void rg_stiffness_axes(const double angles[3], double axis[3][3]);
+
 /* Bulk and shear modulus that are the means over all orientations (W. Voigt, Lehrbuch der Kristallphysik,
  * 1910) (Pa). */
 void rg_stiffness_mean(const double c[RG_STIFFNESS], double *bulk, double *shear);

@@ -1,5 +1,6 @@
 /* Rules of the keys of an anisotropic solid. */
 #include <math.h>
+#include <string.h>
 
 #include "base/mem.h"
 #include "base/stiffness.h"
@@ -63,13 +64,46 @@ static void check_stable(rg_check *ck) {
     }
 }
 
+/* Ways to say how the axes lie, one of which may be given; true: there are several, and the second is told.
+ */
+static bool check_ways(rg_check *ck) {
+    static const struct {
+        int key;
+        const char *name, *way;
+    } keys[] = {
+        {RG_OF_AXIS_1, "orientation.axis_1", "axes"},      {RG_OF_AXIS_2, "orientation.axis_2", "axes"},
+        {RG_OF_ANGLE_1, "orientation.angle_1", "angle_1"}, {RG_OF_ANGLE_2, "orientation.angle_2", "angle_1"},
+        {RG_OF_ANGLE_3, "orientation.angle_3", "angle_1"}, {RG_OF_FIELD, "orientation.field", "field"},
+        {RG_OF_ANGLES, "orientation.angles", "angles"}};
+    enum { KEYS = sizeof keys / sizeof *keys };
+    const rg_material_check *m = &ck->material;
+    int first = -1;
+    for (int i = 0; i < KEYS; i++) {
+        const rg_node *node = m->constant[keys[i].key];
+        if (node != NULL && first >= 0 && strcmp(keys[i].way, keys[first].way) != 0) {
+            char what[80];
+            snprintf(what, sizeof what, "given beside %s",
+                     strcmp(keys[first].way, "axes") == 0 ? "axes" : strrchr(keys[first].name, '.') + 1);
+            wrong(ck, node, keys[i].name, NULL, what);
+            return true;
+        }
+        first = node != NULL && first < 0 ? i : first;
+    }
+    if (m->constant[RG_OF_FIELD] != NULL && ck->c->mesh.file == NULL) {
+        wrong(ck, m->constant[RG_OF_FIELD], "orientation.field", NULL,
+              "not used with the box: it is a dataset of a mesh file");
+    }
+    return false;
+}
+
 static void check_axes(rg_check *ck) {
     const rg_material_check *m = &ck->material;
     const rg_node *one = m->constant[RG_OF_AXIS_1], *two = m->constant[RG_OF_AXIS_2];
     double(*axis)[3] = m->of->anisotropic.axis;
-    if (m->constant[RG_OF_ANGLES] != NULL && (one != NULL || two != NULL)) {
-        wrong(ck, m->constant[RG_OF_ANGLES], "orientation.angles", NULL, "given beside axes");
-    } else if ((one == NULL) != (two == NULL)) {
+    if (check_ways(ck)) {
+        return;
+    }
+    if ((one == NULL) != (two == NULL)) {
         wrong(ck, one != NULL ? one : two, one != NULL ? "orientation.axis_1" : "orientation.axis_2", NULL,
               one != NULL ? "not used without axis_2" : "not used without axis_1");
     } else if (one != NULL) {

@@ -97,6 +97,12 @@ bool rg_initial_has_stress(const rg_initial *is) {
     return has;
 }
 
+bool rg_material_axes_vary(const rg_material_input *in) {
+    const rg_anisotropic_input *a = &in->anisotropic;
+    return in->model == RG_MATERIAL_ANISOTROPIC &&
+           (a->field != NULL || a->angle[0] != NULL || a->angle[1] != NULL || a->angle[2] != NULL);
+}
+
 bool rg_case_has_stress(const rg_case *c) {
     bool has = c->stress_of.run != NULL || rg_initial_has_stress(&c->initial);
     for (int i = 0; i < c->initial_sets; i++) {

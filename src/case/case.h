@@ -100,6 +100,8 @@ typedef struct {
 typedef struct {
     double stiffness[RG_STIFFNESS], young[3], poisson[3], shear[3]; /* Pa */
     double axis[2][3], angles[3];                                   /* of any length; degrees */
+    rg_expr *angle[3]; /* in place of angles, at the centroid of an element (degrees); NULL: 0 */
+    char *field;       /* ... or the name of a field of the mesh file; NULL: none */
 } rg_anisotropic_input;
 
 /* What the checks of a user's material found (case/user_check.c): deviations over the largest stress or
@@ -461,6 +463,10 @@ bool rg_load_is_inside(const rg_load_input *load);
 
 /* Whether two entries act at the same time. */
 bool rg_boundaries_meet(const rg_boundary *a, const rg_boundary *b);
+
+/* Whether this is an anisotropic solid whose axes differ from element to element, by expressions or a field.
+ */
+bool rg_material_axes_vary(const rg_material_input *in);
 
 /* Whether any element has an initial stress. */
 bool rg_initial_has_stress(const rg_initial *is);

@@ -276,6 +276,10 @@ static void learn_constants(rg_check *ck, size_t at, const rg_node *node, bool g
         [RG_OF_STIFFNESS] = offsetof(rg_material_input, anisotropic.stiffness),
         [RG_OF_AXIS_1] = offsetof(rg_material_input, anisotropic.axis[0]),
         [RG_OF_AXIS_2] = offsetof(rg_material_input, anisotropic.axis[1]),
+        [RG_OF_ANGLE_1] = offsetof(rg_material_input, anisotropic.angle[0]),
+        [RG_OF_ANGLE_2] = offsetof(rg_material_input, anisotropic.angle[1]),
+        [RG_OF_ANGLE_3] = offsetof(rg_material_input, anisotropic.angle[2]),
+        [RG_OF_FIELD] = offsetof(rg_material_input, anisotropic.field),
         [RG_OF_ANGLES] = offsetof(rg_material_input, anisotropic.angles)};
     rg_material_check *m = &ck->material;
     for (int i = 0; i < RG_CONSTANTS; i++) {

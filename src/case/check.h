@@ -15,6 +15,10 @@ enum {
     RG_OF_STIFFNESS,
     RG_OF_AXIS_1,
     RG_OF_AXIS_2,
+    RG_OF_ANGLE_1,
+    RG_OF_ANGLE_2,
+    RG_OF_ANGLE_3,
+    RG_OF_FIELD,
     RG_OF_ANGLES,
     RG_CONSTANTS
 };

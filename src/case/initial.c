@@ -75,6 +75,15 @@ void rg_stress_rule(const rg_entry *e) {
     }
     for (int i = 0; i <= c->others && rg_case_has_stress(c); i++) {
         rg_material_model model = rg_case_material(c, i)->model;
+        if (rg_material_axes_vary(rg_case_material(c, i))) {
+            char *what =
+                rg_text_format("not with %s, whose axes differ from element to element: what the stress "
+                               "has stored would not be known",
+                               rg_case_material_name(c, i));
+            rg_entry_wrong(e, "initial.stress", e->item->at, (rg_subject){0}, what);
+            rg_free(what);
+            return;
+        }
         bool user = model == RG_MATERIAL_USER && rg_input_history(rg_case_material(c, i)) > 0;
         if (user || ((int)RG_STRESS_NONE >> model & 1) != 0) {
             char *what = rg_text_format(

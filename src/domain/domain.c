@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "base/stiffness.h"
 #include "base/vector.h"
 #include "domain/interfaces.h"
 #include "layout.h"
@@ -52,7 +53,15 @@ static void set_padding(rg_domain *d, size_t slot, size_t at) {
     set_element(d, slot, at, &unit);
 }
 
-static void allocate_elements(rg_domain *d) {
+static void set_axes(rg_domain *d, size_t slot, const double angles[3]) {
+    double axis[3][3];
+    rg_stiffness_axes(angles, axis);
+    for (int k = 0; k < RG_TURN; k++) {
+        d->turn[rg_turn_index(slot, k)] = (rg_real)axis[k / 3][k % 3];
+    }
+}
+
+static void allocate_elements(rg_domain *d, bool turned) {
     size_t slots = d->blocks * RG_LANES;
     d->id = RG_NEW(rg_gid, slots);
     d->corner = RG_NEW(double, 12 * slots);
@@ -62,6 +71,7 @@ static void allocate_elements(rg_domain *d) {
     d->material = RG_NEW(uint16_t, d->blocks + 1);
     d->rim = RG_NEW(uint8_t, d->blocks + 1);
     d->geom = RG_NEW(rg_real, d->blocks * RG_GEOM_BLOCK);
+    d->turn = turned ? RG_NEW(rg_real, d->blocks * RG_TURN_BLOCK) : NULL;
     d->neighbour = RG_NEW(int32_t, d->blocks * RG_LINK_BLOCK);
     d->interface = RG_NEW(int32_t, d->blocks * RG_LINK_BLOCK);
 }
@@ -148,10 +158,16 @@ static void fill_tile(rg_domain *d, const rg_part *part, const rg_element *eleme
     place_elements(d, tile, element, count, materials);
     for (size_t at = 0; at < slots; at++) {
         d->id[first + at] = -1;
+        if (d->turn != NULL) {
+            set_axes(d, first + at, (const double[3]){0, 0, 0});
+        }
     }
     for (size_t i = 0; i < count; i++) {
         size_t at = rg_slot_in(d, tile, element[i].id);
         set_element(d, first + at, at, &element[i]);
+        if (d->turn != NULL) {
+            set_axes(d, first + at, part->turn[element + i - part->element].own);
+        }
         mark_joined(d, first + at, joined == NULL ? 0 : joined[element + i - part->element]);
     }
     for (size_t at = 0; at < slots; at++) {
@@ -171,13 +187,13 @@ rg_domain *rg_domain_build(const rg_part *part, const uint8_t *joined, int rank,
         element[t + 1] = element[t] + rg_tile_size(part, part->tile_id[t]);
     }
     make_tiles(d, part, element, m->materials);
-    allocate_elements(d);
+    allocate_elements(d, part->turn != NULL);
     d->place = RG_NEW(uint16_t, d->tiles * (size_t)part->tile);
 #pragma omp parallel for schedule(static)
     for (size_t t = 0; t < d->tiles; t++) {
         fill_tile(d, part, element[t], joined, m->materials, t);
     }
-    rg_interfaces_build(d, element, joined, rank, m);
+    rg_interfaces_build(d, element, part->turn, joined, rank, m);
     rg_free(element);
     return d;
 }
@@ -208,9 +224,9 @@ void rg_domain_free(rg_domain *d) {
     if (d == NULL) {
         return;
     }
-    void *blocks[] = {d->region,    d->across,    d->id,       d->corner, d->set,     d->geom,
-                      d->neighbour, d->interface, d->material, d->rim,    d->place,   d->beside,
-                      d->tile,      d->side[0],   d->side[1],  d->igeom,  d->counted, d->shared_face};
+    void *blocks[] = {d->region,    d->across,   d->id,    d->corner,  d->set,        d->geom, d->neighbour,
+                      d->interface, d->material, d->rim,   d->place,   d->beside,     d->turn, d->tile,
+                      d->side[0],   d->side[1],  d->igeom, d->counted, d->shared_face};
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) {
         rg_free(blocks[i]);
     }

@@ -44,6 +44,7 @@ typedef struct {
     uint8_t *rim;         /* [blocks]: 1 where an element has a neighbour in another tile */
     uint16_t *place;      /* [tiles][tile_elements]: slot in its tile, by number in it */
     rg_real *geom;        /* kernels/layout.h */
+    rg_real *turn;        /* [blocks][RG_TURN][lane]: axes of the solid; NULL: none differ in a material */
     int32_t *neighbour;   /* links */
     int32_t *interface;   /* links */
     rg_gid tile_elements; /* of every tile but the mesh's last one */

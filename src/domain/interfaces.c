@@ -8,10 +8,12 @@
 #include "layout.h"
 #include "mesh/gid_map.h"
 #include "partition/material.h"
+#include "partition/orientation.h"
 
 typedef struct {
     rg_domain *domain;
     const rg_element *const *element; /* by tile */
+    const rg_turn *turn;              /* of element[0], ...; NULL: none */
     const uint8_t *joined;            /* bits of faces without an interface; NULL: none */
     int rank;
     const rg_interface_material *material;
@@ -54,6 +56,17 @@ static bool is_minus(const rg_element *e, int f, double edge[2][3], double norma
     return rg_vector_dot(cross, opposite) < 0;
 }
 
+/* Of a solid whose axes are turned by these angles; NULL: they are not. */
+static void face_moduli(const rg_material *m, const double *angles, const double n[3], double *lambda,
+                        double *mu) {
+    if (angles == NULL) {
+        rg_material_face(m, n, lambda, mu);
+    } else {
+        rg_material turned = rg_material_turned(m, angles);
+        rg_material_face(&turned, n, lambda, mu);
+    }
+}
+
 /* Edges and penalties of interface i, from the corners of an element at its face f: both sides see the same
  * corners in the same order, so they get the same bits. The penalty takes the mean of both sides' moduli over
  * the smaller height, which is no less than the mean of each side's over its own. Returns whether the element
@@ -63,8 +76,9 @@ static bool set_geometry(const builder *b, size_t i, const rg_element *e, int f)
     double edge[2][3], n[3], area, lambda[2], mu[2];
     bool minus = is_minus(e, f, edge, n, &area);
     double h = 3 * fmin(e->volume, e->other_volume[f]) / area;
-    rg_material_face(&m->material[e->material], n, &lambda[0], &mu[0]);
-    rg_material_face(&m->material[e->beside[f]], n, &lambda[1], &mu[1]);
+    const rg_turn *turn = b->turn == NULL ? NULL : &b->turn[e - b->element[0]];
+    face_moduli(&m->material[e->material], turn == NULL ? NULL : turn->own, n, &lambda[0], &mu[0]);
+    face_moduli(&m->material[e->beside[f]], turn == NULL ? NULL : turn->beside[f], n, &lambda[1], &mu[1]);
     double across = 0.5 * (mu[0] + mu[1]), along = 0.5 * (lambda[0] + lambda[1]) + 2 * across;
     bool elastic = m->penalty == RG_PENALTY_ELASTIC;
     double normal = elastic ? along : fmax(along, across), shear = elastic ? across : normal;
@@ -327,9 +341,9 @@ static void join_shared(const builder *b) {
     }
 }
 
-void rg_interfaces_build(rg_domain *d, const rg_element *const element[], const uint8_t *joined, int rank,
-                         const rg_interface_material *m) {
-    builder b = {d, element, joined, rank, m, RG_NEW(size_t, d->tiles), RG_NEW(size_t, d->tiles)};
+void rg_interfaces_build(rg_domain *d, const rg_element *const element[], const rg_turn *turn,
+                         const uint8_t *joined, int rank, const rg_interface_material *m) {
+    builder b = {d, element, turn, joined, rank, m, RG_NEW(size_t, d->tiles), RG_NEW(size_t, d->tiles)};
 #pragma omp parallel for schedule(static)
     for (size_t t = 0; t < d->tiles; t++) {
         count(&b, t);

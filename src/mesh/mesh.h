@@ -89,6 +89,12 @@ typedef struct {
     uint8_t across; /* bits of faces beyond which it is of other volume sets or another material, likewise */
 } rg_element;
 
+/* Euler angles of the axes of an element's solid and its neighbours' (degrees); on the surface its own. */
+typedef struct {
+    rg_gid id;
+    double own[3], beside[4][3];
+} rg_turn;
+
 /* How good a partition is. */
 typedef struct {
     double imbalance;       /* most elements on a rank over their mean */
@@ -111,11 +117,15 @@ typedef struct {
     rg_gid *tile_id;   /* [tiles]: global number of the tile */
     rg_lid elements;   /* own elements */
     rg_element *element;
+    rg_turn *turn; /* [elements]; NULL: no solid has axes that differ from element to element */
     rg_gid
         *original; /* [elements]: numbers in the mesh that this one was cut from; NULL if it is the whole */
     rg_sets surface, volume;      /* sets of the whole mesh */
     rg_partition_quality quality; /* of the partition of the whole mesh */
 } rg_part;
+
+/* Mean of its corners (m). */
+void rg_element_centroid(const rg_element *e, double x[3]);
 
 /* Elements of global tile `id`. */
 static inline rg_lid rg_tile_size(const rg_part *part, rg_gid id) {

@@ -45,7 +45,6 @@ static void unit(double v[3]) {
 
 /* Its axes; false: those of the mesh. */
 static bool find_axes(const rg_anisotropic_input *in, double axis[3][3]) {
-    const double degree = 0.017453292519943295769;
     if (any_of(in->axis[0], 3)) {
         memcpy(axis[0], in->axis[0], sizeof axis[0]);
         unit(axis[0]);
@@ -54,14 +53,7 @@ static bool find_axes(const rg_anisotropic_input *in, double axis[3][3]) {
         rg_vector_cross(axis[2], axis[0], axis[1]);
         return true;
     }
-    double c1 = cos(in->angles[0] * degree), c = cos(in->angles[1] * degree),
-           c2 = cos(in->angles[2] * degree);
-    double s1 = sin(in->angles[0] * degree), s = sin(in->angles[1] * degree),
-           s2 = sin(in->angles[2] * degree);
-    const double rows[3][3] = {{c1 * c2 - s1 * s2 * c, s1 * c2 + c1 * s2 * c, s2 * s},
-                               {-c1 * s2 - s1 * c2 * c, -s1 * s2 + c1 * c2 * c, c2 * s},
-                               {s1 * s, -c1 * s, c}};
-    memcpy(axis, rows, sizeof rows);
+    rg_stiffness_axes(in->angles, axis);
     return any_of(in->angles, 3);
 }
 

@@ -11,6 +11,7 @@
 #include "base/first_bad.h"
 #include "case/problem.h"
 #include "mesh/gid_map.h"
+#include "partition/orientation.h"
 
 typedef struct {
     const rg_case *c;
@@ -63,12 +64,6 @@ static void find_regions(map *m) {
     }
 }
 
-static void find_centroid(const rg_element *e, double x[3]) {
-    for (int k = 0; k < 3; k++) {
-        x[k] = 0.25 * ((e->x[0][k] + e->x[1][k]) + (e->x[2][k] + e->x[3][k]));
-    }
-}
-
 /* Expressions of a thread's own, with the entries that they are of. */
 typedef struct {
     int count, *entry;
@@ -102,7 +97,7 @@ static void claim(map *m, rg_lid k, asking *a, rg_first_bad *bad) {
     rg_element *e = &m->part->element[k];
     int last = e->region >= 0 ? m->last[e->region] : 0;
     double x[3];
-    find_centroid(e, x);
+    rg_element_centroid(e, x);
     for (int j = 0; j < a->count; j++) {
         int i = a->entry[j];
         double here = rg_expr_value(a->where[j], x, 0);
@@ -185,13 +180,26 @@ typedef struct {
     int8_t face;    /* ... at which of its faces */
     uint16_t material;
     int32_t region;
+    double angles[3]; /* of its axes, where solids have such */
 } message;
 
 /* What is beyond face f of an element. */
-static void hear(rg_element *e, int f, uint16_t material, int32_t region) {
-    bool differ = material != e->material || region != e->region;
-    e->beside[f] = material;
+static void hear(const map *m, rg_element *e, int f, const message *of) {
+    bool differ = of->material != e->material || of->region != e->region;
+    e->beside[f] = of->material;
     e->across |= (uint8_t)(differ ? 1u << f : 0);
+    if (m->part->turn != NULL) {
+        memcpy(m->part->turn[e - m->part->element].beside[f], of->angles, sizeof of->angles);
+    }
+}
+
+/* What element e says across its face f. */
+static message say(const map *m, const rg_element *e, int f) {
+    message out = {e->neighbour[f], e->face[f], e->material, e->region, {0}};
+    if (m->part->turn != NULL) {
+        memcpy(out.angles, m->part->turn[e - m->part->element].own, sizeof out.angles);
+    }
+    return out;
 }
 
 /* Element `id` of the own part; start: where its tiles begin. */
@@ -207,13 +215,14 @@ static size_t tell_own(const map *m, const rg_gid_map *start, message *out, int 
         for (int f = 0; f < 4; f++) {
             if (e->owner[f] >= 0 && e->owner[f] != m->rank) {
                 if (out != NULL) {
-                    out[count] = (message){e->neighbour[f], e->face[f], e->material, e->region};
+                    out[count] = say(m, e, f);
                     to[count] = e->owner[f];
                 }
                 count++;
             } else {
                 const rg_element *other = e->neighbour[f] < 0 ? e : element_at(m, start, e->neighbour[f]);
-                hear(e, f, other->material, other->region);
+                message there = say(m, other, 0);
+                hear(m, e, f, &there);
             }
         }
     }
@@ -234,7 +243,7 @@ static void tell_neighbours(const map *m) {
     message *in = RG_NEW(message, x->arriving + 1);
     rg_exchange_send(x, sizeof *out, out, in);
     for (size_t i = 0; i < x->arriving; i++) {
-        hear(element_at(m, &start, in[i].element), in[i].face, in[i].material, in[i].region);
+        hear(m, element_at(m, &start, in[i].element), in[i].face, &in[i]);
     }
     rg_exchange_free(x);
     rg_free(in);
@@ -244,7 +253,7 @@ static void tell_neighbours(const map *m) {
 }
 
 static bool wants_neighbours(const rg_case *c) {
-    bool any = c->others > 0;
+    bool any = c->others > 0 || rg_orientations_vary(c);
     for (int i = 0; i < c->interface.sets; i++) {
         any = any || rg_face_set_is_any(&c->interface.set[i]);
     }
@@ -265,6 +274,9 @@ void rg_materials_assign(const rg_case *c, rg_part *part, MPI_Comm comm) {
     find_regions(&m);
     claim_all(&m);
     check_claims(&m);
+    if (rg_orientations_vary(c)) {
+        rg_orientations_find(c, part, comm);
+    }
     tell_neighbours(&m);
     rg_free(m.region);
     rg_free(m.last);

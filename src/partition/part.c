@@ -179,6 +179,12 @@ rg_part *rg_part_distribute(const rg_mesh *mesh, int tile, MPI_Comm comm) {
     return rg_part_distribute_weighted(mesh, tile, NULL, comm);
 }
 
+void rg_element_centroid(const rg_element *e, double x[3]) {
+    for (int k = 0; k < 3; k++) {
+        x[k] = 0.25 * ((e->x[0][k] + e->x[1][k]) + (e->x[2][k] + e->x[3][k]));
+    }
+}
+
 void rg_part_free(rg_part *part) {
     if (part == NULL) {
         return;
@@ -188,5 +194,6 @@ void rg_part_free(rg_part *part) {
     rg_free(part->tile_id);
     rg_free(part->original);
     rg_free(part->element);
+    rg_free(part->turn);
     rg_free(part);
 }

@@ -207,23 +207,45 @@ static int by_id(const void *a, const void *b) {
     return by_number(&p->id, &q->id);
 }
 
-/* Elements of the set on rank 0, in the order of the ranks; returns their number, 0 elsewhere. */
-static rg_lid collect(const rg_part *part, const set *s, rg_element *out, int ranks, MPI_Comm comm) {
+/* `count` records of `bytes` of each rank on rank 0, in the order of the ranks; returns their number, 0
+ * elsewhere. */
+static rg_lid collect(const void *mine, int count, size_t bytes, void *out, int ranks, MPI_Comm comm) {
+    int own = count * (int)bytes, *size = RG_NEW(int, (size_t)ranks);
+    int *start = share_starts(own, size, ranks, comm);
+    MPI_Gatherv(mine, own, MPI_BYTE, out, size, start, MPI_BYTE, 0, comm);
+    count = start[ranks] / (int)bytes;
+    rg_free(start);
+    rg_free(size);
+    return count;
+}
+
+/* Elements of the set, likewise, with their axes. */
+static rg_lid collect_elements(const rg_part *part, const set *s, rg_part *patch, int ranks, MPI_Comm comm) {
     rg_element *mine = RG_NEW(rg_element, RG_PATCH_MOST);
+    rg_turn *turn = RG_NEW(rg_turn, part->turn == NULL ? 1 : RG_PATCH_MOST);
     int count = 0;
     for (rg_lid i = 0; i < part->elements; i++) {
         if (contains(s, part->element[i].id)) {
-            mine[count++] = part->element[i];
+            mine[count] = part->element[i];
+            if (part->turn != NULL) {
+                turn[count] = part->turn[i];
+            }
+            count++;
         }
     }
-    int bytes = count * (int)sizeof *mine, *size = RG_NEW(int, (size_t)ranks);
-    int *start = share_starts(bytes, size, ranks, comm);
-    MPI_Gatherv(mine, bytes, MPI_BYTE, out, size, start, MPI_BYTE, 0, comm);
-    count = start[ranks] / (int)sizeof *mine;
-    rg_free(start);
-    rg_free(size);
+    rg_lid all = collect(mine, count, sizeof *mine, patch->element, ranks, comm);
+    if (part->turn != NULL) {
+        patch->turn = RG_NEW(rg_turn, RG_PATCH_MOST);
+        collect(turn, count, sizeof *turn, patch->turn, ranks, comm);
+    }
     rg_free(mine);
-    return count;
+    rg_free(turn);
+    return all;
+}
+
+static int turn_by_id(const void *a, const void *b) {
+    const rg_turn *p = a, *q = b;
+    return by_number(&p->id, &q->id);
 }
 
 /* Number in the patch of an element of the mesh; -1 if it is not there. */
@@ -259,6 +281,9 @@ static void make_tiles(rg_part *patch) {
 static void finish(rg_part *patch) {
     patch->original = RG_NEW(rg_gid, (size_t)patch->elements);
     qsort(patch->element, (size_t)patch->elements, sizeof *patch->element, by_id);
+    if (patch->turn != NULL) {
+        qsort(patch->turn, (size_t)patch->elements, sizeof *patch->turn, turn_by_id);
+    }
     for (rg_lid i = 0; i < patch->elements; i++) {
         patch->original[i] = patch->element[i].id;
     }
@@ -293,7 +318,7 @@ rg_part *rg_patch_gather(const rg_part *part, const rg_material *material, MPI_C
     set s = part->total > RG_PATCH_MOST ? choose(part, material, ranks, comm) : everything(part->total);
     rg_part *patch = RG_NEW(rg_part, 1);
     patch->element = RG_NEW(rg_element, rank == 0 ? RG_PATCH_MOST : 1);
-    patch->elements = collect(part, &s, patch->element, ranks, comm);
+    patch->elements = collect_elements(part, &s, patch, ranks, comm);
     patch->total = patch->elements;
     memcpy(patch->box, part->box, sizeof patch->box);
     if (rank == 0) {

@@ -5,6 +5,7 @@
 
 #include "base/dense.h"
 #include "base/mem.h"
+#include "base/stiffness.h"
 #include "domain/element.h"
 #include "partition/material.h"
 #include "solver/selection.h"
@@ -310,6 +311,19 @@ static damping find_faces(const rg_case *c, const rg_domain *d, const rg_part *p
     return all;
 }
 
+/* The solid of an element along its own axes. */
+static rg_material solid_of(const rg_domain *d, const rg_material *m, size_t slot) {
+    rg_material own = *m;
+    double axis[3][3];
+    for (int k = 0; d->turn != NULL && k < RG_TURN; k++) {
+        axis[k / 3][k % 3] = d->turn[rg_turn_index(slot, k)];
+    }
+    if (d->turn != NULL && m->model == RG_MATERIAL_ANISOTROPIC) {
+        rg_stiffness_turn(own.of.anisotropic.stiffness, (const double(*)[3])axis);
+    }
+    return own;
+}
+
 static void add_side(const rg_absorbing *a, entry *e, int face, const damping *by) {
     const rg_domain *d = a->surface.domain;
     const rg_material *m = &a->surface.material[d->material[(size_t)e->slot / RG_LANES]];
@@ -318,7 +332,8 @@ static void add_side(const rg_absorbing *a, entry *e, int face, const damping *b
     double normal[3], area = rg_surface_area(d->corner + 12 * (size_t)e->slot, face, normal);
     double per_mass = area / (double)d->geom[rg_geom_index((size_t)e->slot, RG_GEOM_VOLUME)];
     if ((by->absorbing[e->slot] >> face & 1) != 0) {
-        rg_material_impedance(m, normal, s->impedance);
+        rg_material own = solid_of(d, m, (size_t)e->slot);
+        rg_material_impedance(&own, normal, s->impedance);
     }
     double dashpot = by->dashpot[RG_FACES * (size_t)e->slot + (size_t)face] / m->density;
     for (int k = 0; k < 6; k++) {

@@ -45,6 +45,9 @@ void rg_ahead_of_elements(const rg_solver *s, const rg_tile *t) {
     LOAD(d->geom, RG_GEOM_BLOCK, t->begin, t->end);
     LOAD(d->neighbour, RG_LINK_BLOCK, t->begin, t->end);
     LOAD(d->interface, RG_LINK_BLOCK, t->begin, t->end);
+    if (d->turn != NULL) {
+        LOAD(d->turn, RG_TURN_BLOCK, t->begin, t->end);
+    }
     if (s->history != NULL) {
         LOAD(s->history, s->model->history_stride, t->begin, t->end);
     }

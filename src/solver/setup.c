@@ -77,7 +77,9 @@ static void build_domain(rg_solver *s, const rg_interface_material *m) {
     }
     rg_free(joined);
     rg_free(s->part->element);
+    rg_free(s->part->turn);
     s->part->element = NULL;
+    s->part->turn = NULL;
 }
 
 /* Fields at rest, which nobody has touched yet, and what they are stepped with. */

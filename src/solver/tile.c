@@ -40,6 +40,7 @@ rg_bulk_args rg_tile_bulk(const rg_solver *s, const rg_tile *t, const rg_workspa
                           .interface = d->interface + t->begin * RG_LINK_BLOCK,
                           .cracked = s->cracked + t->begin,
                           .unlinked = s->unlinked + t->ibegin * RG_LANES,
+                          .turn = d->turn == NULL ? NULL : d->turn + t->begin * RG_TURN_BLOCK,
                           .history = history_of(s, t),
                           .history_stride = s->model->history_stride,
                           .thermal = s->thermal == NULL ? NULL : s->thermal + t->begin * RG_THERMAL_BLOCK,

@@ -2,11 +2,13 @@
 
 import json
 
+import h5py
 import numpy as np
 import pytest
 from conftest import SINGLE, launch, rounding
 from figures import ROUNDING
 from test_meshes import convert, polycrystal
+from test_restart import assert_same_results, checkpoints, copy, go_on
 
 C11, C12, C44, DENSITY = 168.4e9, 121.4e9, 75.4e9, 8960  # copper
 CUBIC = np.diag([C11 - C12] * 3 + [C44] * 3) + np.pad(np.full((3, 3), C12), (0, 3))
@@ -108,6 +110,66 @@ def test_a_polycrystal_is_between_voigt_and_reuss(run, figure, tmp_path):
     assert reuss < energy < voigt and voigt > 1.05 * reuss
     figure("30 grains of copper: modulus of uniaxial strain, between Reuss (0) and Voigt (1)", (energy - reuss) / (voigt - reuss), theory=0.5, bound=0.5,
            why="theory gives the two ends alone")
+
+
+# ---- Axes that differ from element to element ----
+
+
+@pytest.fixture(scope="module")
+def three_ways(tmp_path_factory):
+    """The same 12 grains of copper, turned by a table, a field of the mesh file, and expressions; 1,296 tetrahedra."""
+    folder = tmp_path_factory.mktemp("ways")
+    _, grain = polycrystal(folder / "grains.vtk", 12, 6)
+    convert(folder / "grains.vtk", folder / "grains.h5", "--unit", "mm")
+    present, angles = sorted(set(grain)), np.random.default_rng(2).uniform(-180, 180, (12, 3))
+    (folder / "grains.csv").write_text("\n".join(["set, angle_1, angle_2, angle_3", *(
+        f"grain.{g}, " + ", ".join(repr(float(a)) for a in angles[g]) for g in present)]))
+    with h5py.File(folder / "grains.h5", "a") as file:
+        file["axes"] = angles[np.array(grain)[file["original"][:]]]
+    other = {"model": "anisotropic", **LAMINATE}
+    shared = {"mesh": {"file": "grains.h5"}, "initial": {"velocity": {"x": "20*sin(3000*z)", "z": "10*cos(4000*x)"}},
+              "interface": {"law": "linear", "strength": 1e6, "energy": 0.1}, "time": {"end": 0.801e-7}, "boundary": [{"where": "nx > 0.5", "absorbing": True}],
+              "output": {"fields": ["displacement", "stress"], "times": [2e-9 * k for k in range(1, 41)], "probes": [{"name": "p", "at": [3e-4, 4e-4, 5e-4]}]}}
+    ways = {"table": {"material": COPPER, "materials": [{**COPPER, "file": "grains.csv", "name": "g"}]},
+            "field": {"material": {**COPPER, "orientation": {"field": "axes"}}},
+            "expression": {"material": other, "materials": [
+                {**COPPER, "set": f"grain.{g}", "name": f"g{g}", "orientation": {f"angle_{k + 1}": f"{float(angles[g][k])!r} + 0*x" for k in range(3)}} for g in present]}}
+    for name, way in ways.items():
+        written(folder, **shared, **way).rename(folder / f"{name}.yaml")
+    return folder
+
+
+@pytest.mark.parametrize("way", ["field", "expression"])
+def test_axes_of_elements_are_those_of_a_table(run, figure, three_ways, way):
+    """Steps of the same length by the moments of output; what breaks, and what leaves at an absorbing side, too."""
+    one, other = run(three_ways / "table.yaml"), run(three_ways / f"{way}.yaml")
+    u, v = one.fields()["displacement"].ravel(), other.fields()["displacement"].ravel()
+    assert one.energy["dissipated"][-1] > 0 and one.energy["radiated"][-1] > 0 and len(one.energy) == len(other.energy)
+    figure("12 grains of copper, axes by a field or expressions: displacement apart from that by a table, of the largest",
+           np.abs(u - v).max() / np.abs(u).max(), bound=rounding(1e-11, 1e-2), why=ROUNDING)
+
+
+def test_axes_of_elements_on_any_layout_and_restart(run, three_ways, tmp_path):
+    case, often = three_ways / "field.yaml", {"checkpoint.steps": 10}
+    one = run(case, sets=often)
+    steps = one.summary["steps"]
+    for ranks, threads in [(1, 2), (2, 1), (3, 1)]:
+        assert_same_results(run(case, ranks=ranks, threads=threads, sets=often), one, frames=39)
+    stopped = copy(run(case, ranks=2, sets={**often, "time.steps": steps - 8}), tmp_path / "out")
+    checkpoints(stopped)[-1].unlink()
+    again = go_on(stopped, "--set", "time.steps=100000", ranks=3)
+    assert 0 < again.summary["restarted_from_step"] < steps - 8
+    assert_same_results(again, one, frames=39)
+
+
+def test_a_field_that_is_not_right(three_ways):
+    for way, field, said in [("none", "axis", "there is no such dataset"), ("region", "region", "is not 1296 rows of 3 numbers, a row for each element")]:
+        case = json.loads((three_ways / "field.yaml").read_text())
+        case["material"]["orientation"]["field"] = field
+        (three_ways / f"{way}.yaml").write_text(json.dumps(case))
+        process = launch("check", three_ways / f"{way}.yaml", ranks=2)
+        assert process.returncode == 2
+        assert f"{way}.yaml: material.orientation.field: {field}: {three_ways}/grains.h5: {said}\n" in process.stderr
 
 
 # ---- Turned ----

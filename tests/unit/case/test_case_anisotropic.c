@@ -62,6 +62,22 @@ static void test_three_planes(void **state) {
     rg_case_free(c);
 }
 
+static void test_axes_of_elements(void **state) {
+    (void)state;
+    write_solid("  stiffness: " COPPER "\n  orientation: {angle_1: 90*x, angle_3: 30}\n");
+    rg_case *c = read_good(path, 0, NULL);
+    for (int twice = 0; twice < 2; twice++) {
+        const rg_anisotropic_input *a = &c->material.anisotropic;
+        assert_true(a->angle[1] == NULL && a->field == NULL && rg_material_axes_vary(&c->material));
+        assert_string_equal(rg_expr_text(a->angle[0]), "90*x");
+        assert_string_equal(rg_expr_text(a->angle[2]), "30");
+        rg_case *again = read_again(c);
+        rg_case_free(c);
+        c = again;
+    }
+    rg_case_free(c);
+}
+
 static char csv[80];
 
 static void write_csv(const char *text) {
@@ -139,6 +155,21 @@ static void test_refused(void **state) {
         {"  stiffness: " COPPER
          "\n  orientation: {axis_1: [1, 0, 0], axis_2: [0, 1, 0], angles: [1, 2, 3]}\n",
          ":8:55: material.orientation.angles: given beside axes\n"},
+        {"  stiffness: " COPPER "\n  orientation: {axis_1: [1, 0, 0], angle_2: x}\n",
+         ":8:36: material.orientation.angle_2: given beside axes\n"},
+        {"  stiffness: " COPPER "\n  orientation: {angles: [1, 2, 3], angle_3: x}\n",
+         ":8:17: material.orientation.angles: given beside angle_3\n"},
+        {"  stiffness: " COPPER "\n  orientation: {angle_1: x, field: axes}\n",
+         ":8:29: material.orientation.field: given beside angle_1\n"},
+        {"  stiffness: " COPPER "\n  orientation: {field: axes}\n",
+         ":8:17: material.orientation.field: not used with the box: it is a dataset of a mesh file\n"},
+        {"  stiffness: " COPPER "\n  orientation: {angle_1: 3*t}\n",
+         ":8:26: material.orientation.angle_1: 3*t: depends on t, but this is the state at the start; "
+         "allowed: number "
+         "or expression in x, y, z (degrees)\n"},
+        {"  stiffness: " COPPER "\n  orientation: {angle_1: x}\ninitial: {stress: {xx: 1}}\n",
+         ":1:1: initial.stress: not with material, whose axes differ from element to element: what the "
+         "stress has stored would not be known\n"},
     };
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
         write_solid(wrong[i].keys);
@@ -152,9 +183,8 @@ static void test_refused(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_constants),
-        cmocka_unit_test(test_three_planes),
-        cmocka_unit_test(test_table_of_angles),
+        cmocka_unit_test(test_constants),        cmocka_unit_test(test_three_planes),
+        cmocka_unit_test(test_axes_of_elements), cmocka_unit_test(test_table_of_angles),
         cmocka_unit_test(test_refused),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);

@@ -97,18 +97,24 @@ static void compare(const char *name, const result *r, const result *ref, double
         fail_msg("%s: apart by %g of the largest, at strains of %g", name, worst, size);
 }
 
-/* Elements of random shape in random states, each of the four points in one of its own. */
+/* Elements of random shape in random states, each of the four points in one of its own; in every other round
+ * each element has axes of its own. */
 static void test_a_million_states(void **state) {
     const rg_kernels *sets[INPUT_SETS];
     int n = input_sets(sets, INPUT_SETS);
     double *u = input_alloc(BLOCKS * RG_NODE_BLOCK * sizeof(double));
     double *geom = input_alloc(BLOCKS * RG_GEOM_BLOCK * sizeof(double));
+    double *turn = input_alloc(BLOCKS * RG_TURN_BLOCK * sizeof(double));
     result ref = result_make(), out = result_make();
     dice d = {1, 0};
     (void)state;
     for (int round = 0; round < ROUNDS; round++) {
         double size = dice_power(&d, -4, -1.3);
         for (size_t e = 0; e < ELEMENTS; e++) {
+            double Q[3][3];
+            dice_rotation(&d, Q);
+            for (int k = 0; k < RG_TURN; k++)
+                turn[rg_turn_index(e, k)] = Q[k / 3][k % 3];
             for (int k = 0; k < 9; k++)
                 geom[rg_geom_index(e, RG_GEOM_GRAD + k)] = (k % 4 == 0) + 0.3 * dice_sign(&d);
             geom[rg_geom_index(e, RG_GEOM_VOLUME)] = 0.1 + dice_unit(&d);
@@ -117,6 +123,7 @@ static void test_a_million_states(void **state) {
         }
         rg_bulk_args args = {
             .material = make_solid(&d, 0.3), .gradient = RG_GRADIENT_OWN, .u = u, .geom = geom};
+        args.turn = round % 2 == 0 ? NULL : turn;
         compute(&rg_kernels_reference, args, &ref);
         for (int k = 0; k < n; k++) {
             compute(sets[k], args, &out);
@@ -127,6 +134,7 @@ static void test_a_million_states(void **state) {
     result_free(&out);
     free(u);
     free(geom);
+    free(turn);
 }
 
 /* ---- The reference ---- */

@@ -1,5 +1,6 @@
 /* Which element is of which material, and what its neighbours are, on any number of ranks; against a loop
  * over the whole mesh. Prints TAP from rank 0. */
+#include <math.h>
 #include <mpi.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -99,6 +100,50 @@ static void check_claims(const rg_mesh *m, int tile) {
     rg_part_free(part);
     rg_expr_free(other[0].where);
     rg_expr_free(other[2].where);
+}
+
+/* Angles of the axes of an element: what is below x = 1.3 has them by expressions, the rest none. */
+static void expected_angles(const rg_mesh *m, rg_gid e, double angles[3]) {
+    double x[3];
+    centroid(m, e, x);
+    bool low = x[0] < 1.3;
+    angles[0] = low ? 90 * x[0] + x[2] : 0;
+    angles[1] = 0;
+    angles[2] = low ? 7 - 3 * x[1] : 0;
+}
+
+static bool are_angles(const double got[3], const double expected[3]) {
+    bool right = true;
+    for (int k = 0; k < 3; k++) {
+        right = right && fabs(got[k] - expected[k]) < 1e-12;
+    }
+    return right;
+}
+
+static void check_axes(const rg_mesh *m, int tile) {
+    rg_other_material other[1] = {{.where = expression("x < 1.3"), .is.model = RG_MATERIAL_ANISOTROPIC}};
+    other[0].is.anisotropic.angle[0] = expression("90*x + z");
+    other[0].is.anisotropic.angle[2] = expression("7 - 3*y");
+    rg_case c = {.path = (char[]){"a.yaml"}, .others = 1, .other = other};
+    rg_part *part = rg_part_distribute(rank == 0 ? m : NULL, tile, MPI_COMM_WORLD);
+    rg_materials_assign(&c, part, MPI_COMM_WORLD);
+    bool own = part->turn != NULL, beside = own;
+    for (rg_lid i = 0; i < part->elements && own; i++) {
+        const rg_element *e = &part->element[i];
+        double expected[3];
+        expected_angles(m, e->id, expected);
+        own = own && are_angles(part->turn[i].own, expected) && part->turn[i].id == e->id;
+        for (int f = 0; f < 4; f++) {
+            expected_angles(m, e->neighbour[f] < 0 ? e->id : e->neighbour[f], expected);
+            beside = beside && are_angles(part->turn[i].beside[f], expected);
+        }
+    }
+    report(own, "axes", "of elements");
+    report(beside, "axes", "of neighbours");
+    rg_part_free(part);
+    rg_expr_free(other[0].where);
+    rg_expr_free(other[0].is.anisotropic.angle[0]);
+    rg_expr_free(other[0].is.anisotropic.angle[2]);
 }
 
 /* More grains than a byte counts, each a set with a material of its own; without materials the boundaries of
@@ -201,6 +246,14 @@ static void check_refusals(void) {
         "refused", "the first value that is not finite");
     rg_expr_free(other[1].where);
     rg_expr_free(other[2].where);
+    other[1] = (rg_other_material){.where = expression("x > 1"), .is.model = RG_MATERIAL_ANISOTROPIC};
+    other[1].is.anisotropic.angle[2] = expression("x > 2 ? 1/0 : y");
+    report(refused(m, 2, other,
+                   "a.yaml: materials[1].orientation.angle_3: x > 2 ? 1/0 : y is inf at (2.25, 0.5, 0.75), "
+                   "the centroid of an element"),
+           "refused", "an angle that is not finite");
+    rg_expr_free(other[1].where);
+    rg_expr_free(other[1].is.anisotropic.angle[2]);
     rg_mesh_free(m);
 }
 
@@ -210,6 +263,8 @@ int main(int argc, char **argv) {
     rg_mesh *m = make_mesh();
     check_claims(m, 4);
     check_claims(m, 25);
+    check_axes(m, 4);
+    check_axes(m, 25);
     rg_mesh_free(m);
     report(rg_alloc_blocks() == 0, "memory", "all blocks are given back");
     check_grains();
