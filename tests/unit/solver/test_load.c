@@ -349,6 +349,69 @@ static void test_acceleration(void **state) {
     }
 }
 
+/* Away from the axis, where nodes are by now. */
+static void test_spin(void **state) {
+    (void)state;
+    rg_case *c =
+        read_with("loads=[{centrifugal: {speed: 300*t, axis: [1, 2, -2], at: [1e-3, 0, 2e-3]}}]", NULL);
+    rg_solver *s = solver_of(c);
+    set_affine(s);
+    find_forces(s, 2);
+    for (size_t slot = 0; slot < s->domain->blocks * RG_LANES; slot++) {
+        for (int n = 0; s->domain->id[slot] >= 0 && n < RG_NODES; n++) {
+            double x[3];
+            place(s, slot, n, x);
+            x[0] -= 1e-3;
+            x[2] -= 2e-3;
+            double along = (x[0] + 2 * x[1] - 2 * x[2]) / 9;
+            for (int k = 0; k < 3; k++) {
+                double a = 600 * 600 * (x[k] - along * (k == 0 ? 1 : k == 1 ? 2 : -2));
+                expect_near((double)s->velocity[rg_node_index(slot, n, k)], a, 1e-14 * 600 * 600 * 0.01);
+            }
+        }
+    }
+    rg_solver_free(s);
+    rg_case_free(c);
+}
+
+/* On each face -k times the mean displacement, in all directions. */
+static void test_foundation(void **state) {
+    (void)state;
+    rg_case *c = read_with("loads=[{set: z+, foundation: 3e12}, {set: y-, foundation: 2e12}]", NULL);
+    rg_solver *s = solver_of(c);
+    const rg_domain *d = s->domain;
+    double force[3], moment[3], size, wanted[2][3] = {{0}};
+    set_affine(s);
+    find_forces(s, 2);
+    for (size_t i = 0; i < 4 * d->blocks * RG_LANES; i++) {
+        size_t slot = i / 4;
+        double normal[3],
+            area = d->id[slot] < 0 ? 0 : rg_surface_area(d->corner + 12 * slot, (int)(i % 4), normal);
+        const int *node = rg_face_node[i % 4];
+        double x[3][3], k[2] = {3e12, 2e12};
+        for (int n = 0; n < 3; n++) {
+            rg_node_position(d->corner + 12 * slot, node[n], x[n]);
+        }
+        for (int b = 0; b < 2 && area > 0; b++) { /* z = 6 mm, y = -1 mm */
+            int axis = 2 - b;
+            double at = b == 0 ? 6e-3 : -1e-3;
+            bool on = fabs(x[0][axis] - at) + fabs(x[1][axis] - at) + fabs(x[2][axis] - at) < 1e-9;
+            for (int v = 0; v < 9 && on; v++) {
+                wanted[b][v % 3] -= k[b] * area * s->u[rg_node_index(slot, node[v / 3], v % 3)] / 3;
+            }
+        }
+    }
+    resultant(s, force, moment, &size);
+    for (int k = 0; k < 3; k++) {
+        assert_true(fabs(wanted[0][k]) > 1e-3 * size && fabs(wanted[1][k]) > 1e-3 * size);
+        expect_near(s->account->item[0].force[k], wanted[0][k], 1e-14 * size);
+        expect_near(s->account->item[1].force[k], wanted[1][k], 1e-14 * size);
+        expect_near(force[k], wanted[0][k] + wanted[1][k], 1e-14 * size);
+    }
+    rg_solver_free(s);
+    rg_case_free(c);
+}
+
 /* ---- What is refused ---- */
 
 static const char *asked[1];
@@ -394,7 +457,8 @@ int main(int argc, char **argv) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_closed_surface), cmocka_unit_test(test_dead_load_turns),
         cmocka_unit_test(test_pressure),       cmocka_unit_test(test_traction),
-        cmocka_unit_test(test_acceleration),   cmocka_unit_test(test_refused),
+        cmocka_unit_test(test_acceleration),   cmocka_unit_test(test_spin),
+        cmocka_unit_test(test_foundation),     cmocka_unit_test(test_refused),
     };
     int failed = cmocka_run_group_tests(tests, NULL, NULL);
     MPI_Finalize();
