@@ -131,13 +131,41 @@ static rg_cell_source source_of(two_windows *x) {
     return (rg_cell_source){style.deflate > 0 ? 1 : 2, x->count + 1, x->values, get_window, x};
 }
 
-static void put_volume(rg_writer *w, const char *name, enum rg_center center, int components, enum tag tag,
-                       int frame, share s) { /* those of IDS exactly */
-    int64_t n = components * (center == RG_CENTER_NODE ? 10 : 1);
-    double *data = content(tag, frame, n * s.first, n * s.count);
-    two_windows x = {data, (size_t)s.count, (size_t)n};
+/* A field of the content `tag`, and how many values a cell has. */
+typedef struct {
+    const char *name;
+    enum rg_center center;
+    int components;
+    enum tag tag; /* IDS are written exactly */
+} cell_field;
+
+static int64_t values_of(const cell_field *f) {
+    return f->components * (f->center == RG_CENTER_NODE ? 10 : 1);
+}
+
+/* Fields that lie side by side in the records of cells, with other values before and after them. */
+static void put_volume(rg_writer *w, int fields, const cell_field *field, int frame, share s) {
+    enum { BEFORE = 2, AFTER = 1, MOST = 2 };
+    rg_volume_field told[MOST];
+    int64_t values = BEFORE + AFTER, from = BEFORE;
+    for (int f = 0; f < fields; f++) {
+        values += values_of(&field[f]);
+    }
+    double *data = content(CRACK_POINTS, frame, 0, values * s.count);
+    for (int f = 0; f < fields; f++) {
+        int64_t n = values_of(&field[f]);
+        double *own = content(field[f].tag, frame, n * s.first, n * s.count);
+        for (int64_t i = 0; i < n * s.count; i++) {
+            data[i / n * values + from + i % n] = own[i];
+        }
+        told[f] = (rg_volume_field){field[f].name,       "Pa",         field[f].center,
+                                    field[f].components, (size_t)from, field[f].tag == IDS};
+        from += n;
+        rg_free(own);
+    }
+    two_windows x = {data, (size_t)s.count, (size_t)values};
     rg_cell_source source = source_of(&x);
-    rg_writer_volume(w, 1, &(rg_volume_field){name, "Pa", center, components, 0, tag == IDS}, &source);
+    rg_writer_volume(w, (size_t)fields, told, &source);
     rg_free(data);
 }
 
@@ -162,14 +190,14 @@ static void put_crack(rg_writer *w, int frame, int idle) {
 
 static void put_frame(rg_writer *w, int frame, share s, int idle) {
     rg_writer_frame(w, 10 * frame, 1e-7 * frame);
-    put_volume(w, "mean", RG_CENTER_CELL, 1, SCALAR, frame, s);
-    put_volume(w, "velocity", RG_CENTER_NODE, 3, VECTOR, frame, s);
-    put_volume(w, "stress", RG_CENTER_CELL, 6, TENSOR, frame, s);
+    const cell_field both[] = {{"mean", RG_CENTER_CELL, 1, SCALAR}, {"velocity", RG_CENTER_NODE, 3, VECTOR}};
+    put_volume(w, 2, both, frame, s);
+    put_volume(w, 1, &(cell_field){"stress", RG_CENTER_CELL, 6, TENSOR}, frame, s);
     if (crack_size[frame] >= 0) {
         put_crack(w, frame, idle);
     }
-    put_volume(w, "id", RG_CENTER_CELL, 1, IDS, frame, s);
-    put_volume(w, "potential", RG_CENTER_NODE, 1, NODAL, frame, s);
+    put_volume(w, 1, &(cell_field){"id", RG_CENTER_CELL, 1, IDS}, frame, s);
+    put_volume(w, 1, &(cell_field){"potential", RG_CENTER_NODE, 1, NODAL}, frame, s);
     rg_writer_frame_end(w);
 }
 
