@@ -156,7 +156,7 @@ const char *rg_mesh_open_words(bool apart) {
 
 /* twin[v]: the lowest vertex at the place of v, below v; -1 if there is none. */
 static void check_twins(const rg_mesh *mesh, const rg_gid *twin, rg_input_errors *input_errors) {
-    for (rg_gid v = 0; v < mesh->vertices; v++) {
+    for (rg_gid v = 1; v < mesh->vertices; v++) { /* none is below the first */
         char *words = twin[v] >= 0 ? rg_input_errors_place(input_errors, v, 0) : NULL;
         if (words != NULL) {
             const double *x = mesh->x + 3 * v;

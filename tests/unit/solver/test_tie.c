@@ -226,6 +226,14 @@ static void check_momenta(const rg_bodies *b, const step *of, const verdict *v) 
         prescribed = near(given->seen.force[c] * h, -v->impulse[1][c], 1e-13 * size[0]) &&
                      near(given->turn.moment[c] * h, -v->angular[1][c], 1e-13 * size[1]) && prescribed;
     }
+    double turn[4], rotation[4];
+    bool consistent = true;
+    rg_inertia_free(&freely->inertia, of->before[0].rotation, of->after[0].momentum, DT, turn);
+    rg_rotation_join(turn, of->before[0].rotation, rotation);
+    for (int c = 0; c < 4; c++) {
+        consistent = near(of->after[0].rotation[c], rotation[c], 1e-15) && consistent;
+    }
+    report(consistent, "ties", "the turn of a free body is that of its momentum");
     report(linear, "ties", "momentum of a free body and the solid");
     report(angular, "ties", "angular momentum about its centre");
     report(prescribed, "ties", "force and moment on a prescribed one");
