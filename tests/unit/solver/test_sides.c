@@ -533,6 +533,67 @@ static void check_damped(const char *mass) {
     random_state_free(&r);
 }
 
+/* Rates (1/s) at which the components of each node's mean velocity are taken away, as found of velocities
+ * `before` and `kicked` everywhere and of all matrices diagonal: the sides are along the axes. */
+static double *damped_rates(rg_solver *s, double before, double kicked, double h) {
+    size_t values = s->domain->blocks * RG_NODE_BLOCK;
+    double *rate = RG_NEW(double, values);
+    rg_push push = {.dt = h, .dt_now = 0.4 * h, .velocity = s->velocity, .step_velocity = s->step_velocity};
+    for (size_t i = 0; i < values; i++) {
+        s->velocity[i] = (rg_real)before;
+    }
+    for (size_t t = 0; t < s->domain->tiles; t++) {
+        rg_absorbing_note(s->absorbing, t, s->velocity);
+    }
+    for (size_t i = 0; i < values; i++) {
+        s->velocity[i] = s->step_velocity[i] = (rg_real)kicked;
+    }
+    rg_absorbing_set(s->absorbing, 2 * h, 0);
+    for (size_t t = 0; t < s->domain->tiles; t++) {
+        rg_absorbing_damp(s->absorbing, t, &push);
+    }
+    for (size_t i = 0; i < values; i++) {
+        rate[i] = 2 * (kicked - (double)s->velocity[i]) / (h * (before + (double)s->velocity[i]));
+    }
+    return rate;
+}
+
+/* Nodes that elements share are damped by what all their faces take, implicitly: at the same rates whatever
+ * the step; all together as the faces. */
+static void check_damped_shared(void) {
+    const char *change[] = {damps, "interface={law: none, form: continuous}", "bodies=[]"};
+    random_state r = random_state_make(3, change, MPI_COMM_WORLD);
+    rg_solver *s = r.solver;
+    double *rate = damped_rates(s, 3, 5, 1e-8), *other = damped_rates(s, 4, 1, 4e-8);
+    double all[3] = {0, 0, 0}, wanted[3] = {0, 0, 0};
+    bool same = true;
+    for (size_t slot = 0; slot < s->domain->blocks * RG_LANES; slot++) {
+        rg_gid e = s->domain->id[slot];
+        for (int k = 0; e >= 0 && k < 3 * RG_NODES; k++) {
+            size_t at = rg_node_index(slot, k / 3, k % 3);
+            same = fabs(rate[at] - other[at]) <= 1e-6 * rate[at] + 10 && same;
+            all[k % 3] += mesh_mass(&r, e) * rg_mass_entry(RG_MASS_LUMPED, k / 3, k / 3) * rate[at];
+        }
+        for (int face = 0; e >= 0 && face < RG_FACES; face++) {
+            double z[2], normal[3];
+            int side = side_of(&r, e, face);
+            for (int c = 0; c < 3 && (side == 1 || side == 2 || side == 4); c++) {
+                impedance(&r, e, side, z);
+                wanted[c] += rg_surface_area(s->domain->corner + 12 * slot, face, normal) * z[c != side / 2];
+            }
+        }
+    }
+    MPI_Allreduce(MPI_IN_PLACE, all, 3, MPI_DOUBLE, MPI_SUM, MPI_COMM_WORLD);
+    MPI_Allreduce(MPI_IN_PLACE, wanted, 3, MPI_DOUBLE, MPI_SUM, MPI_COMM_WORLD);
+    report(same, "damped shared nodes", "at one rate");
+    report(near(all[0], wanted[0], 1e-12 * wanted[0]) && near(all[1], wanted[1], 1e-12 * wanted[1]) &&
+               near(all[2], wanted[2], 1e-12 * wanted[2]),
+           "damped shared nodes", "as their faces");
+    rg_free(rate);
+    rg_free(other);
+    random_state_free(&r);
+}
+
 int main(int argc, char **argv) {
     MPI_Init(&argc, &argv);
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);
@@ -543,6 +604,7 @@ int main(int argc, char **argv) {
         }
         check_damped(mass[m]);
     }
+    check_damped_shared();
     check_shared();
     check_words();
     return finish_with_nothing_left();
