@@ -87,9 +87,11 @@ enum {
 enum {
     OGDEN_ROTATION =
         (1 + 1 + 1 + FMA + 1 + 1) + 1 + (FMA + 2) + 1 + 1 + 2 + 2 * (1 + FMA) + 3 * 2 * (1 + FMA),
-    OGDEN_STRAIN =
-        VOLUME_CHANGE + 6 * (1 + DOT + 2) + 15 * OGDEN_ROTATION + 3 * FMA + 1 + 3 * (1 + HENCKY_LOG1P + FMA),
-    OGDEN_TERM = 3 * (1 + HENCKY_EXPM1 + FMA) + 2 + 3 * 2 * FMA,
+    /* the first rotation makes the axes; two logarithms, the third from them */
+    OGDEN_STRAIN = VOLUME_CHANGE + 6 * (1 + DOT + 2) + 12 * OGDEN_ROTATION - 3 * 2 * (1 + FMA) + 3 * FMA + 1 +
+                   2 * (1 + HENCKY_LOG1P + FMA) + 1,
+    /* two powers, the third from them */
+    OGDEN_TERM = 2 * (1 + HENCKY_EXPM1) + (1 + FMA + 2 + 1) + 2 + 2 + 3 * 2 * FMA,
     OGDEN_TERMS = RG_OGDEN_TERMS * OGDEN_TERM,
     OGDEN_PIOLA = 3 * (2 + 6 * (1 + FMA)) + 9 * (1 + DOT),
     OGDEN_MEAN = 3,

@@ -6,8 +6,8 @@
  * 0. With mu_1 = 2 c10, alpha_1 = 2, mu_2 = -2 c01, alpha_2 = -2 it is that of Mooney and Rivlin.
  *
  * Stretches are the eigenvalues of the Green strain E, found by Jacobi's rotations, which know no case of
- * equal ones and keep the digits of small strains. With e_i = log l_i the principal values of the Kirchhoff
- * stress are
+ * equal ones and keep the digits of small strains. As l1 l2 l3 = 1, the third logarithm and the third power
+ * follow from the others. With e_i = log l_i the principal values of the Kirchhoff stress are
  *
  *     tau_i = sum mu_p (l_i^alpha_p - mean of the three) + K/2 (J^2 - 1). */
 #ifndef RG_OGDEN_H
@@ -16,7 +16,9 @@
 #include "material/hencky.h"
 #include "material/neo_hookean.h"
 
-enum { RG_OGDEN_SWEEPS = 5 }; /* to rounding: each squares what is left */
+/* To rounding: of the largest entry three leave at most 3e-5 beside the diagonal, four 3e-20 (of ten million
+ * tensors, alike eigenvalues among them). */
+enum { RG_OGDEN_SWEEPS = 4 };
 
 typedef struct {
     double mu[RG_OGDEN_TERMS], alpha[RG_OGDEN_TERMS], bulk;
@@ -31,12 +33,13 @@ RG_INLINE rg_ogden rg_ogden_of(const rg_material *m) {
 
 typedef struct {
     rg_volume_change v;
-    rg_vec value[3], axis[3][3]; /* of E; axis[i] that of value[i] */
-    rg_vec square[3], e[3];      /* 1 + 2 value, log l_i */
+    rg_vec axis[3][3];      /* of E */
+    rg_vec square[3], e[3]; /* 1 + 2 times its principal values, log l_i */
 } rg_ogden_strain;
 
-/* Rotation of the axes p and q that takes a[p][q] to zero; r the third one. */
-RG_INLINE void rg_ogden_rotate(rg_vec a[3][3], rg_vec axis[3][3], int p, int q, int r) {
+/* Rotation of the axes p and q that takes a[p][q] to zero; r the third one. first: axes are still those of a.
+ */
+RG_INLINE void rg_ogden_rotate(rg_vec a[3][3], rg_vec axis[3][3], int p, int q, int r, bool first) {
     rg_vec apart = a[q][q] - a[p][p], twice = 2.0 * a[p][q];
     rg_vec root = rg_sqrt(apart * apart + twice * twice),
            size = rg_max(rg_abs(apart) + root, rg_splat(1e-300));
@@ -48,6 +51,12 @@ RG_INLINE void rg_ogden_rotate(rg_vec a[3][3], rg_vec axis[3][3], int p, int q, 
     a[p][r] = a[r][p] = c * pr - s * qr;
     a[q][r] = a[r][q] = s * pr + c * qr;
     for (int k = 0; k < 3; k++) {
+        if (first) {
+            axis[p][k] = k == p ? c : k == q ? -s : rg_splat(0.0);
+            axis[q][k] = k == p ? s : k == q ? c : rg_splat(0.0);
+            axis[r][k] = rg_splat(k == r ? 1.0 : 0.0);
+            continue;
+        }
         rg_vec x = axis[p][k], y = axis[q][k];
         axis[p][k] = c * x - s * y;
         axis[q][k] = s * x + c * y;
@@ -62,20 +71,19 @@ RG_INLINE void rg_ogden_strain_at(rg_vec H[3][3], rg_ogden_strain *s) {
             rg_vec square = H[0][i] * H[0][j] + H[1][i] * H[1][j] + H[2][i] * H[2][j];
             E[i][j] = E[j][i] = 0.5 * ((H[i][j] + H[j][i]) + square);
         }
-        for (int j = 0; j < 3; j++) {
-            s->axis[i][j] = rg_splat(i == j ? 1.0 : 0.0);
-        }
     }
     for (int k = 0; k < RG_OGDEN_SWEEPS; k++) {
-        rg_ogden_rotate(E, s->axis, 0, 1, 2);
-        rg_ogden_rotate(E, s->axis, 0, 2, 1);
-        rg_ogden_rotate(E, s->axis, 1, 2, 0);
+        rg_ogden_rotate(E, s->axis, 0, 1, 2, k == 0);
+        rg_ogden_rotate(E, s->axis, 0, 2, 1, false);
+        rg_ogden_rotate(E, s->axis, 1, 2, 0, false);
     }
     for (int i = 0; i < 3; i++) {
-        s->value[i] = E[i][i];
         s->square[i] = 1.0 + 2.0 * E[i][i];
+    }
+    for (int i = 0; i < 2; i++) {
         s->e[i] = 0.5 * rg_log1p(2.0 * E[i][i]) - (1.0 / 3) * s->v.log_J;
     }
+    s->e[2] = -(s->e[0] + s->e[1]);
 }
 
 /* What the terms make of the stretches: principal values of the deviator of tau, their energy, and the sum of
@@ -89,9 +97,12 @@ RG_INLINE void rg_ogden_terms(const rg_ogden *c, rg_ogden_strain *s, rg_vec tau[
             continue;
         }
         rg_vec power[3], more[3], mu = rg_splat(c->mu[p]);
-        for (int i = 0; i < 3; i++) {
+        for (int i = 0; i < 2; i++) {
             power[i] = rg_exp_and_less_1(rg_splat(c->alpha[p]) * s->e[i], &more[i]);
         }
+        rg_vec both = more[0] + more[1] + more[0] * more[1];
+        power[2] = 1.0 / (1.0 + both);
+        more[2] = -both * power[2];
         rg_vec sum = more[0] + more[1] + more[2];
         for (int i = 0; i < 3; i++) {
             tau[i] += mu * (more[i] - (1.0 / 3) * sum);
