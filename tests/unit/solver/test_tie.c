@@ -233,6 +233,18 @@ static void check_momenta(const rg_bodies *b, const step *of, const verdict *v) 
     for (int c = 0; c < 4; c++) {
         consistent = near(of->after[0].rotation[c], rotation[c], 1e-15) && consistent;
     }
+    bool seen = true;
+    for (int c = 0; c < 3; c++) { /* 0.4 h of a kick h is over at its time */
+        double kick[2] = {of->after[0].v[c] - of->before[0].v[c],
+                          of->after[0].momentum[c] - of->before[0].momentum[c]};
+        seen =
+            near(freely->seen.force[c] * h, freely->mass * kick[0], 1e-13 * size[0]) &&
+            near(freely->turn.moment[c] * h, kick[1], 1e-13 * size[1]) &&
+            near(freely->seen.v[c], of->before[0].v[c] + 0.4 * kick[0], 1e-11) &&
+            near(freely->turn.seen_momentum[c], of->before[0].momentum[c] + 0.4 * kick[1], 1e-13 * size[1]) &&
+            seen;
+    }
+    report(seen, "ties", "force, moment and motion of a free body at the time of the step");
     report(consistent, "ties", "the turn of a free body is that of its momentum");
     report(linear, "ties", "momentum of a free body and the solid");
     report(angular, "ties", "angular momentum about its centre");
