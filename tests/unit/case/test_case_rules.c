@@ -213,6 +213,36 @@ static const mistake probes[] = {
      ":4:15: mesh.origin[1]: x: not a number; allowed: number (m)\n"},
 };
 
+static const mistake starts[] = {
+    {"  energy: 34\n",
+     "  energy: 34\n"
+     "  friction: 0.1\n"
+     "  sets: [{where: 1, beta: 1}, {where: 2, open: true}]\n"
+     "start: static\n",
+     ":15:8: start: static: needs interface.friction 0 with open faces: where they stick would depend on the "
+     "way\n"},
+    {"  energy: 34\n",
+     "  energy: 34\n"
+     "  form: incomplete\n"
+     "start: relax\n",
+     ":14:8: start: relax: needs form variational or continuous, whose forces have a potential without a "
+     "history\n"},
+    {"  energy: 34\n",
+     "  energy: 34\n"
+     "start: relax\n"
+     "bodies:\n"
+     "  - {name: a, shape: plane, motion: prescribed, at: [0, 0, 9], normal: [0, 0, 1]}\n"
+     "  - {name: b, shape: sphere, motion: free, at: [0, 0, 9], radius: 1, mass: 1}\n",
+     ":13:8: start: relax: not with bodies that are free or tied: they would have to come to rest with the "
+     "solid\n"},
+    {"  energy: 34\n",
+     "  energy: 34\n"
+     "start: static\n"
+     "bodies: [{name: a, shape: none, motion: prescribed, at: [0, 0, 9], tied: [z+]}]\n",
+     ":13:8: start: static: not with bodies that are free or tied: they would have to come to rest with the "
+     "solid\n"},
+};
+
 static const mistake law_and_form[] = {
     {"  energy: 34\n", "  energy: 34\n  form: continuous\n  faces: x +\nmass: consistent\n",
      ":14:10: interface.faces: x +: Unexpected end of expression at position 4; allowed: number or "
@@ -739,6 +769,7 @@ static void test_probes(void **state) {
 
 static void test_law_and_form(void **state) {
     (void)state;
+    expect_mistakes(starts, sizeof starts / sizeof *starts);
     expect_mistakes(law_and_form, sizeof law_and_form / sizeof *law_and_form);
 }
 
