@@ -62,6 +62,11 @@ def stopped(run):
     return make
 
 
+def test_checkpoints_count_as_output(run):
+    found = run(FRAGMENTS, sets={**CASE, "time.steps": 20, "checkpoint.steps": 1, "output.fields": []}).summary
+    assert found["checkpoints"] >= 20 and 0 < found["checkpoint_s"] < found["output_s"] < found["wall_s"]
+
+
 def crack_rows(frame):
     """The crack surface as rows in an order of their own: which rank wrote them decides their order in the file."""
     names = sorted(name for name in frame if name.startswith("crack/") and name not in ("crack/cells", "crack/points"))
