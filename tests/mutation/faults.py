@@ -112,6 +112,12 @@ SYMMETRIC = ("strcmp", "strcasecmp", "strncmp", "strncasecmp", "memcmp")  # wher
 
 
 def exchanged_index(code):
+    for begin, end, new in exchanged_indices(code):
+        if not re.search(r"\bsizeof \(?[\w.>-]*(?:\[\w*\])*\[?$", code[:begin]):  # all items of an array are as large
+            yield begin, end, new
+
+
+def exchanged_indices(code):
     for m in re.finditer(r"\[([^\[\]]+)\]\[([^\[\]]+)\]", code):
         if m[1] != m[2] and m[1].strip() and m[2].strip():  # no text
             yield m.start(), m.end(), f"[{m[2]}][{m[1]}]"

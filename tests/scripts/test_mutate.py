@@ -51,6 +51,10 @@ def test_bounds_are_relaxed_between_whole_numbers_alone():
     assert changed("relaxed bound", "    a = x < n;", before="int i, n; double x;") == []
 
 
+def test_items_of_an_array_are_as_large():
+    assert changed("exchanged index", "    memcpy(a[1], b, n * sizeof a[0]);") == ["    memcpy(a[0], b, n * sizeof a[0]);", "    memcpy(b, a[1], n * sizeof a[0]);"]
+
+
 def test_whether_a_text_is_empty_is_asked_by_either_letter():
     assert changed("exchanged index", "    a = b[0] != '\\0';") == changed("exchanged index", "    if (b->c[0] == '\\0') {") == []
     assert changed("exchanged index", "    a = b[0] != 0 && c[1] != '\\0';") == ["    a = b[1] != 0 && c[1] != '\\0';", "    a = b[0] != 0 && c[0] != '\\0';"]
