@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 import rhegma
-from conftest import SINGLE, example
+from conftest import SINGLE, example, launch, overrides
 from figures import ROUNDING
 from test_parallel import assert_same_bits
 
@@ -111,3 +111,17 @@ def test_a_hot_bar_is_the_same_on_any_layout(run, ranks, threads):
     one, other = run(BAR, sets=HOT), run(BAR, ranks=ranks, threads=threads, sets=HOT)
     assert one.summary["broken_area_m2"] > 0 and one.energy["external_work"][-1] != 0
     assert_same_bits(one, other)
+
+
+FRONT = {"name": "f", "at": [0, 0, 0], "direction": [1, 0, 0], "normal": [0, 0, 1], "radius": {"inner": 1e-4, "outer": 3e-4}, "values": ["J"]}
+
+
+@pytest.mark.parametrize("change, message", [
+    ({"temperature": {"value": 393}}, "temperature.value: has no use: no material has an expansion"),
+    ({"temperature": {"value": 393}, "material.expansion": EXPANSION, "output.crack_fronts": [FRONT]},
+     "temperature.value: not with output.crack_fronts: the energy that a crack sets free is not known in a field of temperature"),
+    ({"material.expansion": EXPANSION, "materials": [{"name": "other", "where": "z > 0", "model": "neo-hookean", "young": YOUNG, "poisson": NU, "density": DENSITY}],
+      "temperature": {"value": 393}}, None)])
+def test_temperatures_that_are_refused(change, message):
+    told = launch("check", BAR, *overrides(change))
+    assert (told.returncode, message is None) in ((2, False), (0, True)) and (message or "") in told.stderr, told.stderr
