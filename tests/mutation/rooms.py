@@ -56,7 +56,8 @@ ROOMS = {
                        test_restart.py"""),
     "output": (["src/output/*"],
                """writer slab estimate fragment_table progress snapshot summary xdmf run rebalance test_output.py
-                  test_export.py test_invariance.py test_spall.py test_cli.py test_bimaterials.py test_fragments.py
+                  test_export.py test_moments.py test_supports.py test_loads.py test_open_faces.py test_thermal.py test_bodies.py
+                  test_invariance.py test_spall.py test_cli.py test_bimaterials.py test_fragments.py test_fragment_contact.py
                   test_faults.py test_parallel.py test_restart.py"""),
     "restart": (["src/restart/*"],
                 """checksum slab schedule restart checkpoint checkpoint_file fuzz-checkpoint rebalance test_output.py
