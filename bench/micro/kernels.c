@@ -25,6 +25,7 @@ typedef struct {
 #define J2        RG_MATERIAL_J2
 #define COOK      RG_MATERIAL_JOHNSON_COOK
 #define CRUSHED   RG_MATERIAL_JOHNSON_HOLMQUIST
+#define CONCRETE  RG_MATERIAL_HOLMQUIST_JOHNSON_COOK
 #define ROCK      RG_MATERIAL_DRUCKER_PRAGER
 #define RELAXING  RG_MATERIAL_VISCOELASTIC
 
@@ -70,6 +71,16 @@ static const kernel_case cases[] = {
      RG_COST_BULK,
      0,
      {.gradient = RG_GRADIENT_LIFTED, .model = CRUSHED, .advance = true, .flowing = 1},
+     BENCH_FLOWING},
+    {"Holmquist-Johnson-Cook elastic",
+     RG_COST_BULK,
+     0,
+     {.gradient = RG_GRADIENT_LIFTED, .model = CONCRETE, .advance = true},
+     BENCH_QUIET},
+    {"Holmquist-Johnson-Cook flowing",
+     RG_COST_BULK,
+     0,
+     {.gradient = RG_GRADIENT_LIFTED, .model = CONCRETE, .advance = true, .flowing = 1},
      BENCH_FLOWING},
     {"Drucker-Prager elastic",
      RG_COST_BULK,

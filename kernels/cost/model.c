@@ -2,6 +2,7 @@
 
 #include "cost/ceramic.h"
 #include "cost/drucker_prager.h"
+#include "cost/holmquist_johnson_cook.h"
 #include "cost/j2.h"
 #include "cost/johnson_cook.h"
 #include "cost/johnson_holmquist.h"
@@ -151,6 +152,8 @@ static double point_flops(const rg_cost_variant *v) {
         return rg_johnson_cook_flops(v) + FMA + released;
     case RG_MATERIAL_JOHNSON_HOLMQUIST:
         return rg_johnson_holmquist_flops(v) + FMA + released;
+    case RG_MATERIAL_HOLMQUIST_JOHNSON_COOK:
+        return rg_holmquist_johnson_cook_flops(v) + FMA + released;
     case RG_MATERIAL_DRUCKER_PRAGER:
         return rg_drucker_prager_flops(v) + FMA + released;
     case RG_MATERIAL_VISCOELASTIC:
@@ -182,6 +185,8 @@ static double state_flops(const rg_cost_variant *v) {
         return rg_johnson_cook_state_flops(v) + FMA + (v->cauchy ? 3 + CAUCHY : 0);
     case RG_MATERIAL_JOHNSON_HOLMQUIST:
         return rg_johnson_holmquist_state_flops(v) + FMA + (v->cauchy ? 3 + CAUCHY : 0);
+    case RG_MATERIAL_HOLMQUIST_JOHNSON_COOK:
+        return rg_holmquist_johnson_cook_state_flops(v) + FMA + (v->cauchy ? 3 + CAUCHY : 0);
     case RG_MATERIAL_DRUCKER_PRAGER:
         return rg_drucker_prager_state_flops(v) + FMA + (v->cauchy ? 3 + CAUCHY : 0);
     case RG_MATERIAL_VISCOELASTIC:
@@ -291,7 +296,9 @@ typedef struct {
 } traffic;
 
 /* Values of a history that serve to go on alone: the plastic strain; the heat of Johnson and Cook's metal;
- * the last strain of Johnson and Holmquist's ceramic; cap and last stress of Drucker and Prager's solid. */
+ * the last strain of Johnson and Holmquist's ceramic; that of the concrete, and, while its pores are open,
+ * how far they have closed, which is looked at and no more; cap and last stress of Drucker and Prager's
+ * solid. */
 static int only_advancing(rg_material_model model) {
     switch (model) {
     case RG_MATERIAL_VISCOELASTIC:
@@ -299,6 +306,8 @@ static int only_advancing(rg_material_model model) {
     case RG_MATERIAL_JOHNSON_COOK:
     case RG_MATERIAL_JOHNSON_HOLMQUIST:
         return 2;
+    case RG_MATERIAL_HOLMQUIST_JOHNSON_COOK:
+        return 3;
     case RG_MATERIAL_DRUCKER_PRAGER:
         return 4;
     default:

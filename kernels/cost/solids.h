@@ -4,8 +4,8 @@
 
 #include "materials.h"
 
-/* OFHC copper's curve at the level of alumina, silicon carbide, a rock without a cap, and three relaxation
- * times. */
+/* OFHC copper's curve at the level of alumina, silicon carbide, a concrete whose pores stay open, a rock
+ * without a cap, and three relaxation times. */
 static const double rg_cost_parameters[RG_PARAMETERS] = {
     [RG_PARAMETER_YIELD_STRESS] = 1e9,
     [RG_PARAMETER_HARDENING] = 2e9,
@@ -31,6 +31,13 @@ static const double rg_cost_parameters[RG_PARAMETERS] = {
     [RG_PARAMETER_FAILURE_POWER] = 0.48,
     [RG_PARAMETER_BULK_2] = 361e9,
     [RG_PARAMETER_BULKING] = 1,
+    [RG_PARAMETER_COMPRESSIVE_STRENGTH] = 1e9,
+    [RG_PARAMETER_COHESIVE_STRENGTH] = 0.1,
+    [RG_PARAMETER_LEAST_FAILURE_STRAIN] = 0.01,
+    [RG_PARAMETER_CRUSH_PRESSURE] = 100e9,
+    [RG_PARAMETER_LOCK_PRESSURE] = 200e9,
+    [RG_PARAMETER_LOCK_STRAIN] = 1,
+    [RG_PARAMETER_BULK_1] = 400e9,
     [RG_PARAMETER_COHESION] = 1e9,
     [RG_PARAMETER_FRICTION_ANGLE] = 3,
     [RG_PARAMETER_DILATION_ANGLE] = 1,

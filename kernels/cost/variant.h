@@ -14,7 +14,8 @@ typedef struct {
     rg_mass mass;            /* kick, kinetic */
     bool cauchy;             /* bulk_state: writes the stress, not the energy alone */
     bool advance;            /* bulk: the history of the material goes on */
-    double growing, panels;  /* ceramic: share of its points (by vectors) whose cracks grow; panels of each */
+    double growing, panels;  /* ceramic: share of its points (by vectors) whose cracks grow; panels of each;
+                                concrete: share of the points whose pores close */
     double flowing, newton;  /* share of the points that flow; iterations of each, of J2 where its hardening
                                 saturates, else 0 */
     double unlinked; /* bulk, bulk_state: faces (0 to 4) of an element block with points that left the lift */

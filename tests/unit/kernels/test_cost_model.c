@@ -136,7 +136,9 @@ static void make_history(call *c) {
     const rg_cost_variant *v = &c->variant;
     const double tension[3] = {4e-4, 4e-4, 4e-4}, compression[3] = {-0.05, -0.05, -0.08},
                  none[3] = {0, 0, 1e-6};
-    const double *gradient = v->growing > 0 ? tension : v->flowing > 0 ? compression : none;
+    const double *gradient = v->growing > 0 && v->model == RG_MATERIAL_DESHPANDE_EVANS ? tension
+                             : v->flowing > 0                                          ? compression
+                                                                                       : none;
     input *in = c->in;
     if (v->model == RG_MATERIAL_DESHPANDE_EVANS) {
         in->material.of.deshpande_evans.parameters = rg_deshpande_evans_alumina();
@@ -144,6 +146,11 @@ static void make_history(call *c) {
         memcpy(in->material.of.parameter, rg_cost_parameters, sizeof rg_cost_parameters);
         in->material.of.parameter[RG_PARAMETER_SATURATION_STRESS] = v->newton > 0 ? 2e9 : 0;
         in->material.of.parameter[RG_PARAMETER_SATURATION_RATE] = v->newton > 0 ? 100 : 0;
+        if (v->model == RG_MATERIAL_HOLMQUIST_JOHNSON_COOK && v->growing > 0) {
+            in->material.of.parameter[RG_PARAMETER_CRUSH_PRESSURE] = 1e9;
+            in->material.of.parameter[RG_PARAMETER_LOCK_PRESSURE] = 40e9;
+            in->material.of.parameter[RG_PARAMETER_LOCK_STRAIN] = 0.2;
+        }
     }
     rg_material_prepare(&in->material, 1e-9);
     c->history = input_alloc(INPUT_EBLOCKS * history_block(c) * sizeof(double));
@@ -248,6 +255,7 @@ static void free_call(call *c) {
 #define J2        RG_MATERIAL_J2
 #define COOK      RG_MATERIAL_JOHNSON_COOK
 #define CRUSHED   RG_MATERIAL_JOHNSON_HOLMQUIST
+#define CONCRETE  RG_MATERIAL_HOLMQUIST_JOHNSON_COOK
 #define ROCK      RG_MATERIAL_DRUCKER_PRAGER
 #define RELAXING  RG_MATERIAL_VISCOELASTIC
 
@@ -332,6 +340,18 @@ static const struct {
      {.gradient = RG_GRADIENT_LIFTED, .model = CRUSHED},
      {2.3, 3.0}},
     {"Johnson-Holmquist state, stress", RG_COST_BULK_STATE, {.model = CRUSHED, .cauchy = true}, {-1.2, -0.3}},
+    {"concrete at rest", RG_COST_BULK, {.gradient = RG_GRADIENT_LIFTED, .model = CONCRETE}, {-0.8, 0.6}},
+    {"concrete elastic", RG_COST_BULK, {.model = CONCRETE, .advance = true}, {-1.1, 0.3}},
+    {"concrete flowing", RG_COST_BULK, {.model = CONCRETE, .advance = true, .flowing = 1}, {-1, 1}},
+    {"concrete flowing, its pores closing",
+     RG_COST_BULK,
+     {.model = CONCRETE, .advance = true, .flowing = 1, .growing = 1},
+     {-1, 1}},
+    {"concrete state, energy",
+     RG_COST_BULK_STATE,
+     {.gradient = RG_GRADIENT_LIFTED, .model = CONCRETE},
+     {2.5, 3.2}},
+    {"concrete state, stress", RG_COST_BULK_STATE, {.model = CONCRETE, .cauchy = true}, {-1.0, 0.1}},
     {"Drucker-Prager at rest", RG_COST_BULK, {.gradient = RG_GRADIENT_LIFTED, .model = ROCK}, {-1, 1}},
     {"Drucker-Prager elastic", RG_COST_BULK, {.model = ROCK, .advance = true}, {-1, 1}},
     {"Drucker-Prager flowing", RG_COST_BULK, {.model = ROCK, .advance = true, .flowing = 1}, {-1, 2}},
