@@ -21,6 +21,7 @@ typedef struct {
     double before; /* work of the half step that led here (J) */
     double (
         *value)[3]; /* of a load that depends on place: at the points of the face, the nodes of the element */
+    double omega2;  /* most that a pressure adds to the squared frequency of its element (1/s^2) */
     double (*force)[3]; /* on the nodes of the face, or of the element (N); NULL: m a, the same everywhere */
 } entry;
 
@@ -42,6 +43,8 @@ struct rg_loads {
     load *load;
     rg_expr *(*own)[3]; /* [threads][count]: of loads that depend on place and time */
     size_t *tile_begin; /* entries of tile t, load by load: from tile_begin[t] on */
+    double follows;     /* largest singular value of a pressure's stiffness (solver/surface.h) */
+    double *slot_omega2, *tile_omega2; /* [slots], [tiles]: what pressures add now (1/s^2) */
     entry *entry;
     double (*room)[3];                                  /* of the values and forces of the entries */
     double row_sum[RG_NODES], mass[RG_NODES][RG_NODES]; /* M/(rho V), and the sums of its rows */
@@ -216,6 +219,7 @@ static void face_forces(const rg_loads *all, entry *e, const rg_real *u) {
         out = rg_vector_dot(product, normal) > 0 ? 1 : -1;
         rg_surface_place(s, (size_t)e->slot, e->face, u, x);
     }
+    double steepest = 0; /* pressure times tangents */
     bool springs = is_foundation(l);
     if (springs) {
         displacements(e, u, x);
@@ -239,6 +243,8 @@ static void face_forces(const rg_loads *all, entry *e, const rg_real *u) {
                 }
             }
             rg_vector_cross(tangent[0], tangent[1], t);
+            steepest = fmax(steepest, fabs(value[0]) * (sqrt(rg_vector_dot(tangent[0], tangent[0])) +
+                                                        sqrt(rg_vector_dot(tangent[1], tangent[1]))));
             for (int c = 0; c < 3; c++) {
                 t[c] *= -0.5 * out * value[0]; /* the triangle of barycentric coordinates has area 1/2 */
             }
@@ -249,6 +255,7 @@ static void face_forces(const rg_loads *all, entry *e, const rg_real *u) {
             }
         }
     }
+    e->omega2 = follows ? 0.5 * all->follows * steepest / mass_of(all, e) : 0;
 }
 
 /* Power of an entry's forces at a velocity (a whole field). */
@@ -283,15 +290,39 @@ static void find_face_forces(const rg_loads *all, entry *e, const rg_tile *t, co
         return;
     }
     face_forces(all, e, s->u);
+    e->omega2 *= share;
     for (int i = 0; i < 3 * RG_FNODES; i++) {
         e->force[i / 3][i % 3] *= share;
     }
+}
+
+/* What the pressures on each element of a tile add to its squared frequency, all together. */
+static void add_omega2(const rg_loads *all, size_t tile) {
+    double most = 0;
+    for (size_t i = all->tile_begin[tile]; i < all->tile_begin[tile + 1]; i++) {
+        all->slot_omega2[all->entry[i].slot] = 0;
+    }
+    for (size_t i = all->tile_begin[tile]; i < all->tile_begin[tile + 1]; i++) {
+        double *sum = &all->slot_omega2[all->entry[i].slot];
+        *sum += all->entry[i].omega2;
+        most = fmax(most, *sum);
+    }
+    all->tile_omega2[tile] = most;
+}
+
+double rg_loads_omega2_now(const rg_loads *all) {
+    double most = 0;
+    for (size_t t = 0; t < all->surface.domain->tiles; t++) {
+        most = fmax(most, all->tile_omega2[t]);
+    }
+    return most;
 }
 
 void rg_loads_find(rg_loads *all, size_t tile, const rg_solver *s) {
     for (size_t i = all->tile_begin[tile]; i < all->tile_begin[tile + 1]; i++) {
         entry *e = &all->entry[i];
         const load *l = &all->load[e->load];
+        e->omega2 = 0;
         if (!l->acts) {
             continue;
         }
@@ -305,6 +336,7 @@ void rg_loads_find(rg_loads *all, size_t tile, const rg_solver *s) {
         }
         e->before = 0.5 * all->dt_last * power(all, e, s->velocity);
     }
+    add_omega2(all, tile);
 }
 
 /* An element moves by just the acceleration of its nodes. */
@@ -564,36 +596,9 @@ static void measure_areas(rg_loads *all) {
     }
 }
 
-/* Largest eigenvalue of a face's int N N dA over its area and M over the element's mass, of one component: by
- * power iteration, from a vector that is no eigenvector. All faces have the same. */
-static double face_eigenvalue(const rg_surface *s) {
-    enum { ITERATIONS = 200 };
-    double matrix[RG_FNODES][RG_FNODES] = {{0}}, x[RG_FNODES] = {1, 2, 3, 5, 7, 11}, largest = 0;
-    for (int i = 0; i < RG_FNODES * RG_FNODES * RG_FNODES * RG_POINTS; i++) {
-        int q = i % RG_POINTS, k = i / RG_POINTS, a = k % RG_FNODES, b = k / RG_FNODES % RG_FNODES,
-            c = k / RG_FNODES / RG_FNODES;
-        matrix[a][b] += s->inverse_mass[rg_face_node[0][a]][rg_face_node[0][c]] * s->weight[q] *
-                        s->shape[q][c] * s->shape[q][b];
-    }
-    for (int k = 0; k < ITERATIONS; k++) {
-        double y[RG_FNODES] = {0};
-        largest = 0;
-        for (int i = 0; i < RG_FNODES * RG_FNODES; i++) {
-            y[i / RG_FNODES] += matrix[i / RG_FNODES][i % RG_FNODES] * x[i % RG_FNODES];
-        }
-        for (int a = 0; a < RG_FNODES; a++) {
-            largest = fmax(largest, fabs(y[a]));
-        }
-        for (int a = 0; a < RG_FNODES; a++) {
-            x[a] = y[a] / largest;
-        }
-    }
-    return largest;
-}
-
 double rg_loads_omega2(const rg_loads *all) {
     const rg_domain *d = all->surface.domain;
-    double eigenvalue = face_eigenvalue(&all->surface), most = 0;
+    double eigenvalue = rg_surface_spring_value(&all->surface), most = 0;
     double *sum = RG_NEW(double, d->blocks *RG_LANES + 1);
     for (size_t n = 0; n < all->tile_begin[d->tiles]; n++) {
         const entry *e = &all->entry[n];
@@ -706,6 +711,9 @@ rg_loads *rg_loads_make(const rg_case *c, const rg_domain *d, const rg_part *par
     }
     list_all(all, part);
     make_room(all);
+    all->follows = rg_surface_follower_value(&all->surface);
+    all->slot_omega2 = RG_NEW(double, d->blocks *RG_LANES + 1);
+    all->tile_omega2 = RG_NEW(double, d->tiles + 1);
     measure_areas(all);
     copy_expressions(all);
     first_values(all);
@@ -720,7 +728,8 @@ void rg_loads_free(rg_loads *all) {
     for (int n = 0; n < 3 * all->threads * all->count; n++) {
         rg_expr_free(all->own[n / 3][n % 3]);
     }
-    void *blocks[] = {all->load, all->own, all->tile_begin, all->entry, all->room, all};
+    void *blocks[] = {all->load, all->own,         all->tile_begin,  all->entry,
+                      all->room, all->slot_omega2, all->tile_omega2, all};
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) {
         rg_free(blocks[i]);
     }

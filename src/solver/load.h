@@ -47,6 +47,11 @@ void rg_loads_set_springs(rg_loads *l);
 /* The share of foundations in the largest squared frequency (1/s^2). */
 double rg_loads_omega2(const rg_loads *l);
 
+/* What the stiffness of pressures, which follow the surface, added to the squared frequency of elements of
+ * this rank when their forces were last found: at most, to what is symmetric of it and where faces are flat
+ * (1/s^2). */
+double rg_loads_omega2_now(const rg_loads *l);
+
 /* Calls `show` with all nodes of foundations that act, along each axis (solver/constraint.h). */
 void rg_loads_show(const rg_loads *l, void (*show)(void *to, size_t slot, int node, const double line[3]),
                    void *to);

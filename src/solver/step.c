@@ -309,6 +309,7 @@ static void start_stiffening(rg_solver *s) {
         s->stepper->here[3] = s->stepper->separated;
         s->stepper->here[4] = s->contacts != NULL ? rg_contacts_omega2_now(s->contacts) : 0;
         s->stepper->here[5] = s->contacts != NULL ? rg_bodies_omega2_now(s->bodies) : 0;
+        s->stepper->here[6] = s->loads != NULL ? rg_loads_omega2_now(s->loads) : 0;
         MPI_Iallreduce(s->stepper->here, s->stepper->anywhere, RG_STEP_MOSTS, MPI_DOUBLE, MPI_MAX, s->comm,
                        &s->stepper->stiffening_request);
     }
@@ -397,12 +398,13 @@ static void finish_tied(rg_solver *s, const impulse *p) {
 }
 
 /* With what contact between fragments adds: the most it has so far. A step that came and went with each touch
- * would cost energy at every change. */
+ * would cost energy at every change. And with what pressures add at present. */
 static double stiffened(rg_solver *s, double stiffening) {
     double bodies = s->contacts != NULL ? s->stepper->anywhere[5] + s->bodies->born_omega2 : 0;
     double now = s->stepper->anywhere[4] + bodies;
     s->contact_omega2 = fmax(s->contact_omega2, now);
-    return s->contact_omega2 > 0 ? fmax(stiffening, 1) + s->contact_omega2 / s->omega2 : stiffening;
+    double added = s->contact_omega2 + s->stepper->anywhere[6];
+    return added > 0 && s->omega2 > 0 ? fmax(stiffening, 1) + added / s->omega2 : stiffening;
 }
 
 /* All forces. The traces of the displacement, sent at the end of the last drift, arrive under the first sweep
@@ -559,6 +561,11 @@ void rg_solver_settle(rg_solver *s) {
     rg_constraints_start(s->constraints, s->u, s->velocity, s->comm);
     if (s->contacts != NULL) {
         start_contacts(s);
+    }
+    rg_loads_set(s->loads, 0, 0, 0);
+#pragma omp parallel for schedule(static)
+    for (size_t t = 0; t < s->domain->tiles; t++) {
+        rg_loads_find(s->loads, t, s); /* what pressures add to the first step */
     }
     measure(s);
 }

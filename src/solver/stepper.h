@@ -5,7 +5,7 @@
 
 #include "solver/solver.h"
 
-enum { RG_STEP_MOSTS = 6 };
+enum { RG_STEP_MOSTS = 7 };
 
 struct rg_stepper {
     rg_material *material;        /* [materials], readied for the step that led here */
@@ -13,8 +13,8 @@ struct rg_stepper {
     int current;                  /* which of `rows` */
     rg_halo *halo_u[2], *halo_t;  /* of `rows` and `tractions` */
     /* Stiffening, stop request, way that faces in contact have moved (contact/contact.h), 1 where faces have
-     * separated, and what contact adds to the squared frequency, of fragments and of faces that opened with
-     * bodies: of this rank, of all; both on their way. */
+     * separated, and what is added to the squared frequency by contact of fragments, by that of faces that
+     * opened with bodies, and by pressures: of this rank, of all; both on their way. */
     double here[RG_STEP_MOSTS], anywhere[RG_STEP_MOSTS];
     MPI_Request stiffening_request; /* of these */
     bool separated;                 /* some faces have, and wait to be exposed */

@@ -33,4 +33,14 @@ void rg_surface_at(const rg_surface *s, int q, double value[RG_FNODES][3], doubl
 void rg_surface_push(const rg_surface *s, size_t slot, int face, double force[RG_FNODES][3],
                      const rg_push *push);
 
+/* Largest eigenvalue of a face's int N N dA over its area and M over the element's mass, of one component: by
+ * power iteration, from a vector that is no eigenvector. All faces have the same. */
+double rg_surface_spring_value(const rg_surface *s);
+
+/* Largest singular value of (sum over points of weight N_a N_b,1) between the nodes of a face, in the inner
+ * product of the inverse mass of its element, over that mass: the stiffness of a pressure p on a face that is
+ * flat is -p/2 times this, for each tangent x,1 and x,2, crossed with the other one. All faces and both
+ * directions have the same. */
+double rg_surface_follower_value(const rg_surface *s);
+
 #endif

@@ -13,6 +13,7 @@
 
 #include <cmocka.h>
 
+#include "base/dense.h"
 #include "base/hash.h"
 #include "base/mem.h"
 #include "case/read.h"
@@ -129,6 +130,92 @@ static void test_closed_surface(void **state) {
         expect_near(s->account->item[0].force[k], force[k], 1e-14 * size);
         expect_near(s->account->item[0].moment[k], moment[k], 1e-14 * size * 6e-3);
     }
+    rg_solver_free(s);
+    rg_case_free(c);
+}
+
+enum { FREE = 3 * RG_NODES };
+
+/* Column k of the stiffness of a pressure on an element, by its forces' change over 2 du: they are quadratic
+ * in the displacement. */
+static void stiffness_column(rg_solver *s, size_t slot, int k, double column[FREE]) {
+    double f[2][RG_NODES][3], du = 1e-4;
+    rg_real *u = &s->u[rg_node_index(slot, k / 3, k % 3)], was = *u;
+    for (int i = 0; i < 2; i++) {
+        *u = (rg_real)(was + (i == 0 ? du : -du));
+        find_forces(s, 0);
+        forces_of(s, slot, f[i]);
+    }
+    *u = was;
+    for (int n = 0; n < FREE; n++) {
+        column[n] = (f[0][n / 3][n % 3] - f[1][n / 3][n % 3]) / (2 * du);
+    }
+}
+
+/* Largest singular value of M^-1 K in the inner product of the mass. */
+static double largest_value(const rg_solver *s, size_t slot, double K[FREE][FREE]) {
+    double mass[RG_NODES * RG_NODES], x[FREE], y[FREE], z[FREE], most = 0;
+    double whole = rg_element_mass(s->domain, s->model->material, slot);
+    for (int i = 0; i < RG_NODES * RG_NODES; i++) {
+        mass[i] = whole * rg_mass_entry(s->input->mass, i / RG_NODES, i % RG_NODES);
+    }
+    rg_dense_invert(RG_NODES, mass);
+    for (int n = 0; n < FREE; n++) {
+        x[n] = 1 + n * n % 7;
+    }
+    for (int k = 0; k < 400; k++) { /* x of M^-1 K^T M^-1 K, which has the squares */
+        for (int half = 0; half < 2; half++) {
+            const double *from = half == 0 ? x : z;
+            for (int n = 0; n < FREE; n++) {
+                y[n] = 0;
+                for (int m = 0; m < FREE; m++) {
+                    y[n] += (half == 0 ? K[n][m] : K[m][n]) * from[m];
+                }
+            }
+            for (int n = 0; n < FREE; n++) {
+                z[n] = 0;
+                for (int a = 0; a < RG_NODES; a++) {
+                    z[n] += mass[n / 3 * RG_NODES + a] * y[3 * a + n % 3];
+                }
+            }
+        }
+        most = 0;
+        for (int n = 0; n < FREE; n++) {
+            most = fmax(most, fabs(z[n]));
+        }
+        for (int n = 0; n < FREE; n++) {
+            x[n] = z[n] / most;
+        }
+    }
+    return sqrt(most);
+}
+
+/* What a pressure adds to the step bound covers the stiffness of it, on a stretched and turned block. */
+static void test_follower_stiffness_is_covered(void **state) {
+    (void)state;
+    rg_case *c = read_with("loads=[{where: 'nx > 0.5 && y < 0 && z > 4e-3', pressure: 3e9}]", NULL);
+    rg_solver *s = solver_of(c);
+    double most = 0;
+    set_affine(s);
+    for (size_t slot = 0; slot < s->domain->blocks * RG_LANES; slot++) {
+        double K[FREE][FREE], column[FREE];
+        for (int k = 0; s->domain->id[slot] >= 0 && k < FREE; k++) {
+            stiffness_column(s, slot, k, column);
+            for (int n = 0; n < FREE; n++) {
+                K[n][k] = column[n];
+            }
+        }
+        double here = s->domain->id[slot] >= 0 ? largest_value(s, slot, K) : 0;
+        most = isfinite(here) && here > most ? here : most;
+    }
+    double covered = rg_loads_omega2_now(s->loads);
+    printf("# pressure: %g of what the step bound counts\n", most / covered);
+    assert_true(most > 0.5 * covered && most <= covered);
+    rg_loads_set_springs(s->loads);
+    for (size_t t = 0; t < s->domain->tiles; t++) {
+        rg_loads_find(s->loads, t, s);
+    }
+    assert_true(rg_loads_omega2_now(s->loads) == 0);
     rg_solver_free(s);
     rg_case_free(c);
 }
@@ -455,10 +542,15 @@ int main(int argc, char **argv) {
     omp_set_num_threads(1); /* a child has none of its parent's threads */
     MPI_Init(&argc, &argv);
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_closed_surface), cmocka_unit_test(test_dead_load_turns),
-        cmocka_unit_test(test_pressure),       cmocka_unit_test(test_traction),
-        cmocka_unit_test(test_acceleration),   cmocka_unit_test(test_spin),
-        cmocka_unit_test(test_foundation),     cmocka_unit_test(test_refused),
+        cmocka_unit_test(test_closed_surface),
+        cmocka_unit_test(test_follower_stiffness_is_covered),
+        cmocka_unit_test(test_dead_load_turns),
+        cmocka_unit_test(test_pressure),
+        cmocka_unit_test(test_traction),
+        cmocka_unit_test(test_acceleration),
+        cmocka_unit_test(test_spin),
+        cmocka_unit_test(test_foundation),
+        cmocka_unit_test(test_refused),
     };
     int failed = cmocka_run_group_tests(tests, NULL, NULL);
     MPI_Finalize();
