@@ -123,6 +123,13 @@ static const char *const masses_meaning[] = {
 static const char *const shapes[] = {"sphere", "plane", "cylinder", "none", NULL};
 static const char *const shapes_meaning[] = {
     "of a radius", "all behind it is rigid", "of a radius, without ends", "it touches nothing: for what is tied to it"};
+/* What the precision of the fields leaves to be found. */
+#ifdef RG_SINGLE
+#define RELAX_TOLERANCE FROM(1e-4), DEFAULT(1e-4)
+#else
+#define RELAX_TOLERANCE ABOVE(0), DEFAULT(1e-6)
+#endif
+
 static const char *const starts[] = {"initial", "static", "relax", NULL};
 static const char *const starts_meaning[] = {
     "from the state of `initial`",
@@ -321,8 +328,8 @@ static const rg_key case_keys[] = {
 
     {.name = "start", EXPLAINED(starts), DEFAULT(RG_START_INITIAL), CASE(start), MEANS("how a run begins")},
 
-    {.name = "relax.tolerance", REAL, ABOVE(0), DEFAULT(1e-6), GROUP(RELAX), CASE(relax.tolerance),
-     MEANS("residual over loads and reactions at which damping ends; not below 1e-4 in single precision")},
+    {.name = "relax.tolerance", REAL, RELAX_TOLERANCE, GROUP(RELAX), CASE(relax.tolerance),
+     MEANS("residual over loads and reactions at which damping ends; in single precision the default is 1e-4, and no less is allowed")},
     {.name = "relax.steps", INTEGER, FROM(1), DEFAULT(200000), GROUP(RELAX), CASE(relax.steps), MEANS("until then the run fails")},
 
     {.name = "boundary", .type = RG_KEY_LIST, ELSE("none: a free body"), CASE(boundary), .entry = &rg_boundary_table,

@@ -25,8 +25,11 @@ static double tolerance(void) {
 
 /* Of residuals that fall no more: what rounding leaves of light loads. */
 static double rounding(void) {
-    return single ? 1e-2 : 1e-5;
+    return single ? 1e-2 : 1e-2;
 }
+
+/* How far the linear system is solved in a step of Newton's: its tangent is that of one state. */
+#define EXACTNESS 1e-2
 
 typedef struct {
     rg_statics on;
@@ -34,6 +37,7 @@ typedef struct {
     rg_real *start, *internal;  /* u, and the acceleration by internal forces, at the last Newton step */
     rg_real *residual, *change; /* acceleration; sum of the CG's steps */
     rg_real *search, *product, *product_force, *preconditioned;
+    double least; /* edge of the smallest element, about (m) */
     double nudge; /* largest displacement of a difference (m) */
 } newton;
 
@@ -96,6 +100,13 @@ _Noreturn static void refuse(const newton *q, int status, const char *why) {
 }
 
 /* ---- The linear system ---- */
+
+/* Of the displacement of a difference: so small that few faces come into contact by it or lose it, as long as
+ * rounding of the displacement itself leaves enough of it. */
+static void set_nudge(newton *q) {
+    double share = single ? 1e-6 : 1e-7, rounds = single ? 1e-4 : 0;
+    q->nudge = fmax(share * q->least, rounds * rg_statics_largest(&q->on, q->start));
+}
 
 /* product = M^-1 K search without what is held, by a difference of internal forces. */
 static void apply_tangent(newton *q) {
@@ -176,12 +187,12 @@ static newton make(rg_solver *s) {
     for (size_t i = 0; i < sizeof field / sizeof *field; i++) {
         *field[i] = rg_statics_field(&q.on);
     }
-    double least = INFINITY;
+    double least = INFINITY; /* volume */
     for (size_t slot = 0; slot < s->domain->blocks * RG_LANES; slot++) {
         least = fmin(least, s->domain->geom[rg_geom_index(slot, RG_GEOM_VOLUME)]);
     }
     MPI_Allreduce(MPI_IN_PLACE, &least, 1, MPI_DOUBLE, MPI_MIN, s->comm);
-    q.nudge = (single ? 1e-2 : 1e-5) * cbrt(least);
+    q.least = cbrt(least);
     return q;
 }
 
@@ -222,7 +233,8 @@ rg_equilibrium rg_equilibrium_find(rg_solver *s, FILE *out) {
         last = residual;
         rg_statics_copy(&q.on, s->u, q.start);
         rg_statics_accelerate(&q.on, q.internal, false);
-        solve(&q, fmax(1e-4 * residual, 0.1 * tolerance() * scale));
+        set_nudge(&q);
+        solve(&q, fmax(EXACTNESS * residual, 0.1 * tolerance() * scale));
         scale = loads;
         residual = step(&q, residual, &scale);
         tell(&q, out, residual / scale);

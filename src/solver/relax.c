@@ -10,9 +10,6 @@
 #include "solver/statics.h"
 #include "solver/step.h"
 
-/* What the precision of the fields leaves to be found. */
-#define SINGLE_TOLERANCE 1e-4
-
 /* Of the critical step; once that is shorter than this share of it was, all begins anew. */
 #define SAFETY  0.9
 #define SHORTER 0.97
@@ -140,12 +137,14 @@ static void drift(relaxing *r, bool measured) {
     r->work += half_work(r);
 }
 
-_Noreturn static void refuse(const relaxing *r, int64_t steps) {
+_Noreturn static void refuse(relaxing *r, int64_t steps) {
+    double rounding = isfinite(r->residual) ? rg_statics_rounding(&r->on, r->now, r->load) : 0;
     rg_speak(r->on.solver->comm);
     rg_fatal(RG_FAILURE,
              "%s: start: relax: the residual is %.3g of the loads after %" PRId64
-             " steps, more than relax.tolerance: more relax.steps, or the loads do not balance",
-             r->on.solver->input->path, r->residual / r->scale, steps);
+             " steps, more than relax.tolerance: more relax.steps, or the loads do not balance (rounding of "
+             "the displacement leaves %.1g)",
+             r->on.solver->input->path, r->residual / r->scale, steps, rounding / r->scale);
 }
 
 static relaxing make(rg_solver *s) {
@@ -168,8 +167,6 @@ static void end(relaxing *r) {
 
 rg_equilibrium rg_relax(rg_solver *s, FILE *out) {
     const rg_case *c = s->input;
-    double tolerance =
-        sizeof(rg_real) < sizeof(double) ? fmax(c->relax.tolerance, SINGLE_TOLERANCE) : c->relax.tolerance;
     relaxing r = make(s);
     r.work = place(&r);
     evaluate(&r, false);
@@ -178,7 +175,7 @@ rg_equilibrium rg_relax(rg_solver *s, FILE *out) {
     r.loads = fmax(r.loads, RG_STATICS_FIRST * r.scale);
     set_out(&r);
     int64_t steps = 0;
-    while (r.residual > tolerance * r.scale) {
+    while (r.residual > c->relax.tolerance * r.scale) {
         if (steps >= c->relax.steps || !isfinite(r.residual)) {
             refuse(&r, steps);
         }

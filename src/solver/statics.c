@@ -1,5 +1,6 @@
 #include "solver/statics.h"
 
+#include <float.h>
 #include <math.h>
 #include <omp.h>
 #include <string.h>
@@ -111,6 +112,31 @@ double rg_statics_largest(const rg_statics *q, const rg_real *field) {
 double rg_statics_norm(const rg_statics *q, const rg_real *field) {
     rg_statics_times_mass(q, field, q->force);
     return sqrt(rg_statics_dot(q, field, q->force));
+}
+
+/* Half of the last digit of a displacement, up or down by what its element, node and component say. */
+static rg_real half_digit(rg_real u, rg_gid element, size_t n) {
+    uint64_t h = ((uint64_t)element * 3 * RG_NODES + n + 1) * UINT64_C(0x9e3779b97f4a7c15);
+    double half = (sizeof(rg_real) < sizeof(double) ? FLT_EPSILON : DBL_EPSILON) / 2;
+    return (rg_real)(u * ((h ^ h >> 29) >> 33 & 1 ? half : -half));
+}
+
+double rg_statics_rounding(rg_statics *q, rg_real *room, rg_real *change) {
+    const rg_domain *d = q->solver->domain;
+    rg_real *u = q->solver->u;
+    rg_statics_accelerate(q, change, false);
+    rg_statics_copy(q, u, room);
+    for (size_t i = 0; i < q->length; i++) {
+        size_t slot = i / RG_NODE_BLOCK * RG_LANES + i % RG_LANES, n = i % RG_NODE_BLOCK / RG_LANES;
+        u[i] += d->id[slot] >= 0 ? 2 * half_digit(u[i], d->id[slot], n) : 0;
+    }
+    rg_real *moved = RG_NEW(rg_real, q->length + 1);
+    rg_statics_accelerate(q, moved, false);
+    rg_statics_add(q, -1, moved, 1, change);
+    rg_statics_hold(q, change);
+    rg_statics_copy(q, room, u);
+    rg_free(moved);
+    return 0.5 * rg_statics_norm(q, change);
 }
 
 void rg_statics_accelerate(rg_statics *q, rg_real *out, bool loaded) {

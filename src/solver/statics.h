@@ -44,6 +44,10 @@ double rg_statics_largest(const rg_statics *q, const rg_real *field);
 /* Norm of an acceleration, sqrt(a M a); M a is in `force` then. Collective. */
 double rg_statics_norm(const rg_statics *q, const rg_real *field);
 
+/* Norm of what rounding of the displacement leaves of the accelerations: of what they change by with half of
+ * each last digit. `room`, `change`: fields. Collective. */
+double rg_statics_rounding(rg_statics *q, rg_real *room, rg_real *change);
+
 /* Of the forces at the solver's displacement, with the loads of t = 0 or without (rg_solver_acceleration). */
 void rg_statics_accelerate(rg_statics *q, rg_real *out, bool loaded);
 

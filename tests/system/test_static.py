@@ -94,6 +94,9 @@ EVERYTHING = {"mesh": {"cells": [2, 2, 6], "size": [0.5e-3, 0.5e-3, 1.5e-3], "ji
               "initial": {"velocity": {"z": "3*z/2e-3"}}, "time.steps": 40, "output.interval": 10}
 
 
+TILES = {**EVERYTHING["mesh"], "cells": [4, 4, 12]}  # five of several blocks
+
+
 @pytest.mark.parametrize("form", ["variational", "continuous"])
 def test_the_same_bits_on_any_layout_and_through_a_restart(run, bar, form):
     law = {"law": "none", "form": form, **({"beta_s": 2} if form == "variational" else {})}
@@ -112,20 +115,21 @@ def test_the_same_bits_on_any_layout_and_through_a_restart(run, bar, form):
     assert f'"state_hash": "{hash_of_all}"' in (shorter.dir / "summary.json").read_text()
 
 
-@pytest.mark.skipif(SINGLE, reason="in floats the search took more than 50 s without an end")
 def test_everything_at_once_from_equilibrium_on_five_layouts(run, bar):
-    """Loads of every kind, supports that begin and end, a crack that is there and one that opens, a rigid body that presses, a stress; then through a restart."""
+    """Loads of every kind, supports that begin and end, a crack that is there and one that opens, a rigid body that presses, one that catches a side, a stress; then through a
+    restart. Tiles of several blocks."""
     loads = [*EVERYTHING["loads"], {"name": "push", "set": "y+", "force": {"y": "0.1*(1 + rise(t))"}}, {"name": "bed", "set": "x+", "foundation": 1e13},
              {"name": "spin", "where": "z > 0.5e-3", "centrifugal": {"speed": 1e4, "axis": [1, 2, 0]}}, {"name": "gas", "cracks": True, "pressure": 1e6}]
     boundary = [{**EVERYTHING["boundary"][0], "angle": "1e-4 + 1e3*t"}, EVERYTHING["boundary"][1], {"set": "z+", "absorbing": True}, {"where": "ny < -0.5", "dashpot": 4e6},
                 {"name": "catch", "where": "nx < -0.5 && z < 0.4e-3", "component": "y", "velocity": 1, "from": 2e-8, "until": 4e-8}]
-    sets = {**EVERYTHING, "loads": loads, "boundary": boundary, "tables": {"rise": {"points": [[0, 0], [5e-8, 1]], "smooth": True}}, "start": "static",
+    rider = {"name": "rider", "shape": "none", "motion": "prescribed", "at": [0.5e-3, 0.2e-3, 0.6e-3], "velocity": {"x": 1}, "tied_where": "nx > 0.5 && abs(z - 0.6e-3) < 1.1e-4", "tied_from": 2e-8}
+    sets = {**EVERYTHING, "mesh": TILES, "loads": loads, "boundary": boundary, "tables": {"rise": {"points": [[0, 0], [5e-8, 1]], "smooth": True}}, "start": "static",
             "interface": {"law": "linear", "strength": 1e9, "energy": 30, "contact": "potential", "beta_s": 2,
                           "sets": [{"where": "abs(z - 0.75e-3) < 5e-5 && abs(nz) > 0.8", "open": True, "at": 3e-8}, {"where": "abs(z - 0.25e-3) < 5e-5 && abs(nz) > 0.8 && x > 0.25e-3", "open": True}]},
-            "bodies": [{**STOP, "at": [0, 0, 1.50001e-3], "velocity": {"z": -1}}], "initial": {**EVERYTHING["initial"], "stress": {"xx": 1e6}}, "checkpoint.steps": 10, "checkpoint.keep": 10}
+            "bodies": [{**STOP, "at": [0, 0, 1.50001e-3], "velocity": {"z": -1}, "penalty": 0.3}, rider], "initial": {**EVERYTHING["initial"], "stress": {"xx": 1e6}}, "checkpoint.steps": 10, "checkpoint.keep": 10}
     one = run(bar, sets=sets)
     assert one.summary["static_residual"] < rounding(1e-8, 1e-3)
-    for column in ("pull_work", "push_work", "bed_work", "spin_work", "gas_work", "catch_work", "hold_work", "stop_fz"):
+    for column in ("pull_work", "push_work", "bed_work", "spin_work", "gas_work", "catch_work", "hold_work", "stop_fz", "rider_fx"):
         assert np.ptp(one.history[column]) > 0, column
     for ranks, threads in ((1, 2), (2, 2), (3, 1), (5, 1)):
         other = run(bar, ranks=ranks, threads=threads, sets=sets)
@@ -145,7 +149,7 @@ def test_damping_comes_to_the_same_rest(run, figure, bar, form):
     """As the equilibrium that is solved for; half of the work of a load that is there at once becomes heat."""
     law = {"law": "none", "form": form, **({"beta_s": 2} if form == "variational" else {})}
     sets = {"interface": law, "loads": [{"name": "pull", "set": "z+", "traction": {"z": 1e6}}], "material.poisson": 0.3, "time.steps": 100}
-    solved, damped = (run(bar, sets={**sets, "start": start, **change}) for start, change in (("static", {}), ("relax", {"relax.tolerance": 1e-7})))
+    solved, damped = (run(bar, sets={**sets, "start": start, **change}) for start, change in (("static", {}), ("relax", {"relax.tolerance": rounding(1e-7, 1e-4)})))
     work = 1e6**2 / 70e9 * 0.5e-9
     row, first = damped.history[0], solved.history[0]
     figure(f"relaxed bar, form {form}: displacement of its end", row["end_uz"], theory=first["end_uz"], bound=rounding(1.5e-6, 1e-3), relative=True, why="the tolerance of the damping")
@@ -184,14 +188,15 @@ def test_a_free_body_sheds_a_stress_that_nothing_balances(run, figure, bar):
     assert abs(done.history["end_szz"][0]) < 1e4 and done.energy["bulk"][0] < 1e-3 * stored
 
 
-@pytest.mark.skipif(SINGLE, reason="floats round more than what is to be left of the first forces")
 @pytest.mark.parametrize("change", [{"loads": []}, {}], ids=["free", "loaded"])
-@pytest.mark.parametrize("start, passes, bound", [("static", 600, 2e-9), ("relax", 4000, 6e-6)])
+@pytest.mark.parametrize("start, passes, bound", [("static", 600, rounding(2e-9, 1e-5)), ("relax", rounding(4000, 8000), 6e-6)])
 def test_a_body_whose_only_support_was_turned(run, figure, bar, start, passes, bound, change):
     """By an angle that each point has to follow: without loads it ends free of stress, so nothing is left to measure a residual by."""
+    if SINGLE and start == "relax" and "loads" in change:
+        pytest.skip("rounding of the displacement leaves 7 times the tolerance, of a thousandth of the first forces")
     done = run(bar, sets={**EVERYTHING, "boundary": EVERYTHING["boundary"][:1], "initial": {}, "materials": [], "start": start, **change, "time.steps": 5,
                           "material": {"model": "neo-hookean", "young": 70e9, "poisson": 0.3, "density": 2700}, "output.probes": [{"name": "end", "at": [0.5e-3, 0.5e-3, 1.5e-3]}]})
-    assert done.summary["static_passes"] < passes and done.summary["static_residual"] <= (1e-8 if start == "static" else 1e-6)
+    assert done.summary["static_passes"] < passes and done.summary["static_residual"] <= (rounding(1e-8, 1e-3) if start == "static" else rounding(1e-6, 1e-4))
     if "loads" in change:
         figure(f"turned support, start {start}: its end", done.history["end_uy"][0], theory=0.5e-3 * (np.sin(1e-4) + np.cos(1e-4) - 1), bound=bound, unit="m", relative=True, why="the residual at which the search ends")
 
@@ -203,7 +208,7 @@ STOP = {"name": "stop", "shape": "plane", "motion": "prescribed", "at": [0, 0, 2
 def test_a_bar_comes_to_rest_on_a_stop(run, figure, bar, start):
     """Pulled against it by twice and more of what closes the gap."""
     pull, gap = 1e8, 1e-6
-    done = run(bar, sets={"start": start, **({"relax.tolerance": 1e-7} if start == "relax" else {}), "loads": [{"set": "z+", "traction": {"z": pull}}], "bodies": [STOP], "time.steps": 50,
+    done = run(bar, sets={"start": start, **({"relax.tolerance": rounding(1e-7, 1e-4)} if start == "relax" else {}), "loads": [{"set": "z+", "traction": {"z": pull}}], "bodies": [STOP], "time.steps": 50,
                           "output.interval": 10})
     row = done.history[0]
     depth = row["end_uz"] - gap
@@ -232,8 +237,8 @@ def test_a_start_with_contact_of_all_faces_is_the_same(run, bar):
 
 
 def test_damping_has_the_same_bits_anywhere_and_in_a_restart(run, bar):
-    """On six tiles, of two solids, against a stop, with a stress and loads that follow the surface."""
-    sets = {**EVERYTHING, "mesh": LARGE["mesh"], "start": "relax", "relax": {"tolerance": 1e-3, "steps": 5000}, "bodies": [{**STOP, "at": [0, 0, 2.00003e-3]}],
+    """On several tiles, of two solids, against a stop, with a stress and loads that follow the surface."""
+    sets = {**EVERYTHING, "mesh": TILES, "start": "relax", "relax": {"tolerance": 1e-2, "steps": 5000}, "bodies": [{**STOP, "at": [0, 0, 1.50003e-3]}],
             "initial": {"velocity": {"z": "3*z/2e-3"}, "stress": {"xx": 1e6}}, "checkpoint.steps": 20}
     one = run(bar, sets=sets)
     for ranks, threads in ((1, 2), (3, 1)):
@@ -250,7 +255,13 @@ def test_damping_has_the_same_bits_anywhere_and_in_a_restart(run, bar):
 
 def test_check_tells_of_damping(bar):
     told = launch("check", bar, "--set", "start=relax").stdout
-    assert "start          relax: damping brings the body to rest first, to 1e-06 of the loads in at most 200000 steps\n" in told
+    assert f"start          relax: damping brings the body to rest first, to {rounding(1e-6, 1e-4):g} of the loads in at most 200000 steps\n" in told
+
+
+@pytest.mark.skipif(not SINGLE, reason="of single precision")
+def test_less_than_floats_leave_is_refused(bar):
+    said = launch("check", bar, "--set", "start=relax", "--set", "relax.tolerance=9e-5")
+    assert said.returncode == 2 and "relax.tolerance: 9e-5: out of range; allowed: number >= 0.0001" in said.stderr
 
 
 # ---- Solids with limits, relaxation or axes ----
@@ -413,6 +424,7 @@ def test_a_run_without_stress_is_refused(run, bar):
      "start: static: not with bodies that are free or tied: they would have to come to rest with the solid"),
     ({"relax.steps": 3}, 2, "relax.steps: 3: not used, because start is not relax"),
     ({"start": "relax", "loads": [{"set": "z+", "traction": {"z": 1e6}}], "relax.steps": 3}, 1, "start: relax: the residual is "),
+    ({"start": "relax", "loads": [{"set": "z+", "traction": {"z": 1e6}}], "relax.steps": 3}, 1, rounding("e-16)", "e-07)")),  # what rounding of the displacement leaves
     ({"start": "relax", "boundary": [], "loads": [{"set": "z+", "traction": {"z": 1e6}}], "relax.steps": 300}, 1, "steps, more than relax.tolerance: more relax.steps, or the loads do not balance"),
     ({"loads": [{"set": "z+", "traction": {"z": -9e10}}], "material.poisson": 0.2, "boundary": CLAMP, "material.model": "neo-hookean"}, 1, "start: static: no ")])
 def test_static_starts_that_are_refused(bar, tmp_path, change, status, message):
