@@ -251,7 +251,7 @@ static void test_merge(void **state) {
 /* Two triangles side by side, the second one left-handed and in two sets, with edges and nodes in sets; the
  * square they fill is off the axes. A node is off the plane, or merged with another. */
 static rg_import_how plate_how;
-static double off_plane;
+static double off_plane, away;
 static const char *edge_name;
 static bool with_solid, without_faces;
 
@@ -260,7 +260,8 @@ static void add_plate(void) {
     static const double x[5][3] = {{1, 1, 3}, {3, 1, 3}, {3, 2, 3}, {1, 2, 3}, {3, 1, 3}};
     static const size_t number[5] = {10, 20, 30, 40, 15};
     for (size_t n = 0; n < 5; n++) {
-        rg_import_node(&m, number[n], (const double[]){x[n][0], x[n][1], x[n][2] + (n == 2 ? off_plane : 0)});
+        rg_import_node(&m, number[n],
+                       (const double[]){x[n][0] - away, x[n][1] + away, x[n][2] + (n == 2 ? off_plane : 0)});
     }
     rg_sets_add(&m.surface, "a");
     rg_sets_add(&m.surface, "b");
@@ -336,6 +337,17 @@ static void test_extrude(void **state) {
         "are in no set\n" LONE "rhegma: warning: plate: 6 " BETWEEN
         "18 elements, 16 vertices; volumes 0 3 3; areas top 1.5 cut 6.7082 bottom 8 side 1.5, inside "
         "6.7082\n");
+    away = 32; /* of no consequence for what is turned */
+    expect_said(
+        add_plate, RG_OK,
+        "rhegma: warning: plate: there is a set 'top' of edges: the faces that --extrude would call so "
+        "are in no set\n"
+        "rhegma: warning: plate: 1 nodes belong to no tetrahedron and are left out; the first is node 15 at "
+        "(-58, 66, 6) m\n"
+        "rhegma: warning: plate: 6 " BETWEEN
+        "18 elements, 16 vertices; volumes 0 3 3; areas top 1.5 cut 6.7082 bottom 8 side 1.5, inside "
+        "6.7082\n");
+    away = 0;
     off_plane = 0.001;
     expect_said(
         add_plate, RG_USAGE,
