@@ -283,12 +283,12 @@ static bool writes(const rg_sensors *p, void (*write)(const rg_sensors *p, FILE 
 
 static void check_words(MPI_Comm comm) {
     const char *change[] = {"output.sensors=[{name: a, values: [pressure, uy], measures: [integral, min]}, "
-                            "{name: b, set: x+, values: [sxy], measures: [max]}]"};
+                            "{name: b, set: x+, values: [sxy], measures: [max, mean]}]"};
     random_state r = random_state_make(1, change, comm);
     rg_sensors *p = rg_sensors_make(r.solver);
-    bool good = rg_sensors_columns(p) == 5 && writes(p, rg_sensors_header,
+    bool good = rg_sensors_columns(p) == 6 && writes(p, rg_sensors_header,
                                                      ",a_uy_min,a_uy_integral,a_pressure_min,"
-                                                     "a_pressure_integral,b_sxy_max");
+                                                     "a_pressure_integral,b_sxy_mean,b_sxy_max");
     report(good, "sensors", "only what is asked for has a column");
     report(writes(p, rg_sensors_print, "sensor         a: 5.423e-09 m3\nsensor         b: 4.93e-06 m2\n"),
            "sensors", "tell their parts");
