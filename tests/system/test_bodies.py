@@ -252,6 +252,16 @@ def test_a_head_that_is_caught(run, figure, form, bound):
     assert len(set(joined[energy["time"] >= since])) == 1 and joined[-1] > 3e-4 * energy["kinetic"][0]
 
 
+def test_a_ball_that_sticks_while_it_is_pressed(run, figure):
+    """To the face that it bounces off, in the middle of that: so its force counts in what goes."""
+    ball = {"name": "ball", "shape": "sphere", "motion": "free", "at": [0.1e-3, 0, 1e-3], "radius": 1e-3, "density": 8000, "velocity": {"z": -20}}
+    stuck = run(CASES / "bounce.yaml", sets={"interface.penalty": "isotropic", "bodies": [{**ball, "tied_where": "nz > 0.5 && abs(x) < 1.1e-3 && abs(y) < 1.1e-3", "tied_from": 4e-7}], "output.interval": 1e-8})
+    linear, _ = momenta(stuck.energy)
+    figure("ball that sticks: change of linear momentum, relative", linear, bound=rounding(1e-14, 1e-5), why=ROUNDING)
+    figure("ball that sticks: energy error", stuck.summary["energy_error_rel"], bound=3e-5)
+    assert stuck.energy["joined"][-1] > 0.01 * stuck.energy["bodies"][0]
+
+
 @pytest.mark.parametrize("motion", ["free", "prescribed"])
 def test_what_a_catch_takes(run, figure, motion):
     """Of a mass that moves along a bar at rest: m M/(m + M) V^2/2, M the mass of the nodes that it takes along; of one whose motion is prescribed M V^2/2."""

@@ -180,6 +180,15 @@ def test_damping_with_a_prescribed_end(run, figure, bar):
     figure("relaxed stretched bar: stored energy and heat less work, over work", done.energy["total"][0] / done.energy["external_work"][0], bound=rounding(3e-12, 1e-4), why="rounding in some thousand steps")
 
 
+def test_damping_begins_anew_where_the_step_becomes_shorter(run, figure, bar):
+    """A block that is pressed to three quarters of its length: it stops on the way, which the heat counts."""
+    sets = {"material": {"model": "neo-hookean", "young": 70e9, "poisson": 0.3, "density": 2700}, "mesh": {"cells": [2, 2, 3], "size": [0.5e-3, 0.5e-3, 0.75e-3], "jitter": 0.1},
+            "loads": [{"set": "z+", "traction": {"z": -12e9}}], "boundary": SIDES, "time.steps": 5, "output.probes": [{"name": "end", "at": [0.1e-3, 0.1e-3, 0.75e-3]}]}
+    solved, damped = (run(bar, sets={**sets, "start": start}) for start in ("static", "relax"))
+    figure("pressed block: displacement of its end", damped.history["end_uz"][0], theory=solved.history["end_uz"][0], bound=rounding(3e-5, 1.1e-3), relative=True, why="the tolerance of the damping")
+    figure("pressed block: stored energy and heat less work, over work", damped.energy["total"][0] / damped.energy["external_work"][0], bound=2.5e-4)
+
+
 def test_a_free_body_sheds_a_stress_that_nothing_balances(run, figure, bar):
     """All that it stored becomes heat; a search for an equilibrium would refuse it, as it is not held."""
     done = run(bar, sets={"start": "relax", "relax.tolerance": 1e-3, "loads": [], "boundary": [], "initial.stress": {"zz": 1e6}, "time.steps": 50, "material.poisson": 0.3})
