@@ -297,13 +297,13 @@ void rg_estimate_print(const rg_solver *s, const rg_estimate *e, FILE *out) {
         print_others(s, out);
     }
     for (int i = 0; i < c->boundaries; i++) {
-        char words[160];
+        char words[300];
         rg_constraints_describe(s->constraints, i, words, sizeof words);
         fprintf(out, "boundary       %s%s%s\n", c->boundary[i].name != NULL ? c->boundary[i].name : "",
                 c->boundary[i].name != NULL ? ": " : "", words);
     }
     for (int i = 0; i < c->loads; i++) {
-        char words[80];
+        char words[400];
         rg_loads_describe(s->loads, i, words, sizeof words);
         fprintf(out, "load           %s%s%s\n", c->load[i].name != NULL ? c->load[i].name : "",
                 c->load[i].name != NULL ? ": " : "", words);
@@ -312,7 +312,7 @@ void rg_estimate_print(const rg_solver *s, const rg_estimate *e, FILE *out) {
         print_body(s, i, out);
     }
     for (int i = 0; i < c->interface.sets; i++) {
-        if (c->interface.set[i].opens_at > 0) {
+        if (s->model->open_area != NULL && c->interface.set[i].open) {
             char words[80];
             rg_opening_describe(s, i, words, sizeof words);
             fprintf(out, "opening        %s\n", words);

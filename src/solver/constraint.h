@@ -67,7 +67,7 @@ void rg_constraints_mark(const rg_constraints *k, uint8_t *slots);
  * of the element + component. */
 void rg_constraints_register(rg_constraints *k, rg_state *st);
 
-/* Entry b of `boundary` in words: "velocity along x on 2.5e-09 m2". */
+/* Entry b of `boundary` in words: "velocity along x on 2.5e-09 m2, 2 faces of steel". */
 void rg_constraints_describe(const rg_constraints *k, int b, char *words, size_t size);
 
 void rg_constraints_free(rg_constraints *k);

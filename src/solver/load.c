@@ -1,5 +1,6 @@
 #include "solver/load.h"
 
+#include <inttypes.h>
 #include <math.h>
 #include <omp.h>
 #include <stdio.h>
@@ -12,6 +13,9 @@
 #include "domain/element.h"
 #include "solver/selection.h"
 #include "solver/tile.h"
+
+/* Of a force, what its components are told to. */
+#define ROUNDING 1e-6
 
 /* A face under a load, or an element (face < 0), and what acts on its nodes at the present step. */
 typedef struct {
@@ -31,7 +35,9 @@ typedef struct {
     bool by_place, by_time;
     bool acts;       /* at the present time */
     double value[3]; /* at the present time, where it is the same everywhere */
-    double area;     /* of its faces of reference (m^2) */
+    rg_selected on;  /* of reference; inside cracks, both sides */
+    bool weighed;
+    double force[3]; /* in all, where it was weighed (N) */
 } load;
 
 struct rg_loads {
@@ -149,7 +155,7 @@ static void evaluate(rg_loads *all, entry *e, rg_expr *const expr[3], double tim
 static void set_even_value(rg_loads *all, int i, double time) {
     static const double nowhere[3] = {0, 0, 0};
     load *l = &all->load[i];
-    double share = l->input->kind == RG_LOAD_FORCE ? 1 / l->area : 1;
+    double share = l->input->kind == RG_LOAD_FORCE ? 1 / l->on.size : 1;
     for (int c = 0; c < components(l); c++) {
         l->value[c] = share * value_at(all, i, l->input->value[l->input->kind][c], nowhere, time);
     }
@@ -256,6 +262,11 @@ static void face_forces(const rg_loads *all, entry *e, const rg_real *u) {
         }
     }
     e->omega2 = follows ? 0.5 * all->follows * steepest / mass_of(all, e) : 0;
+}
+
+/* Component c of an entry's force on its node a; `mass` of its element. */
+static double force_on(const rg_loads *all, const entry *e, double mass, int a, int c) {
+    return e->force != NULL ? e->force[a][c] : mass * all->row_sum[a] * all->load[e->load].value[c];
 }
 
 /* Power of an entry's forces at a velocity (a whole field). */
@@ -374,8 +385,7 @@ static void add_entry(const rg_loads *all, const entry *e, const rg_real *u, con
     for (int a = 0; a < nodes(e); a++) {
         double force[3];
         for (int c = 0; c < 3; c++) {
-            force[c] =
-                e->force != NULL ? e->force[a][c] : mass * all->row_sum[a] * all->load[e->load].value[c];
+            force[c] = force_on(all, e, mass, a, c);
         }
         rg_account_add_force(sum, all->surface.domain, (size_t)e->slot, node_of(e, a), u, force);
     }
@@ -439,16 +449,54 @@ static const char *const key[] = {
 #undef KEY
 };
 
+void rg_loads_weigh(rg_loads *all) {
+    rg_exact_sum *sum = RG_NEW(rg_exact_sum, 3 * (size_t)all->count + 1);
+    for (size_t n = 0; n < all->tile_begin[all->surface.domain->tiles]; n++) {
+        const entry *e = &all->entry[n];
+        double mass = mass_of(all, e);
+        for (int i = 0; all->load[e->load].acts && i < 3 * nodes(e); i++) {
+            rg_exact_add(&sum[3 * e->load + i % 3], force_on(all, e, mass, i / 3, i % 3));
+        }
+    }
+    rg_exact_allreduce(sum, 3 * all->count, all->comm);
+    for (int i = 0; i < 3 * all->count; i++) {
+        all->load[i / 3].weighed = true;
+        all->load[i / 3].force[i % 3] = rg_exact_value(&sum[i]);
+    }
+    rg_free(sum);
+}
+
+/* When it begins, or its force: what only rounding leaves of a component is none. */
+static void describe_force(const load *l, char *words, size_t size) {
+    double most = fmax(fabs(l->force[0]), fmax(fabs(l->force[1]), fabs(l->force[2]))), f[3];
+    words[0] = '\0';
+    for (int c = 0; c < 3; c++) {
+        f[c] = fabs(l->force[c]) > ROUNDING * most ? l->force[c] : 0;
+    }
+    if (l->input->from > 0) {
+        snprintf(words, size, "; from %g s on", l->input->from);
+    } else if (l->weighed) {
+        snprintf(words, size, "; (%.4g, %.4g, %.4g) N at t = 0", f[0], f[1], f[2]);
+    }
+}
+
 void rg_loads_describe(const rg_loads *all, int i, char *words, size_t size) {
     const load *l = &all->load[i];
+    const char *what = key[l->input->kind];
+    int64_t count = l->on.count / (l->input->cracks ? 2 : 1);
+    const char *end = count == 1 ? "" : "s";
+    char force[100];
+    describe_force(l, force, sizeof force);
     if (l->input->cracks) {
-        snprintf(words, size, "%s in cracks, on at most %.4g m2 of each side", key[l->input->kind],
-                 l->area / 2);
+        snprintf(words, size, "%s in cracks, on at most %.4g m2 of each side, %" PRId64 " face%s%s%s", what,
+                 l->on.size / 2, count, end, l->on.of, force);
     } else if (!is_body_force(l)) {
-        snprintf(words, size, "%s on %.4g m2", key[l->input->kind], l->area);
+        snprintf(words, size, "%s on %.4g m2, %" PRId64 " face%s%s%s", what, l->on.size, count, end, l->on.of,
+                 force);
     } else {
-        snprintf(words, size, "%s of %s", key[l->input->kind],
-                 l->input->where == NULL ? "the body" : "a part of it");
+        snprintf(words, size, "%s of %s, %.4g m3, %" PRId64 " element%s%s%s", what,
+                 l->input->where == NULL ? "the body" : "a part of it", l->on.size, count, end, l->on.of,
+                 force);
     }
 }
 
@@ -535,6 +583,7 @@ static void list_all(rg_loads *all, const rg_part *part) {
     uint8_t **on = RG_NEW(uint8_t *, (size_t)all->count + 1);
     for (int i = 0; i < all->count; i++) {
         on[i] = parts_of(all, i, part);
+        all->load[i].on = rg_selection_measure(on[i], is_body_force(&all->load[i]), all->input, d, all->comm);
     }
     all->tile_begin = RG_NEW(size_t, d->tiles + 1);
     for (int pass = 0; pass < 2; pass++) {
@@ -576,23 +625,6 @@ static void make_room(rg_loads *all) {
         e->value = values > 0 ? next : NULL;
         e->force = forces > 0 ? next + values : NULL;
         next += values + forces;
-    }
-}
-
-/* Exact, so that it is the same on any ranks. */
-static void measure_areas(rg_loads *all) {
-    for (int i = 0; i < all->count; i++) {
-        rg_exact_sum sum = {0};
-        for (size_t n = 0; n < all->tile_begin[all->surface.domain->tiles]; n++) {
-            const entry *e = &all->entry[n];
-            double normal[3];
-            if (e->load == i && e->face >= 0) {
-                rg_exact_add(&sum, rg_surface_area(all->surface.domain->corner + 12 * (size_t)e->slot,
-                                                   e->face, normal));
-            }
-        }
-        rg_exact_allreduce(&sum, 1, all->comm);
-        all->load[i].area = rg_exact_value(&sum);
     }
 }
 
@@ -714,7 +746,6 @@ rg_loads *rg_loads_make(const rg_case *c, const rg_domain *d, const rg_part *par
     all->follows = rg_surface_follower_value(&all->surface);
     all->slot_omega2 = RG_NEW(double, d->blocks *RG_LANES + 1);
     all->tile_omega2 = RG_NEW(double, d->tiles + 1);
-    measure_areas(all);
     copy_expressions(all);
     first_values(all);
     refuse_negative(all);

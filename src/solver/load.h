@@ -68,7 +68,13 @@ void rg_loads_push(const rg_loads *l, size_t tile, const rg_push *push);
 /* The work of the half step to come, by the complete velocity, and the account of a displacement. */
 void rg_loads_book(const rg_loads *l, size_t tile, const rg_real *u, const rg_real *velocity);
 
-/* Load i in words: "traction on 2.5e-09 m2". */
+/* The total force of each load at the time that was set, once its forces are found: for its words.
+ * Collective.
+ */
+void rg_loads_weigh(rg_loads *l);
+
+/* Load i in words: "traction on 2.5e-09 m2, 2 faces of steel; (0, 0, 3) N at t = 0", the force once weighed.
+ */
 void rg_loads_describe(const rg_loads *l, int i, char *words, size_t size);
 
 /* Work of all loads up to the present time (J), but of foundations that last, which store it. */

@@ -33,7 +33,8 @@ void rg_model_free(rg_model *m) {
         rg_free((void *)m->friction);
         rg_free((void *)m->rise);
         rg_free((void *)m->opening);
-        rg_free((void *)m->opening_area);
+        rg_free((void *)m->open_area);
+        rg_free((void *)m->open_faces);
         rg_free(m);
     }
 }

@@ -23,8 +23,10 @@ typedef struct {
     const rg_real *beta, *friction, *rise; /* likewise */
     double stiffest; /* largest ratio of strength to critical opening, over that of the law; 1: all alike */
     size_t openings;
-    const rg_opening *opening;  /* [openings] */
-    const double *opening_area; /* [interface.sets]: of reference, on all ranks (m^2); NULL: nowhere any */
+    const rg_opening *opening; /* [openings] */
+    const double *open_area;   /* [interface.sets]: of faces that are open, now or later, on all ranks, of
+                                  reference (m^2); NULL: no set has any */
+    const int64_t *open_faces; /* how many */
     size_t crack_stride, history_stride; /* values of a block of crack and history: as many as the longest
                                             needs */
 } rg_model;

@@ -1,5 +1,6 @@
 #include "solver/opening.h"
 
+#include <inttypes.h>
 #include <omp.h>
 #include <stdio.h>
 #include <string.h>
@@ -180,6 +181,12 @@ void rg_openings_take(rg_solver *s) {
 }
 
 void rg_opening_describe(const rg_solver *s, int set, char *words, size_t size) {
-    snprintf(words, size, "of %.4g m2 at %.4g s", s->model->opening_area[set],
-             s->input->interface.set[set].opens_at);
+    int64_t count = s->model->open_faces[set];
+    double at = s->input->interface.set[set].opens_at;
+    char when[40] = "from the start";
+    if (at > 0) {
+        snprintf(when, sizeof when, "at %.4g s", at);
+    }
+    snprintf(words, size, "of %.4g m2, %" PRId64 " face%s, %s", s->model->open_area[set], count,
+             count == 1 ? "" : "s", when);
 }

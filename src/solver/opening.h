@@ -15,7 +15,8 @@
 /* Opens those whose time has come, between two steps. Collective. */
 void rg_openings_take(rg_solver *s);
 
-/* The faces of a set of interface.sets that open at a time, in words: "of 2.5e-09 m2 at 1e-06 s". */
+/* The faces of a set of interface.sets that are open, or open at a time, in words: "of 2.5e-09 m2, 2 faces,
+ * at 1e-06 s". */
 void rg_opening_describe(const rg_solver *s, int set, char *words, size_t size);
 
 #endif

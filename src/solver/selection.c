@@ -1,8 +1,11 @@
 #include "solver/selection.h"
 
 #include <math.h>
+#include <stdio.h>
+#include <string.h>
 
 #include "base/error.h"
+#include "base/exact_sum.h"
 #include "base/first_bad.h"
 #include "base/mem.h"
 #include "solver/surface.h"
@@ -77,4 +80,57 @@ uint8_t *rg_selection_faces(const rg_selection *s, const rg_case *c, const rg_do
                                     : s->set);
     }
     return faces;
+}
+
+/* ---- What is selected ---- */
+
+enum { MOST_NAMED = 3 };
+
+/* " of glass, steel and tin", or how many they are. */
+static void name_materials(const bool *there, const rg_case *c, char *words, size_t size) {
+    int count = 0, told = 0;
+    for (int m = 0; m <= c->others; m++) {
+        count += there[m];
+    }
+    words[0] = '\0';
+    if (c->others == 0 || count > MOST_NAMED) {
+        if (c->others > 0) {
+            snprintf(words, size, " of %d materials", count);
+        }
+        return;
+    }
+    for (int m = 0; m <= c->others; m++) {
+        if (there[m]) {
+            const char *before = told == 0 ? " of " : told == count - 1 ? " and " : ", ";
+            size_t length = strlen(words);
+            snprintf(words + length, size - length, "%s%s", before, rg_case_material_name(c, m));
+            told++;
+        }
+    }
+}
+
+rg_selected rg_selection_measure(const uint8_t *on, bool whole, const rg_case *c, const rg_domain *d,
+                                 MPI_Comm comm) {
+    rg_selected s = {.count = 0};
+    rg_exact_sum sum = {0};
+    bool *there = RG_NEW(bool, (size_t)c->others + 1);
+    for (size_t i = 0; i < RG_FACES * d->blocks * RG_LANES; i++) {
+        size_t slot = i / RG_FACES;
+        int face = (int)(i % RG_FACES);
+        double normal[3];
+        if ((on[slot] >> face & 1) == 0 || (whole && face > 0)) {
+            continue;
+        }
+        rg_exact_add(&sum, whole ? (double)d->geom[rg_geom_index(slot, RG_GEOM_VOLUME)]
+                                 : rg_surface_area(d->corner + 12 * slot, face, normal));
+        there[d->material[slot / RG_LANES]] = true;
+        s.count++;
+    }
+    rg_exact_allreduce(&sum, 1, comm);
+    s.size = rg_exact_value(&sum);
+    MPI_Allreduce(MPI_IN_PLACE, &s.count, 1, MPI_INT64_T, MPI_SUM, comm);
+    MPI_Allreduce(MPI_IN_PLACE, there, c->others + 1, MPI_C_BOOL, MPI_LOR, comm);
+    name_materials(there, c, s.of, sizeof s.of);
+    rg_free(there);
+    return s;
 }

@@ -21,4 +21,16 @@ typedef struct {
 uint8_t *rg_selection_faces(const rg_selection *s, const rg_case *c, const rg_domain *d, const rg_part *part,
                             MPI_Comm comm);
 
+/* What is selected, of all ranks: how many faces, or elements; their area (m2), or volume (m3), of reference;
+ * and, where the case has several materials, of which: " of glass and steel". */
+typedef struct {
+    int64_t count;
+    double size;
+    char of[120];
+} rg_selected;
+
+/* Of faces by their bits, or `whole` elements by bit 0: [slots]. Collective. */
+rg_selected rg_selection_measure(const uint8_t *on, bool whole, const rg_case *c, const rg_domain *d,
+                                 MPI_Comm comm);
+
 #endif

@@ -297,7 +297,8 @@ static rg_model linear_model(const rg_model *of, double stiffest, state which, r
     m.scale = NULL;
     m.beta = m.friction = NULL;
     m.opening = NULL;
-    m.opening_area = NULL;
+    m.open_area = NULL;
+    m.open_faces = NULL;
     m.openings = 0;
     m.history_stride = m.crack_stride = 0;
     m.law.slope *= stiffest;

@@ -567,6 +567,7 @@ void rg_solver_settle(rg_solver *s) {
     for (size_t t = 0; t < s->domain->tiles; t++) {
         rg_loads_find(s->loads, t, s); /* what pressures add to the first step */
     }
+    rg_loads_weigh(s->loads);
     measure(s);
 }
 

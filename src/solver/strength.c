@@ -233,6 +233,8 @@ typedef struct {
     double stiffest; /* as in rg_model, of this rank */
     rg_opening *opening;
     size_t openings;
+    rg_exact_sum *open_area; /* [sets]: of faces that are open, now or later; NULL: no set has any */
+    int64_t *open_faces;
 } fields;
 
 static void add_opening(fields *to, const rg_opening *o) {
@@ -266,6 +268,10 @@ static void fill_face(search *look, const rg_tile *t, size_t i, fields *to) {
     }
     if (p.breaks && p.open && p.opens_at > 0) {
         add_opening(to, &(rg_opening){(size_t)(t - look->s->domain->tile), i, p.set, p.opens_at});
+    }
+    if (p.breaks && p.open && look->s->domain->counted[i]) {
+        rg_exact_add(&to->open_area[p.set], area);
+        to->open_faces[p.set]++;
     }
     if (p.breaks && !p.open) {
         to->stiffest = fmax(to->stiffest, f.strength / f.opening);
@@ -317,24 +323,30 @@ static void refuse_bad_values(search *look) {
              rg_expr_text(at[which]), wrong, bad->x[0], bad->x[1], bad->x[2]);
 }
 
-/* On all ranks, of each set (m^2). */
-static double *opening_areas(const rg_solver *s, const fields *of) {
+/* What each set opens, on all ranks. */
+static void share_open(fields *of, const rg_solver *s, rg_model *m) {
     int sets = s->input->interface.sets;
-    rg_exact_sum *sum = RG_NEW(rg_exact_sum, (size_t)sets);
+    if (of->open_area == NULL) {
+        return;
+    }
     double *area = RG_NEW(double, (size_t)sets);
-    for (size_t k = 0; k < of->openings; k++) {
-        double normal[3];
-        const rg_opening *o = &of->opening[k];
-        if (s->domain->counted[o->face]) {
-            rg_exact_add(&sum[o->set], rg_interface_area(s->domain, o->face, normal));
-        }
-    }
-    rg_exact_allreduce(sum, sets, s->comm);
+    rg_exact_allreduce(of->open_area, sets, s->comm);
+    MPI_Allreduce(MPI_IN_PLACE, of->open_faces, sets, MPI_INT64_T, MPI_SUM, s->comm);
     for (int i = 0; i < sets; i++) {
-        area[i] = rg_exact_value(&sum[i]);
+        area[i] = rg_exact_value(&of->open_area[i]);
     }
-    rg_free(sum);
-    return area;
+    rg_free(of->open_area);
+    m->open_area = area;
+    m->open_faces = of->open_faces;
+}
+
+/* Whether a set has faces that are open, now or later. */
+static bool any_open(const rg_case *c) {
+    bool any = false;
+    for (int i = 0; i < c->interface.sets; i++) {
+        any = any || c->interface.set[i].open;
+    }
+    return any;
 }
 
 static bool is_expression(const rg_expr *e) {
@@ -377,6 +389,10 @@ void rg_strength_make(const rg_solver *s, rg_model *m) {
                  .beta = field_if(sets_have(c, offsetof(rg_face_set, beta_at)), slots),
                  .friction = field_if(sets_have(c, offsetof(rg_face_set, friction_at)), slots),
                  .rise = field_if(sets_have(c, offsetof(rg_face_set, rise_at)), slots)};
+    if (any_open(c)) {
+        to.open_area = RG_NEW(rg_exact_sum, (size_t)c->interface.sets);
+        to.open_faces = RG_NEW(int64_t, (size_t)c->interface.sets);
+    }
     find_materials(&look);
     find_groups(&look);
     for (size_t t = 0; t < d->tiles; t++) { /* expressions are not for threads */
@@ -395,7 +411,7 @@ void rg_strength_make(const rg_solver *s, rg_model *m) {
     m->scale = to.scale;
     m->opening = to.opening;
     m->openings = to.openings;
-    m->opening_area = rg_case_opens(c) ? opening_areas(s, &to) : NULL;
+    share_open(&to, s, m);
     m->beta = to.beta;
     m->friction = to.friction;
     m->rise = to.rise;

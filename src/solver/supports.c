@@ -5,11 +5,9 @@
 #include <stdio.h>
 
 #include "base/error.h"
-#include "base/exact_sum.h"
 #include "base/mem.h"
 #include "base/vector.h"
 #include "layout.h"
-#include "solver/selection.h"
 #include "solver/surface.h"
 
 /* ---- What an entry prescribes ---- */
@@ -107,22 +105,12 @@ void rg_supports_describe(const rg_supports *s, int b, char *words, size_t size)
         snprintf(along, sizeof along, " along (%g, %g, %g)", of->direction[0], of->direction[1],
                  of->direction[2]);
     }
-    snprintf(words, size, "%s%s on %.4g m2", what, along, s->area[b]);
+    const rg_selected *on = &s->on[b];
+    snprintf(words, size, "%s%s on %.4g m2, %" PRId64 " face%s%s", what, along, on->size, on->count,
+             on->count == 1 ? "" : "s", on->of);
 }
 
 /* ---- Set-up ---- */
-
-static double area_of(const rg_domain *d, const uint8_t *faces, MPI_Comm comm) {
-    rg_exact_sum sum = {0};
-    double normal[3];
-    for (size_t i = 0; i < RG_FACES * d->blocks * RG_LANES; i++) {
-        if ((faces[i / RG_FACES] >> i % RG_FACES & 1) != 0) {
-            rg_exact_add(&sum, rg_surface_area(d->corner + 12 * (i / RG_FACES), (int)(i % RG_FACES), normal));
-        }
-    }
-    rg_exact_allreduce(&sum, 1, comm);
-    return rg_exact_value(&sum);
-}
 
 static uint16_t *nodes_of(const rg_domain *d, const uint8_t *faces, rg_assembly *shared) {
     uint16_t *nodes = RG_NEW(uint16_t, d->blocks * RG_LANES + 1);
@@ -201,7 +189,7 @@ rg_supports *rg_supports_make(const rg_case *c, const rg_domain *d, const rg_par
                        .account = account,
                        .faces = RG_NEW(uint8_t *, count),
                        .nodes = RG_NEW(uint16_t *, count),
-                       .area = RG_NEW(double, count),
+                       .on = RG_NEW(rg_selected, count),
                        .item = RG_NEW(int, count),
                        .acts = RG_NEW(bool, count),
                        .bad = {.which = RG_NOWHERE}};
@@ -209,7 +197,7 @@ rg_supports *rg_supports_make(const rg_case *c, const rg_domain *d, const rg_par
         const rg_boundary *of = &c->boundary[b];
         rg_selection selection = {"boundary", b, of->set, of->where, false};
         uint8_t *faces = rg_selection_faces(&selection, c, d, part, comm);
-        s->area[b] = area_of(d, faces, comm);
+        s->on[b] = rg_selection_measure(faces, false, c, d, comm);
         if (rg_boundary_damps(of)) {
             rg_free(faces);
         } else {
@@ -238,7 +226,7 @@ void rg_supports_forget(rg_supports *s) {
 void rg_supports_free(rg_supports *s) {
     if (s != NULL) {
         rg_supports_forget(s);
-        rg_free(s->area);
+        rg_free(s->on);
         rg_free(s->item);
         rg_free(s->acts);
         rg_free(s);

@@ -13,6 +13,7 @@
 #include "domain/assembly.h"
 #include "domain/domain.h"
 #include "solver/account.h"
+#include "solver/selection.h"
 
 typedef struct {
     const rg_case *input;
@@ -21,7 +22,7 @@ typedef struct {
     uint8_t **faces; /* [boundaries][slots]: bits of its faces; NULL: it absorbs */
     uint16_t **
         nodes; /* [boundaries][slots]: bits of the nodes on them; where elements share nodes, on all copies */
-    double *area;            /* [boundaries]: of the faces of reference, on all ranks (m^2) */
+    rg_selected *on;         /* [boundaries]: its faces */
     int *item;               /* [boundaries]: of the account; -1: it has no name */
     bool named;              /* some have */
     bool timed;              /* some begin or end */
@@ -64,7 +65,7 @@ void rg_supports_note(rg_supports *s, int b, const double x[3], double time);
  * first. */
 bool rg_supports_told(const rg_supports *s, char *words, size_t size, MPI_Comm comm);
 
-/* Entry b in words: "velocity along x on 2.5e-09 m2". */
+/* Entry b in words: "velocity along x on 2.5e-09 m2, 2 faces of steel". */
 void rg_supports_describe(const rg_supports *s, int b, char *words, size_t size);
 
 void rg_supports_free(rg_supports *s);

@@ -105,7 +105,23 @@ def test_free_fall(run, figure, form, mass):
 
 def test_check_tells_them():
     said = launch("check", LOADS).stdout
-    assert "load           pull: traction on 9e-08 m2\n" in said and "load           fall: acceleration of the body\n" in said
+    assert "load           pull: traction on 9e-08 m2, 2 faces; (0, 0, 0) N at t = 0\n" in said
+    assert "load           press: pressure on 1.17e-06 m2, 26 faces; from 1e-07 s on\n" in said
+    force = (0, -4e7 * 3690 * 8.1e-11, 1e10 * 0.15e-3 * 3690 * 8.1e-11)  # of a jittered mesh, whose middle is that of the block
+    assert f"load           fall: acceleration of the body, 8.1e-11 m3, 18 elements; ({force[0]:.4g}, {force[1]:.4g}, {force[2]:.4g}) N at t = 0\n" in said
+
+
+def test_check_tells_of_which_materials():
+    """On any ranks: what faces and elements are of; the force is that of t = 0."""
+    parts = [{"name": "low", "where": "z < 0.3e-3", "model": "neo-hookean", "young": 1e9, "poisson": 0.3, "density": 1000},
+             {"name": "top", "where": "z > 0.6e-3", "model": "neo-hookean", "young": 1e9, "poisson": 0.3, "density": 1000}]
+    loads = [{"set": "z+", "pressure": "1e6 + 1e9*t"}, {"name": "side", "set": "x-", "force": {"x": 5, "z": "-2*(1 + t)"}}, {"where": "z < 0.6e-3", "acceleration": {"z": -10}}]
+    told = {launch("check", LOADS, *rhegma_options({"materials": parts, "loads": loads, "mesh.jitter": 0}), ranks=ranks).stdout for ranks in (1, 2)}
+    told = [[line.split(None, 1)[1] for line in of.splitlines() if line.startswith("load ")] for of in told]
+    assert told == len(told) * [["pressure on 9e-08 m2, 2 faces of top; (0, 0, -0.09) N at t = 0", "side: force on 2.7e-07 m2, 6 faces of material, low and top; (5, 0, -2) N at t = 0",
+                                 f"acceleration of a part of it, 5.4e-11 m3, 12 elements of material and low; (0, 0, {-10 * 2.7e-11 * (3690 + 1000):.4g}) N at t = 0"]]
+    four = [*parts, {**parts[0], "name": "corner", "where": "z < 0.3e-3 && x > 0.2e-3"}]
+    assert "a part of it, 8.1e-11 m3, 18 elements of 4 materials" in launch("check", LOADS, *rhegma_options({"materials": four, "loads": [{"where": 1, "acceleration": {"x": 1}}]})).stdout
 
 
 # ---- Foundations ----
@@ -216,7 +232,7 @@ def test_a_foundation_that_is_refused(tmp_path):
     case.write_text(BLOCK.replace("foundation: 1e11", "foundation: 1 - 2e3*x"))
     assert "loads[0].foundation: 1 - 2e3*x is negative somewhere\n" in launch("check", case).stderr
     case.write_text(BLOCK)
-    assert "load           bed: foundation on 1e-06 m2\n" in launch("check", case).stdout
+    assert "load           bed: foundation on 1e-06 m2, 8 faces; (0, 0, 0) N at t = 0\n" in launch("check", case).stdout
 
 
 # ---- Stress that is there from the start ----

@@ -110,7 +110,12 @@ def test_check_tells_what_opens(tmp_path):
     case = tmp_path / "open.yaml"
     case.write_text("mesh: {cells: [1, 1, 2], size: [1, 1, 2]}\nmaterial: {model: neo-hookean, young: 1, poisson: 0, density: 1}\ntime: {end: 1}\n"
                     "interface: {law: linear, strength: 1, energy: 1, sets: [{where: abs(nz) > 0.9, open: true, at: 2.5}]}\n")
-    assert "opening        of 1 m2 at 2.5 s\n" in launch("check", case).stdout
+    assert "opening        of 1 m2, 2 faces, at 2.5 s\n" in launch("check", case).stdout
+    for ranks in (1, 2):
+        told = launch("check", case, "--set", "interface.sets=[{where: z > 5, open: true}, {where: abs(nz) > 0.9, open: true}]", ranks=ranks)
+        assert told.returncode == 2 and "interface.sets[0]: no face is in it, where: z > 5\n" in told.stderr
+        told = launch("check", case, "--set", "interface.sets=[{where: 1, open: true, at: 3}, {where: abs(nz) > 0.9, open: true}]", ranks=ranks).stdout
+        assert "opening        of 1 m2, 2 faces, from the start\n" in told and " faces, at 3 s\n" in told
 
 
 @pytest.mark.parametrize("load, law, message", [

@@ -149,7 +149,7 @@ def test_check_tells_of_dashpots(tmp_path):
     text = ("mesh: {cells: [1, 1, 1], size: [1, 1, 1]}\nmaterial: {model: neo-hookean, young: 1, poisson: 0, density: 1}\n"
             "interface: {law: none}\ntime: {end: 1}\nboundary: [{set: z+, dashpot: 3%s}]\n")
     case.write_text(text % "")
-    assert "boundary       dashpot on 1 m2\n" in launch("check", case).stdout
+    assert "boundary       dashpot on 1 m2, 2 faces\n" in launch("check", case).stdout
     for more, message in ((", velocity: 1", "boundary[0]: velocity and dashpot both given"), (", name: a", "boundary[0].name: not used: what leaves is `radiated` in energy.csv"),
                           (", until: 1", "boundary[0].until: not used: a side absorbs all the time")):
         case.write_text(text % more)

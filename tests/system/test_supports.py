@@ -175,7 +175,7 @@ def test_check_lists_what_supports_select(tmp_path):
     case.write_text(REFUSED.format(law="law: none", boundary="{name: a, set: z+, normal: 0}, {where: nz < -0.5, component: x, velocity: t}, "
                                    "{set: y+, direction: [1, 0, 2], displacement: 0}, {set: y-, angle: t, axis: [0, 1, 0]}, {set: x-, absorbing: true}"))
     told = [line.split(None, 1)[1] for line in launch("check", case).stdout.splitlines() if line.startswith("boundary ")]
-    assert told == ["a: normal on 1 m2", "velocity along x on 1 m2", "displacement along (1, 0, 2) on 1 m2", "angle on 1 m2", "absorbing on 1 m2"]
+    assert told == [f"{what} on 1 m2, 2 faces" for what in ("a: normal", "velocity along x", "displacement along (1, 0, 2)", "angle", "absorbing")]
 
 
 # ---- A body that turns ----

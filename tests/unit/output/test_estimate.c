@@ -285,7 +285,8 @@ static const rg_estimate plain = {.elements = 1234,
     "material       steel: 234 elements, j2\n" STEEL                                                         \
     "plastic waves  4748.6 m/s, beyond 1.75e+09 Pa in uniaxial strain\n"
 #define HELD                                                                                                 \
-    "boundary       velocity along z on 1.87e-06 m2\nboundary       displacement along y on 4.93e-06 m2\n"
+    "boundary       velocity along z on 1.87e-06 m2, 12 faces of steel\nboundary       displacement along "  \
+    "y on 4.93e-06 m2, 24 faces of glass and steel\n"
 #define STEP                                                                                                 \
     HELD "time step      1e-09 s = 0.5 of the critical 2e-09 s, set by element 77 with its faces closed\n"
 #define STEPS "steps          1001 to 1e-06 s\n"

@@ -408,12 +408,13 @@ static void check_words(void) {
         "boundary=[{set: z+, component: z, velocity: 6}, {set: y-, normal: 3}, {where: nx < -0.5, direction: "
         "[0, -3, 4], displacement: 1e-6*t}, {set: x+, angle: 2e3*t, axis: [0, 3, 4]}, {set: y+, absorbing: "
         "true}, {set: z-, dashpot: 3e6}]";
-    static const char *const words[] = {"velocity along z on 1.87e-06 m2",
-                                        "normal on 3.19e-06 m2",
-                                        "displacement along (0, -3, 4) on 4.93e-06 m2",
-                                        "angle on 4.93e-06 m2",
-                                        "absorbing on 3.19e-06 m2",
-                                        "dashpot on 1.87e-06 m2"};
+    static const char *const words[] = {
+        "velocity along z on 1.87e-06 m2, 12 faces of steel",
+        "normal on 3.19e-06 m2, 16 faces of glass and steel",
+        "displacement along (0, -3, 4) on 4.93e-06 m2, 24 faces of glass and steel",
+        "angle on 4.93e-06 m2, 24 faces of glass and steel",
+        "absorbing on 3.19e-06 m2, 16 faces of glass and steel",
+        "dashpot on 1.87e-06 m2, 12 faces of glass"};
     const char *change[] = {entries, "bodies=[]"};
     random_state r = random_state_make(2, change, MPI_COMM_WORLD);
     bool good = true;
