@@ -423,6 +423,9 @@ def test_a_run_without_stress_is_refused(run, bar):
     ({"boundary": SIDES[:2]}, 2, "start: static: what `boundary` prescribes at t = 0 does not hold the body: it can still move or turn"),
     ({"boundary": [SIDES[2], {"set": "z+", "component": "z", "displacement": 0}, {**SIDES[0], "from": 1e-9}, SIDES[1]]}, 2,
      "start: static: what `boundary` prescribes at t = 0 does not hold the body: it can still move or turn"),
+    # it can turn about the edge along z: none of the six motions by itself, but a sum of three
+    ({"boundary": [{"set": "y-", "component": "x", "displacement": 0}, {"set": "x-", "component": "y", "displacement": 0}, SIDES[2]]}, 2,
+     "start: static: what `boundary` prescribes at t = 0 does not hold the body: it can still move or turn"),
     ({"interface.form": "intrinsic", "interface.law": "xu-needleman", "interface.strength": 1e8, "interface.energy": 30}, 2,
      "start: static: needs form variational or continuous, whose forces have a potential without a history"),
     pytest.param({"material": {"model": "j2", "young": 70e9, "poisson": 0.3, "density": 2700, "yield_stress": 1e8}, "loads": [{"set": "z+", "traction": {"z": 1.01e8}}]}, 2,

@@ -2,9 +2,12 @@
  * closed form, and what becomes of the work. On any number of ranks; prints TAP from rank 0. */
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
+#include "base/mem.h"
 #include "solver/equilibrium.h"
 #include "solver/relax.h"
+#include "solver/statics.h"
 #include "solver/spectrum.h"
 #include "solver/step.h"
 #include "support/near.h"
@@ -34,6 +37,26 @@ static double farthest(const random_state *r) {
     return most;
 }
 
+/* What rounding leaves of the accelerations, without what supports take; the displacement stays. */
+static void check_rounding(rg_solver *s, const char *start) {
+    rg_statics q = rg_statics_make(s);
+    rg_real *room = rg_statics_field(&q), *change = rg_statics_field(&q), *u = rg_statics_field(&q);
+    size_t bytes = q.length * sizeof *u;
+    rg_statics_copy(&q, s->u, u);
+    double left = rg_statics_rounding(&q, room, change);
+    rg_statics_copy(&q, change, room);
+    rg_statics_hold(&q, room);
+    rg_statics_add(&q, -1, change, 1, room);
+    bool free = rg_statics_norm(&q, room) < 1e-6 * left, stays = memcmp(u, s->u, bytes) == 0;
+    rg_statics_accelerate(&q, room, true);
+    report(free && stays && left > 0 && left < 3e-14 * rg_statics_norm(&q, room), start,
+           "rounding: of what is free, a little");
+    rg_free(room);
+    rg_free(change);
+    rg_free(u);
+    rg_statics_free(&q);
+}
+
 static void check(const char *start, bool damped) {
     const char *change[] = {
         start,
@@ -61,6 +84,7 @@ static void check(const char *start, bool damped) {
     report(near(s->relaxed.work, damped ? work : 0, 1e-7 * work) &&
                near(s->relaxed.heat, damped ? work / 2 : 0, 1e-14 * work),
            start, "work and heat");
+    check_rounding(s, start);
     random_state_free(&r);
 }
 
