@@ -138,13 +138,21 @@ static void drift(relaxing *r, bool measured) {
 }
 
 _Noreturn static void refuse(relaxing *r, int64_t steps) {
-    double rounding = isfinite(r->residual) ? rg_statics_rounding(&r->on, r->now, r->load) : 0;
+    const char *path = r->on.solver->input->path;
+    if (!isfinite(r->residual)) {
+        rg_speak(r->on.solver->comm);
+        rg_fatal(RG_FAILURE,
+                 "%s: start: relax: forces are not finite after %" PRId64
+                 " steps: the solid does not bear the loads",
+                 path, steps);
+    }
+    double rounding = rg_statics_rounding(&r->on, r->now, r->load);
     rg_speak(r->on.solver->comm);
     rg_fatal(RG_FAILURE,
              "%s: start: relax: the residual is %.3g of the loads after %" PRId64
              " steps, more than relax.tolerance: more relax.steps, or the loads do not balance (rounding of "
              "the displacement leaves %.1g)",
-             r->on.solver->input->path, r->residual / r->scale, steps, rounding / r->scale);
+             path, r->residual / r->scale, steps, rounding / r->scale);
 }
 
 static relaxing make(rg_solver *s) {
@@ -175,7 +183,7 @@ rg_equilibrium rg_relax(rg_solver *s, FILE *out) {
     r.loads = fmax(r.loads, RG_STATICS_FIRST * r.scale);
     set_out(&r);
     int64_t steps = 0;
-    while (r.residual > c->relax.tolerance * r.scale) {
+    while (!(isfinite(r.residual) && r.residual <= c->relax.tolerance * r.scale)) {
         if (steps >= c->relax.steps || !isfinite(r.residual)) {
             refuse(&r, steps);
         }
