@@ -1,0 +1,71 @@
+"""Keys of loads, supports, cracks and starts that scripts rely on, letter by letter, and columns of history.csv by name."""
+
+import numpy as np
+import pytest
+from conftest import launch, rounding
+from test_supports import CUBE
+
+CELL, COUNT = 1e-3, 2  # cubes of 6 tetrahedra
+AREA, DENSITY = (COUNT * CELL) ** 2, 2700
+
+# What each name below does stands by `name:`, which the other lines do without.
+CASE = """
+mesh: {file: kept.h5}
+material: {model: linear-elastic, young: 70e9, poisson: 0.25, density: 2700}
+tables: {ramp: [[0, 0], [1e-6, 1]]}
+interface: {law: linear, strength: 1e12, energy: 1e9, sets: [{where: "abs(z - 1e-3) < 1e-6 && x > 1e-3", open: true}]}
+start: static
+loads: [{set: z+, traction: {z: 1e6}}, {set: hole, pressure: "2e6*exp(-t/1e-5)"}, {set: z-, force: {x: 10}}, {acceleration: {z: -9.81}},
+        {name: pull, set: z+, traction: {z: 1e6}}, {name: gas, set: hole, pressure: "2e6*exp(-t/1e-5)"}, {name: push, set: z-, force: {x: 10}},
+        {name: fall, acceleration: {z: -9.81}}, {name: rise, where: "ny > 0.5", pressure: "1e5*ramp(t)"}]
+boundary: [{set: z+, absorbing: true}, {set: s, normal: 0}, {name: roll, where: "ny < -0.5", normal: 0},
+           {name: hold, set: z-, component: z, displacement: 0, from: 0, until: 1e-6}]
+time: {end: 2e-6}
+output: {fields: [], interval: 1e-7}
+"""
+
+
+@pytest.fixture(scope="module")
+def kept(run, scratch):
+    n = COUNT + 1
+    nodes = [(i, j, k) for k in range(n) for j in range(n) for i in range(n)]
+    number = {node: m + 1 for m, node in enumerate(nodes)}
+    cells = [(i, j, k) for i in range(COUNT) for j in range(COUNT) for k in range(COUNT)]
+    text = ["*NODE", *(f"{number[x]}, " + ", ".join(repr(CELL * c) for c in x) for x in nodes), "*ELEMENT, TYPE=C3D4"]
+    elements = [[number[i + (v & 1), j + (v >> 1 & 1), k + (v >> 2 & 1)] for v in corners] for i, j, k in cells for corners in CUBE]
+    text += [", ".join(map(str, (e + 1, *corners))) for e, corners in enumerate(elements)]
+    for name, axis, at in (("z+", 2, COUNT), ("z-", 2, 0), ("hole", 0, COUNT), ("s", 0, 0)):
+        text += [f"*NSET, NSET={name}", *(str(number[x]) for x in nodes if x[axis] == at)]
+    (scratch / "kept.inp").write_text("\n".join(text) + "\n")
+    made = launch("mesh", scratch / "kept.inp", "-o", scratch / "kept.h5")
+    assert made.returncode == 0, made.stderr
+    (scratch / "kept.yaml").write_text(CASE)
+    return run(scratch / "kept.yaml")
+
+
+def test_they_do_what_they_say(kept):
+    history = kept.history
+    time = history["time"]
+    exact = rounding(1e-9, 1e-4)
+    for column, theory in (("pull_force_z", 1e6 * AREA), ("gas_force_x", -2e6 * np.exp(-time / 1e-5) * AREA), ("push_force_x", 10), ("fall_force_z", -9.81 * DENSITY * (COUNT * CELL) ** 3),
+                           ("rise_force_y", -1e5 * np.minimum(time / 1e-6, 1) * AREA)):
+        bound = 1e-3 if column in ("gas_force_x", "rise_force_y") else exact  # these follow the surface
+        assert np.abs(history[column] - theory).max() < bound * np.abs(theory).max(), column
+    assert history["hold_force_z"][0] == pytest.approx(-(2e6 * AREA), rel=1e-2)  # both tractions, and the weight
+    released = time >= 1e-6
+    assert (history["hold_force_z"][released] == 0).all() and (history["hold_force_z"][~released] != 0).all() and released.any()
+    assert kept.energy["radiated"][-1] > 0 and kept.summary["static_residual"] < rounding(1e-8, 1e-3) and kept.summary["first_fracture_time_s"] is None
+
+
+def test_columns_are_named_after_what_acts(kept):
+    for name in ("pull", "gas", "push", "fall", "rise", "roll", "hold"):
+        for column in (*(f"{kind}_{axis}" for kind in ("force", "moment") for axis in "xyz"), "work"):
+            assert f"{name}_{column}" in kept.history.dtype.names
+
+
+def test_check_tells_what_each_selects(kept, scratch):
+    told = launch("check", scratch / "kept.yaml").stdout
+    for line in ("load           traction on 4e-06 m2, 8 faces; (0, 0, 4) N at t = 0", "load           pressure on 4e-06 m2, 8 faces; (-8, 0, 0) N at t = 0",
+                 "load           force on 4e-06 m2, 8 faces; (10, 0, 0) N at t = 0", "boundary       absorbing on 4e-06 m2, 8 faces", "boundary       normal on 4e-06 m2, 8 faces",
+                 "boundary       hold: displacement along z on 4e-06 m2, 8 faces", "opening        of 2e-06 m2, 4 faces, from the start"):
+        assert f"{line}\n" in told, line
