@@ -21,7 +21,7 @@ loads: [{set: z+, traction: {z: 1e6}}, {set: hole, pressure: "2e6*exp(-t/1e-5)"}
 boundary: [{set: z+, absorbing: true}, {set: s, normal: 0}, {name: roll, where: "ny < -0.5", normal: 0},
            {name: hold, set: z-, component: z, displacement: 0, from: 0, until: 1e-6}]
 time: {end: 2e-6}
-output: {fields: [], interval: 1e-7}
+output: {fields: [], interval: 1e-7, sensors: [{name: low, set: low, values: [uz]}, {name: same, where: z < 1e-3, values: [uz]}, {name: end, set: z+, values: [uz]}]}
 """
 
 
@@ -36,6 +36,7 @@ def kept(run, scratch):
     text += [", ".join(map(str, (e + 1, *corners))) for e, corners in enumerate(elements)]
     for name, axis, at in (("z+", 2, COUNT), ("z-", 2, 0), ("hole", 0, COUNT), ("s", 0, 0)):
         text += [f"*NSET, NSET={name}", *(str(number[x]) for x in nodes if x[axis] == at)]
+    text += ["*ELSET, ELSET=low", *(str(e + 1) for e in range(len(elements)) if cells[e // len(CUBE)][2] == 0)]
     (scratch / "kept.inp").write_text("\n".join(text) + "\n")
     made = launch("mesh", scratch / "kept.inp", "-o", scratch / "kept.h5")
     assert made.returncode == 0, made.stderr
@@ -57,6 +58,12 @@ def test_they_do_what_they_say(kept):
     assert kept.energy["radiated"][-1] > 0 and kept.summary["static_residual"] < rounding(1e-8, 1e-3) and kept.summary["first_fracture_time_s"] is None
 
 
+def test_sensors_look_at_sets_of_elements_and_of_faces(kept):
+    history = kept.history
+    assert np.array_equal(history["low_uz_mean"], history["same_uz_mean"]) and history["low_uz_mean"][0] > 0
+    assert history["end_uz_mean"][0] > 2 * history["low_uz_mean"][0]
+
+
 def test_columns_are_named_after_what_acts(kept):
     for name in ("pull", "gas", "push", "fall", "rise", "roll", "hold"):
         for column in (*(f"{kind}_{axis}" for kind in ("force", "moment") for axis in "xyz"), "work"):
@@ -67,5 +74,30 @@ def test_check_tells_what_each_selects(kept, scratch):
     told = launch("check", scratch / "kept.yaml").stdout
     for line in ("load           traction on 4e-06 m2, 8 faces; (0, 0, 4) N at t = 0", "load           pressure on 4e-06 m2, 8 faces; (-8, 0, 0) N at t = 0",
                  "load           force on 4e-06 m2, 8 faces; (10, 0, 0) N at t = 0", "boundary       absorbing on 4e-06 m2, 8 faces", "boundary       normal on 4e-06 m2, 8 faces",
-                 "boundary       hold: displacement along z on 4e-06 m2, 8 faces", "opening        of 2e-06 m2, 4 faces, from the start"):
+                 "sensor         low: 4e-09 m3", "sensor         end: 4e-06 m2", "boundary       hold: displacement along z on 4e-06 m2, 8 faces", "opening        of 2e-06 m2, 4 faces, from the start"):
         assert f"{line}\n" in told, line
+
+
+NOTHING = "no face of the surface is in it, where: z > 7"
+
+
+@pytest.mark.parametrize("change, message", [
+    *((f"loads=[{{where: z > 7, {load}}}]", f"loads[0]: {NOTHING}") for load in ("traction: {z: 1}", "pressure: 1", "force: {x: 10}", "foundation: 1")),
+    *((f"loads=[{{where: z > 7, {load}}}]", "loads[0]: no element is in it, where: z > 7") for load in ("acceleration: {z: 1}", "centrifugal: {speed: 1, axis: [0, 0, 1]}")),
+    ("loads=[{cracks: true, where: z > 7, pressure: 1}]", "loads[0]: no face between elements is in it, where: z > 7"),
+    *((f"boundary=[{{where: z > 7, {support}}}]", f"boundary[0]: {NOTHING}")
+      for support in ("normal: 0", "absorbing: true", "dashpot: 3", "component: x, velocity: 0", "direction: [1, 1, 0], displacement: 0", "angle: t, axis: [0, 0, 1]")),
+    ("interface.sets=[{where: z > 7, open: true}]", "interface.sets[0]: no face is in it, where: z > 7"),
+    ("interface.sets=[{where: z > 7, open: true, at: 1}]", "interface.sets[0]: no face is in it, where: z > 7"),
+    ("bodies=[{name: b, shape: none, motion: prescribed, at: [0, 0, 0], tied_where: z > 7}]", f"bodies[0]: {NOTHING}"),
+    ("initial={sets: [{where: z > 7, velocity: {x: 1}}]}", "initial.sets[0]: no element is in it, or later sets have them all"),
+    ("output={sensors: [{name: a, where: z > 7, values: [ux]}]}", "output.sensors[0]: no element is in it"),
+    ("output={sensors: [{name: a, where: nz > 7, values: [ux]}]}", "output.sensors[0]: no face of the surface is in it, where: nz > 7"),
+    ("output={crack_tips: [{name: a, direction: [1, 0, 0], where: z > 7}]}", "output.crack_tips[0]: no face between elements is in it, where: z > 7"),
+    ("output={probes: [{name: a, at: [0, 0, 7]}]}", "output.probes[0].at[2]: 7: outside the box")])
+def test_what_selects_nothing_is_refused(tmp_path, change, message):
+    case = tmp_path / "nothing.yaml"
+    case.write_text("mesh: {cells: [1, 1, 2], size: [1, 1, 2]}\nmaterial: {model: neo-hookean, young: 1, poisson: 0, density: 1}\n"
+                    "interface: {law: linear, strength: 1, energy: 1}\ntime: {end: 1}\n")
+    told = launch("check", case, "--set", change)
+    assert told.returncode == 2 and message in told.stderr, told.stderr

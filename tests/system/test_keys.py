@@ -229,7 +229,7 @@ def uses(node, path=""):
 
 def test_each_key_of_loads_and_supports_is_in_an_example():
     """Of vectors and tensors one component; not sets, which need a mesh file where no side of a box is meant."""
-    groups = ("start", "relax", "tables", "loads", "boundary", "initial", "interface.sets[].open", "interface.sets[].at", "output.probes", "output.sensors", "output.crack_tips", "output.crack_fronts")
+    groups = ("start", "relax", "tables", "loads", "boundary", "initial", "interface.sets[].open", "interface.sets[].at", "bodies[].tied", "output.probes", "output.sensors", "output.crack_tips", "output.crack_fronts")
     keys = [line.split("`")[1] for line in said("--markdown").splitlines() if line.startswith("| `")]
     def whole(key):
         return re.sub(r"\.([xyz]|[xyz]{2})$", "", key)
