@@ -15,7 +15,7 @@ typedef struct {
 } loops;
 
 static const loops all_loops[] = {
-#ifdef __x86_64__
+#ifdef RG_X86
     {"x86-64-v4", bench_peak_v4, bench_triad_v4},
     {"x86-64-v3", bench_peak_v3, bench_triad_v3},
     {"x86-64-v2", bench_peak_v2, bench_triad_v2},

@@ -12,6 +12,7 @@
 #include "base/error.h"
 #include "base/mem.h"
 #include "support/child.h"
+#include "support/sanitized.h"
 
 enum { LARGE = 4 << 20 };
 
@@ -139,12 +140,6 @@ static void ask_to_grow(void) {
     rg_realloc(NULL, SIZE_MAX / 4, 5);
 }
 
-#ifdef __SANITIZE_ADDRESS__
-enum { REFUSES_BY_ITSELF = 1 }; /* the sanitizer, sizes such as these */
-#else
-enum { REFUSES_BY_ITSELF = 0 };
-#endif
-
 static void test_too_much(void **state) {
     (void)state;
     static const struct {
@@ -154,7 +149,8 @@ static void test_too_much(void **state) {
                  {ask_beyond_all_numbers, SIZE_MAX / 4, 8},
                  {ask_sparse, SIZE_MAX / 8, 2},
                  {ask_to_grow, SIZE_MAX / 4, 5}};
-    for (size_t i = 0; i < sizeof cases / sizeof *cases && !REFUSES_BY_ITSELF; i++) {
+    for (size_t i = 0; i < sizeof cases / sizeof *cases && !RG_SANITIZED;
+         i++) { /* which refuses such sizes by itself */
         char said[300], expected[300];
         snprintf(expected, sizeof expected, "rhegma: out of memory: %zu items of %zu bytes\n", cases[i].count,
                  cases[i].size);

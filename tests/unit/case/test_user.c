@@ -21,6 +21,7 @@ static char opened[200];
 
 void *__wrap_dlopen(const char *file, int mode);
 void *__wrap_dlsym(void *handle, const char *symbol);
+void *__real_dlsym(void *handle, const char *symbol);
 char *__wrap_dlerror(void);
 
 void *__wrap_dlopen(const char *file, int mode) {
@@ -30,7 +31,8 @@ void *__wrap_dlopen(const char *file, int mode) {
 }
 
 void *__wrap_dlsym(void *handle, const char *symbol) {
-    assert_ptr_equal(handle, &library);
+    if (handle != &library) /* asked by the run time of a sanitizer */
+        return __real_dlsym(handle, symbol);
     assert_string_equal(symbol, "rg_user_here");
     return without_symbol ? NULL : handle;
 }
