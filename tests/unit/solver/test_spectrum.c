@@ -81,18 +81,30 @@ static void set_faces(twin *w, int state, double stiffest) {
     rg_free(scale);
 }
 
-/* a . M b over all elements. */
-static double product(const twin *w, const double *a, const double *b) {
-    double sum = 0;
+/* out = M q, 0 where there is no element. */
+static void inertia(const twin *w, const double *q, double *out) {
+    memset(out, 0, w->blocks * RG_NODE_BLOCK * sizeof *out);
     for (size_t k = 0; k < w->elements * RG_NODES * RG_NODES; k++) {
         size_t e = k / (RG_NODES * RG_NODES), s = w->slot[e];
         int i = (int)(k % (RG_NODES * RG_NODES)) / RG_NODES, j = (int)(k % RG_NODES);
         double mass =
             w->material[w->of[e]].density * w->geom[rg_geom_index(s, RG_GEOM_VOLUME)] * w->mass[i][j];
         for (int c = 0; c < 3; c++)
-            sum += mass * a[rg_node_index(s, i, c)] * b[rg_node_index(s, j, c)];
+            out[rg_node_index(s, i, c)] += mass * q[rg_node_index(s, j, c)];
     }
+}
+
+static double dot(const twin *w, const double *a, const double *b) {
+    double sum = 0;
+    for (size_t k = 0; k < w->blocks * RG_NODE_BLOCK; k++)
+        sum += a[k] * b[k];
     return sum;
+}
+
+/* sqrt(q . M q); leaves M q in `work`. */
+static double norm_of(const twin *w, const double *q, double *work) {
+    inertia(w, q, work);
+    return sqrt(dot(w, q, work));
 }
 
 /* out = M^-1 K q of the linear operator. */
@@ -142,28 +154,31 @@ static double top_of(int n, const double *alpha, const double *beta, double *y) 
  * element with the most of its vector. Elements that are `held` (NULL: none) stay at rest. */
 static double largest_eigenvalue(twin *w, const bool *held, rg_gid *element) {
     size_t values = w->blocks * RG_NODE_BLOCK;
-    double *q = RG_NEW(double, (VECTORS + 1) * values), alpha[VECTORS], beta[VECTORS], y[VECTORS], most = 0;
+    double *q = RG_NEW(double, (VECTORS + 2) * values), *work = q + (VECTORS + 1) * values;
+    double alpha[VECTORS], beta[VECTORS], y[VECTORS], most = 0;
     int n = 0;
     for (size_t k = 0; k < RG_NODES * w->elements; k++)
         for (int c = 0; c < 3; c++) /* copies of a shared node alike */
             q[rg_node_index(w->slot[k / RG_NODES], (int)(k % RG_NODES), c)] =
                 rg_hash_uniform(rg_hash(rg_hash(1, w->node[k]), (uint64_t)c)) - 0.5;
     hold(w, held, q);
-    double norm = sqrt(product(w, q, q));
+    double norm = norm_of(w, q, work);
     for (size_t k = 0; k < values; k++)
         q[k] /= norm;
     while (n < VECTORS) {
         double *own = q + (size_t)n * values, *next = own + values;
         apply(w, own, next);
         hold(w, held, next);
-        alpha[n] = product(w, own, next);
-        for (int pass = 0; pass < 2; pass++)
+        for (int pass = 0; pass < 2; pass++) { /* of Gram and Schmidt, as they wrote it: two are enough */
+            inertia(w, next, work);
+            alpha[n] = pass == 0 ? dot(w, own, work) : alpha[n];
             for (int j = 0; j <= n; j++) {
-                double share = product(w, q + (size_t)j * values, next);
+                double share = dot(w, q + (size_t)j * values, work);
                 for (size_t k = 0; k < values; k++)
                     next[k] -= share * q[(size_t)j * values + k];
             }
-        beta[n] = sqrt(product(w, next, next));
+        }
+        beta[n] = norm_of(w, next, work);
         for (size_t k = 0; k < values; k++)
             next[k] /= beta[n];
         n++;
@@ -190,14 +205,14 @@ static double largest_eigenvalue(twin *w, const bool *held, rg_gid *element) {
 static void growth_of(twin *w, double *largest, double *mean) {
     enum { STEPS = 120 };
     size_t values = w->blocks * RG_NODE_BLOCK;
-    double *q = RG_NEW(double, 2 * values), sum = 0;
+    double *q = RG_NEW(double, 3 * values), *work = q + 2 * values, sum = 0;
     for (size_t k = 0; k < 3 * RG_NODES * w->elements; k++)
         q[rg_node_index(w->slot[k / (3 * RG_NODES)], (int)(k / 3) % RG_NODES, (int)k % 3)] =
             rg_hash_uniform(rg_hash(1, k)) - 0.5;
     *largest = 0;
     for (int step = 0; step < STEPS; step++) {
         apply(w, q, q + values);
-        double growth = sqrt(product(w, q + values, q + values) / product(w, q, q));
+        double growth = norm_of(w, q + values, work) / norm_of(w, q, work);
         for (size_t k = 0; k < values; k++)
             q[k] = q[values + k] / growth;
         *largest = step >= STEPS / 2 ? fmax(*largest, growth) : 0;
