@@ -143,11 +143,16 @@ class FakeBench:
         return good, 1.0, "" if good else self.words
 
 
-def planted(tmp_path, **of_bench):
-    """What becomes of the fault in such a tree, tried twice; and the bench."""
+def script():
     loader = importlib.machinery.SourceFileLoader("mutate", str(ROOT / "tests" / "mutate"))
     mutate = importlib.util.module_from_spec(importlib.util.spec_from_loader("mutate", loader))
     loader.exec_module(mutate)
+    return mutate
+
+
+def planted(tmp_path, **of_bench):
+    """What becomes of the fault in such a tree, tried twice; and the bench."""
+    mutate = script()
     (tmp_path / "src").mkdir()
     (tmp_path / "src/a.c").write_text("{\n    b = a + c;\n}\n")
     campaign, bench = mutate.Campaign(tmp_path / "none", {}, {}), FakeBench(tmp_path, **of_bench)
@@ -169,6 +174,20 @@ def test_a_test_that_takes_too_long_without_a_fault_kills_none(tmp_path):
     (tmp_path / "busy").mkdir()
     results, bench = planted(tmp_path / "busy", words="too long", busy=True)
     assert results == 2 * [("survived", "")]
+
+
+def test_each_test_is_timed_once_and_one_that_fails_is_left_out(tmp_path, capsys):
+    mutate, benches = script(), [FakeBench(tmp_path, words="no"), FakeBench(tmp_path, words="no")]
+    (tmp_path / "src").mkdir()
+    (tmp_path / "src/a.c").write_text("b = a + c;\n")
+    for bench in benches:
+        bench.programs, bench.files = {"known": "", "broken": ""}, {"sees": ""}
+    (tmp_path / "times").write_text('{"known": 7}')
+    campaign = mutate.Campaign(tmp_path / "none", {}, {})
+    assert mutate.baseline(benches, campaign, tmp_path / "times") == {"broken"}
+    assert campaign.times == {"known": 7, "sees": 1.0}
+    assert sorted(benches[0].runs + benches[1].runs) == ["broken", "sees"]
+    assert capsys.readouterr().out == "left out  broken: fails without a fault: no\n"
 
 
 def test_shares_add_up():
