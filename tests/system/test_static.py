@@ -52,6 +52,17 @@ def test_a_bar_hangs_at_rest(run, figure, bar, form):
     assert hold[10] == pytest.approx(-area * a, rel=rounding(1e-6, 1e-2)) and hold[-1] == pytest.approx(hold[10], rel=rounding(1e-6, 1e-2))
 
 
+def test_the_search_is_told_step_by_step(bar, tmp_path):
+    """Each of Newton's; the last is what the summary has."""
+    told = launch("run", bar, "-o", tmp_path / "out", *overrides({"loads": [{"set": "z+", "traction": {"z": 1e6}}], "time.steps": 1}))
+    assert told.returncode == 0, told.stderr
+    rows = re.findall(r"static start   residual (\S+) of the loads after (\d+) passes\n", told.stdout)
+    share, passes = [float(row[0]) for row in rows], [int(row[1]) for row in rows]
+    summary = json.loads((tmp_path / "out/summary.json").read_text())
+    assert len(rows) >= 2 - SINGLE and share == sorted(share, reverse=True) and passes == sorted(set(passes))
+    assert share[-1] == pytest.approx(summary["static_residual"], rel=0.05) and passes[-1] == summary["static_passes"]
+
+
 @pytest.mark.skipif(SINGLE, reason="a deflection of 60 elements leaves too little of strains in floats")
 @pytest.mark.parametrize("across, steps", [(4, 200), (6, 1000)])
 def test_a_cantilever_bends(run, figure, bar, across, steps):
