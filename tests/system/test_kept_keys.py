@@ -70,6 +70,32 @@ def test_columns_are_named_after_what_acts(kept):
             assert f"{name}_{column}" in kept.history.dtype.names
 
 
+PARTED = """
+mesh: {file: kept.h5}
+material: {model: linear-elastic, young: 70e9, poisson: 0.25, density: 2700}
+materials: [{name: lower, set: low, model: linear-elastic, young: 70e9, poisson: 0.25, density: 5000}]
+interface: {law: linear, strength: 1e12, energy: 1e9, sets: [{between: [lower, material], open: true}]}
+initial: {velocity: {z: 1}, sets: [{set: low, velocity: {x: 3, z: -1}}]}
+time: {end: 1, steps: 20}
+output: {fields: [], interval: 10}
+"""
+
+
+def test_a_set_of_elements_that_moves_and_is_cut_off(kept, run, scratch):
+    """Initial values by a named set of elements; faces between two materials are open: the halves part as two bodies."""
+    path = scratch / "parted.yaml"
+    path.write_text(PARTED)
+    cut, glued = run(path), run(path, sets={"interface.sets": []})
+    half, energy = (COUNT * CELL) ** 3 / 2, cut.energy
+    assert energy["momentum_x"][0] == pytest.approx(3 * 5000 * half, rel=rounding(1e-12, 1e-5)) and energy["momentum_z"][0] == pytest.approx((2700 - 5000) * half, rel=rounding(1e-12, 1e-5))
+    stored = energy["bulk"] + energy["penalty"]
+    assert stored.max() < rounding(1e-20, 1e-8) * energy["kinetic"][0] and glued.energy["bulk"].max() > 0.01 * energy["kinetic"][0]
+    assert run(path, sets={"interface.sets": [{"where": "abs(z - 1e-3) < 1e-9", "open": True}]}).summary["state_hash"] == cut.summary["state_hash"]
+    assert "opening        of 4e-06 m2, 8 faces, from the start\n" in launch("check", path).stdout
+    told = launch("check", path, "--set", "initial.sets=[{set: lo, velocity: {x: 1}}]")
+    assert told.returncode == 2 and "initial.sets[0].set: lo: " in told.stderr and "low" in told.stderr
+
+
 def test_check_tells_what_each_selects(kept, scratch):
     told = launch("check", scratch / "kept.yaml").stdout
     for line in ("load           traction on 4e-06 m2, 8 faces; (0, 0, 4) N at t = 0", "load           pressure on 4e-06 m2, 8 faces; (-8, 0, 0) N at t = 0",
