@@ -36,6 +36,13 @@ def test_what_unloads_to_the_origin_is_drawn_so(laws):
     assert down == pytest.approx([0.5 * curves.STRENGTH, 0.25 * curves.STRENGTH, 0.25 * curves.STRENGTH], rel=1e-12)
 
 
+def test_what_c_has_and_the_script_has_not_is_noticed(monkeypatch):
+    """A field more, which would be read from beyond the end."""
+    monkeypatch.setattr(curves, "TABLE", curves.TABLE.replace("sizeof(rg_law_query)", "sizeof(rg_law_query) + 8"))
+    with pytest.raises(SystemExit, match="Query is not what C has"):
+        curves.Laws()
+
+
 def test_picture_is_drawn(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr("sys.argv", ["curves", "--out", str(tmp_path / "curves.png")])
     curves.main()
