@@ -37,7 +37,6 @@ typedef struct {
 /* A value of a sensor: what all its measures follow from. */
 typedef struct {
     int sensor, value;
-    double weight; /* volume or area of the part (m^3, m^2) */
 } quantity;
 
 typedef struct {
@@ -52,6 +51,7 @@ struct rg_sensors {
     quantity *quantity; /* of all sensors, one after the other */
     int *first;         /* [count + 1]: that of each */
     bool *on_faces;     /* [count] */
+    rg_selected *on;    /* [count]: volume or area of the part, and of what */
     size_t *tile_begin; /* entries of tile t, ascending by slot: from tile_begin[t] on */
     entry *entry;
     rg_exact_sum *now;    /* [threads][quantities]: of the present state */
@@ -203,7 +203,7 @@ const double *rg_sensors_collect(rg_sensors *r) {
     for (int i = 0; i < all; i++) {
         const quantity *q = &r->quantity[i % r->quantities];
         double sum = rg_exact_value(&r->sum[i]);
-        const double is[RG_SENSOR_MEASURES] = {[RG_SENSOR_MEAN] = sum / q->weight,
+        const double is[RG_SENSOR_MEASURES] = {[RG_SENSOR_MEAN] = sum / r->on[q->sensor].size,
                                                [RG_SENSOR_MIN] = -r->least[i],
                                                [RG_SENSOR_MAX] = r->most[i],
                                                [RG_SENSOR_INTEGRAL] = sum};
@@ -304,6 +304,7 @@ static void list_all(rg_sensors *r, const rg_solver *s) {
     uint8_t **on = RG_NEW(uint8_t *, (size_t)r->count + 1);
     for (int i = 0; i < r->count; i++) {
         on[i] = parts_of(r, s, i);
+        r->on[i] = rg_selection_measure(on[i], !r->on_faces[i], s->input, d, s->comm);
     }
     for (int pass = 0; pass < 2; pass++) {
         for (size_t t = 0, n = 0; t < d->tiles; t++) {
@@ -320,19 +321,6 @@ static void list_all(rg_sensors *r, const rg_solver *s) {
     rg_free(on);
 }
 
-/* Volumes and areas, exact: the same on any ranks. */
-static void weigh(rg_sensors *r) {
-    rg_exact_sum *sum = RG_NEW(rg_exact_sum, (size_t)r->count + 1);
-    for (size_t n = 0; n < r->tile_begin[r->domain->tiles]; n++) {
-        rg_exact_add(&sum[r->entry[n].sensor], measure_of(r->domain, &r->entry[n]));
-    }
-    rg_exact_allreduce(sum, r->count, r->comm);
-    for (int k = 0; k < r->quantities; k++) {
-        r->quantity[k].weight = rg_exact_value(&sum[r->quantity[k].sensor]);
-    }
-    rg_free(sum);
-}
-
 static void list_quantities(rg_sensors *r) {
     r->quantity = RG_NEW(quantity, (size_t)(r->count * RG_SENSOR_VALUES) + 1);
     for (int i = 0; i < r->count; i++) {
@@ -340,7 +328,7 @@ static void list_quantities(rg_sensors *r) {
         r->first[i] = r->quantities;
         for (int v = 0; v < RG_SENSOR_VALUES; v++) {
             if ((in->values >> v & 1) != 0) {
-                r->quantity[r->quantities++] = (quantity){i, v, 0};
+                r->quantity[r->quantities++] = (quantity){i, v};
                 for (int m = 0; m < RG_SENSOR_MEASURES; m++) {
                     r->columns += (in->measures >> m & 1) != 0;
                 }
@@ -360,10 +348,10 @@ rg_sensors *rg_sensors_make(const rg_solver *s) {
                       .threads = s->threads,
                       .first = RG_NEW(int, (size_t)count + 1),
                       .on_faces = RG_NEW(bool, (size_t)count + 1),
+                      .on = RG_NEW(rg_selected, (size_t)count + 1),
                       .tile_begin = RG_NEW(size_t, s->domain->tiles + 1)};
     list_quantities(r);
     list_all(r, s);
-    weigh(r);
     return r;
 }
 
@@ -397,15 +385,16 @@ void rg_sensors_header(const rg_sensors *r, FILE *out) {
 
 void rg_sensors_print(const rg_sensors *r, FILE *out) {
     for (int i = 0; i < r->count; i++) {
-        fprintf(out, "sensor         %s: %.4g %s\n", r->input->output.sensor[i].name,
-                r->quantity[r->first[i]].weight, r->on_faces[i] ? "m2" : "m3");
+        char on[200];
+        rg_selected_tell(&r->on[i], !r->on_faces[i], on, sizeof on);
+        fprintf(out, "sensor         %s: %s\n", r->input->output.sensor[i].name, on);
     }
 }
 
 void rg_sensors_free(rg_sensors *r) {
     if (r != NULL) {
-        void *blocks[] = {r->quantity, r->first, r->on_faces, r->tile_begin, r->entry, r->now,
-                          r->end,      r->sum,   r->least,    r->most,       r->row,   r};
+        void *blocks[] = {r->quantity, r->first, r->on_faces, r->on,   r->tile_begin, r->entry, r->now,
+                          r->end,      r->sum,   r->least,    r->most, r->row,        r};
         for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) {
             rg_free(blocks[i]);
         }

@@ -264,7 +264,7 @@ static void print_others(const rg_solver *s, FILE *out) {
 static void print_body(const rg_solver *s, int i, FILE *out) {
     const rg_body *b = &s->bodies->body[i];
     const double *moment = b->inertia.moment;
-    char tied[40];
+    char tied[300];
     rg_ties_describe(s->ties, i, tied, sizeof tied);
     if (!b->turns && tied[0] == '\0') {
         return;

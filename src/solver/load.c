@@ -483,21 +483,19 @@ static void describe_force(const load *l, char *words, size_t size) {
 void rg_loads_describe(const rg_loads *all, int i, char *words, size_t size) {
     const load *l = &all->load[i];
     const char *what = key[l->input->kind];
-    int64_t count = l->on.count / (l->input->cracks ? 2 : 1);
-    const char *end = count == 1 ? "" : "s";
-    char force[100];
-    describe_force(l, force, sizeof force);
-    if (l->input->cracks) {
-        snprintf(words, size, "%s in cracks, on at most %.4g m2 of each side, %" PRId64 " face%s%s%s", what,
-                 l->on.size / 2, count, end, l->on.of, force);
-    } else if (!is_body_force(l)) {
-        snprintf(words, size, "%s on %.4g m2, %" PRId64 " face%s%s%s", what, l->on.size, count, end, l->on.of,
-                 force);
-    } else {
-        snprintf(words, size, "%s of %s, %.4g m3, %" PRId64 " element%s%s%s", what,
-                 l->input->where == NULL ? "the body" : "a part of it", l->on.size, count, end, l->on.of,
-                 force);
+    rg_selected part = l->on;
+    if (l->input->cracks) { /* of one side */
+        part.count /= 2;
+        part.size /= 2;
     }
+    char on[200], force[100];
+    rg_selected_tell(&part, is_body_force(l), on, sizeof on);
+    describe_force(l, force, sizeof force);
+    const char *where = l->input->cracks          ? "in cracks, on each side on at most"
+                        : !is_body_force(l)       ? "on"
+                        : l->input->where == NULL ? "of the body,"
+                                                  : "of a part of it,";
+    snprintf(words, size, "%s %s %s%s", what, where, on, force);
 }
 
 bool rg_loads_told(const rg_loads *all, char *words, size_t size) {

@@ -1,5 +1,6 @@
 #include "solver/selection.h"
 
+#include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -133,4 +134,9 @@ rg_selected rg_selection_measure(const uint8_t *on, bool whole, const rg_case *c
     name_materials(there, c, s.of, sizeof s.of);
     rg_free(there);
     return s;
+}
+
+void rg_selected_tell(const rg_selected *s, bool whole, char *words, size_t size) {
+    snprintf(words, size, "%.4g m%c, %" PRId64 " %s%s%s", s->size, whole ? '3' : '2', s->count,
+             whole ? "element" : "face", s->count == 1 ? "" : "s", s->of);
 }

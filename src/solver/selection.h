@@ -33,4 +33,7 @@ typedef struct {
 rg_selected rg_selection_measure(const uint8_t *on, bool whole, const rg_case *c, const rg_domain *d,
                                  MPI_Comm comm);
 
+/* Writes "0.01 m2, 8 faces of glass", or of `whole` elements "1e-9 m3, 1 element". */
+void rg_selected_tell(const rg_selected *s, bool whole, char *words, size_t size);
+
 #endif

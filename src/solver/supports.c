@@ -105,9 +105,9 @@ void rg_supports_describe(const rg_supports *s, int b, char *words, size_t size)
         snprintf(along, sizeof along, " along (%g, %g, %g)", of->direction[0], of->direction[1],
                  of->direction[2]);
     }
-    const rg_selected *on = &s->on[b];
-    snprintf(words, size, "%s%s on %.4g m2, %" PRId64 " face%s%s", what, along, on->size, on->count,
-             on->count == 1 ? "" : "s", on->of);
+    char on[200];
+    rg_selected_tell(&s->on[b], false, on, sizeof on);
+    snprintf(words, size, "%s%s on %s", what, along, on);
 }
 
 /* ---- Set-up ---- */

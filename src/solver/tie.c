@@ -32,7 +32,7 @@ struct rg_ties {
     rg_patterns patterns;
     size_t entries, *tile_begin;
     entry *entry;
-    double *area;      /* [bodies]: of the faces tied to each (m^2) */
+    rg_selected *on;   /* [bodies]: the faces tied to each */
     rg_exact_sum *sum; /* [threads][bodies][SUMS] */
 
     /* Of bodies that are tied from a time on; NULL if there are none. */
@@ -316,7 +316,9 @@ void rg_ties_describe(const rg_ties *t, int i, char *words, size_t size) {
         snprintf(until, sizeof until, " until %g s", in->tied_until);
     }
     if (rg_body_is_tied(in)) {
-        snprintf(words, size, "%.4g m2%s%s", t->area[i], from, until);
+        char on[200];
+        rg_selected_tell(&t->on[i], false, on, sizeof on);
+        snprintf(words, size, "%s%s%s", on, from, until);
     }
 }
 
@@ -344,46 +346,39 @@ void rg_ties_resume(rg_ties *t) {
     }
 }
 
-/* Adds the nodes of the selected faces to those of each element, and the area of faces not yet in `seen`. */
+/* Adds the selected faces to those of each element, and their nodes. */
 static void add_nodes(const rg_ties *t, const rg_selection *selection, const rg_case *c, const rg_part *part,
-                      uint16_t *nodes, uint8_t *seen, rg_exact_sum *area) {
+                      uint16_t *nodes, uint8_t *tied) {
     const rg_domain *d = t->domain;
     uint8_t *faces = rg_selection_faces(selection, c, d, part, t->comm);
     for (size_t n = 0; n < RG_FACES * d->blocks * RG_LANES; n++) {
         size_t slot = n / RG_FACES;
         int face = (int)(n % RG_FACES);
-        double normal[3];
-        if ((faces[slot] >> face & 1) == 0 || (seen[slot] >> face & 1) != 0) {
-            continue;
-        }
-        seen[slot] |= (uint8_t)(1u << face);
-        rg_exact_add(area, rg_surface_area(d->corner + 12 * slot, face, normal));
-        for (int a = 0; a < RG_FNODES; a++) {
+        for (int a = 0; a < RG_FNODES && (faces[slot] >> face & 1) != 0; a++) {
+            tied[slot] |= (uint8_t)(1u << face);
             nodes[slot] |= (uint16_t)(1u << rg_face_node[face][a]);
         }
     }
     rg_free(faces);
 }
 
-/* Bits of the nodes of each element that are tied to body i; adds the area of the faces. */
+/* Bits of the nodes of each element that are tied to body i. */
 static uint16_t *nodes_of(rg_ties *t, int i, const rg_case *c, const rg_part *part, rg_assembly *shared) {
     size_t slots = t->domain->blocks * RG_LANES;
     uint16_t *nodes = RG_NEW(uint16_t, slots + 1);
-    uint8_t *seen = RG_NEW(uint8_t, slots + 1);
-    rg_exact_sum area = {0};
+    uint8_t *tied = RG_NEW(uint8_t, slots + 1);
     char list[64];
     snprintf(list, sizeof list, "bodies[%d].tied", i);
     for (int k = 0; k < c->body[i].ties; k++) {
         rg_selection selection = {list, k, c->body[i].tied[k], NULL, false};
-        add_nodes(t, &selection, c, part, nodes, seen, &area);
+        add_nodes(t, &selection, c, part, nodes, tied);
     }
     if (c->body[i].tied_where != NULL) {
         rg_selection selection = {"bodies", i, NULL, c->body[i].tied_where, false};
-        add_nodes(t, &selection, c, part, nodes, seen, &area);
+        add_nodes(t, &selection, c, part, nodes, tied);
     }
-    rg_free(seen);
-    rg_exact_allreduce(&area, 1, t->comm);
-    t->area[i] = rg_exact_value(&area);
+    t->on[i] = rg_selection_measure(tied, false, c, t->domain, t->comm);
+    rg_free(tied);
     if (shared != NULL) {
         rg_assembly_spread(shared, nodes);
     }
@@ -487,7 +482,7 @@ rg_ties *rg_ties_make(const rg_case *c, const rg_domain *d, const rg_part *part,
     if (!t->any) {
         return t;
     }
-    t->area = RG_NEW(double, (size_t)c->bodies);
+    t->on = RG_NEW(rg_selected, (size_t)c->bodies);
     t->sum = RG_NEW(rg_exact_sum, (size_t)(SUMS * c->bodies * threads));
     uint16_t **nodes = RG_NEW(uint16_t *, (size_t)c->bodies);
     for (int i = 0; i < c->bodies; i++) {
@@ -523,7 +518,7 @@ rg_ties *rg_ties_make(const rg_case *c, const rg_domain *d, const rg_part *part,
 void rg_ties_free(rg_ties *t) {
     if (t != NULL) {
         rg_patterns_clear(&t->patterns);
-        void *blocks[] = {t->tile_begin, t->entry, t->area, t->sum, t->joint, t->key, t->joining, t};
+        void *blocks[] = {t->tile_begin, t->entry, t->on, t->sum, t->joint, t->key, t->joining, t};
         for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) {
             rg_free(blocks[i]);
         }

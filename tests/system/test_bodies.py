@@ -340,9 +340,9 @@ def test_ties_that_contradict_are_refused(scratch, sets, words):
 
 def test_check_tells_what_turns():
     told = launch("check", CASES / "bounce.yaml", *overrides(TUMBLING)).stdout
-    assert "body           head: 4e-06 kg, principal moments 2.894e-12, 4.081e-12, 5.025e-12 kg m2, tied to 1e-06 m2\n" in told
+    assert "body           head: 4e-06 kg, principal moments 2.894e-12, 4.081e-12, 5.025e-12 kg m2, tied to 1e-06 m2, 8 faces\n" in told
     told = launch("check", CASES / "bounce.yaml", *overrides({**TUMBLING, "bodies": [{**HEAD, "tied_from": 1e-6, "tied_until": 2e-6}]})).stdout
-    assert "kg m2, tied to 1e-06 m2 from 1e-06 s on until 2e-06 s\n" in told
+    assert "kg m2, tied to 1e-06 m2, 8 faces from 1e-06 s on until 2e-06 s\n" in told
 
 
 # ---- the same bits on any layout ----

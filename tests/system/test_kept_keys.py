@@ -100,7 +100,7 @@ def test_check_tells_what_each_selects(kept, scratch):
     told = launch("check", scratch / "kept.yaml").stdout
     for line in ("load           traction on 4e-06 m2, 8 faces; (0, 0, 4) N at t = 0", "load           pressure on 4e-06 m2, 8 faces; (-8, 0, 0) N at t = 0",
                  "load           force on 4e-06 m2, 8 faces; (10, 0, 0) N at t = 0", "boundary       absorbing on 4e-06 m2, 8 faces", "boundary       normal on 4e-06 m2, 8 faces",
-                 "sensor         low: 4e-09 m3", "sensor         end: 4e-06 m2", "boundary       hold: displacement along z on 4e-06 m2, 8 faces", "opening        of 2e-06 m2, 4 faces, from the start"):
+                 "sensor         low: 4e-09 m3, 24 elements", "sensor         end: 4e-06 m2, 8 faces", "boundary       hold: displacement along z on 4e-06 m2, 8 faces", "opening        of 2e-06 m2, 4 faces, from the start"):
         assert f"{line}\n" in told, line
 
 

@@ -75,6 +75,13 @@ def test_pressure_enters_cracks_as_they_open(run, figure):
     figure("pressure in cracks as they open: energy error over that without", worst[1] / worst[0], bound=1.5)
 
 
+def test_check_tells_where_pressure_may_enter(tmp_path):
+    """Inside the mesh each face is counted once, with the area of one side: those of a bar of cubes across its axis."""
+    told = launch("check", example("spall.yaml"), "--set", "mesh.cells=[2,2,3]", "--set", "mesh.size=[2e-3,2e-3,3e-3]", "--set", "mesh.jitter=0",
+                  "--set", "loads=[{name: gas, cracks: true, where: 'abs(nz) > 0.9', pressure: 1e6}]").stdout
+    assert "load           gas: pressure in cracks, on each side on at most 8e-06 m2, 16 faces; (0, 0, 0) N at t = 0\n" in told
+
+
 def test_what_breaks_later_counts(run):
     """Half of the plane is open; the other half tears."""
     crack = {"where": "abs(z) < 5e-5 && abs(nz) > 0.8 && x > 0", "open": True}
@@ -147,7 +154,7 @@ def test_a_resting_crack_is_released(run, figure):
            why="the residual at which the search for the equilibrium ends")
     figure("resting crack: kinetic energy of its two waves", energy["kinetic"][-1], theory=PRESSURE**2 * 5e-5**2 * since / (8000 * 5000), bound=0.002, unit="J", relative=True)
     figure("resting crack: stress behind them", max(abs(history[f"{probe}_szz"][-1]) for probe in ("near", "far")) / PRESSURE, bound=0.15)
-    figure("resting crack: energy error", np.abs(energy["total"] - energy["total"][0]).max() / stored, bound=rounding(3e-14, 3e-6))
+    figure("resting crack: energy error", np.abs(energy["total"] - energy["total"][0]).max() / stored, bound=rounding(1.2e-14, 3e-6))
     assert not energy["broken_area"].any() and done.summary["first_fracture_time_s"] is None
     assert done.frames()[-1]["crack/time_of_failure"] == pytest.approx(energy["time"][~held][0], rel=1e-6)
 

@@ -101,7 +101,7 @@ def test_check_tells_what_sensors_look_at(tmp_path):
     case = tmp_path / "sensors.yaml"
     case.write_text(BLOCK)
     told = [line for line in launch("check", case).stdout.splitlines() if line.startswith("sensor ")]
-    assert told[0] == "sensor         all: 6e-09 m3" and told[2] == "sensor         far: 3e-06 m2" and len(told) == 5
+    assert told[0] == "sensor         all: 6e-09 m3, 36 elements of material and half" and told[2] == "sensor         far: 3e-06 m2, 6 faces of material" and len(told) == 5
 
 
 def test_strain_at_a_probe(run, scratch, figure):

@@ -290,7 +290,9 @@ static void check_words(MPI_Comm comm) {
                                                      ",a_uy_min,a_uy_integral,a_pressure_min,"
                                                      "a_pressure_integral,b_sxy_mean,b_sxy_max");
     report(good, "sensors", "only what is asked for has a column");
-    report(writes(p, rg_sensors_print, "sensor         a: 5.423e-09 m3\nsensor         b: 4.93e-06 m2\n"),
+    report(writes(p, rg_sensors_print,
+                  "sensor         a: 5.423e-09 m3, 144 elements of glass and steel\n"
+                  "sensor         b: 4.93e-06 m2, 24 faces of glass and steel\n"),
            "sensors", "tell their parts");
     rg_sensors_free(p);
     random_state_free(&r);
