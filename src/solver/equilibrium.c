@@ -25,7 +25,7 @@ static double tolerance(void) {
 
 /* Of residuals that fall no more: what rounding leaves of light loads. */
 static double rounding(void) {
-    return single ? 1e-2 : 1e-2;
+    return single ? 1e-2 : 1e-5;
 }
 
 /* How far the linear system is solved in a step of Newton's: its tangent is that of one state. */

@@ -1,6 +1,5 @@
 #include "solver/load.h"
 
-#include <inttypes.h>
 #include <math.h>
 #include <omp.h>
 #include <stdio.h>

@@ -1,6 +1,5 @@
 #include "solver/opening.h"
 
-#include <inttypes.h>
 #include <omp.h>
 #include <stdio.h>
 #include <string.h>
@@ -8,6 +7,7 @@
 #include "base/mem.h"
 #include "domain/element.h"
 #include "solver/law.h"
+#include "solver/selection.h"
 #include "solver/step.h"
 #include "solver/tile.h"
 
@@ -181,12 +181,12 @@ void rg_openings_take(rg_solver *s) {
 }
 
 void rg_opening_describe(const rg_solver *s, int set, char *words, size_t size) {
-    int64_t count = s->model->open_faces[set];
+    rg_selected on = {s->model->open_faces[set], s->model->open_area[set], ""};
     double at = s->input->interface.set[set].opens_at;
-    char when[40] = "from the start";
+    char faces[200], when[40] = "from the start";
     if (at > 0) {
         snprintf(when, sizeof when, "at %.4g s", at);
     }
-    snprintf(words, size, "of %.4g m2, %" PRId64 " face%s, %s", s->model->open_area[set], count,
-             count == 1 ? "" : "s", when);
+    rg_selected_tell(&on, false, faces, sizeof faces);
+    snprintf(words, size, "of %s, %s", faces, when);
 }

@@ -5,6 +5,7 @@
 #include <omp.h>
 #include <string.h>
 
+#include "base/hash.h"
 #include "base/mem.h"
 #include "domain/element.h"
 #include "solver/step.h"
@@ -116,9 +117,9 @@ double rg_statics_norm(const rg_statics *q, const rg_real *field) {
 
 /* Half of the last digit of a displacement, up or down by what its element, node and component say. */
 static rg_real half_digit(rg_real u, rg_gid element, size_t n) {
-    uint64_t h = ((uint64_t)element * 3 * RG_NODES + n + 1) * UINT64_C(0x9e3779b97f4a7c15);
+    uint64_t h = rg_hash(rg_hash(0, (uint64_t)element), n);
     double half = (sizeof(rg_real) < sizeof(double) ? FLT_EPSILON : DBL_EPSILON) / 2;
-    return (rg_real)(u * ((h ^ h >> 29) >> 33 & 1 ? half : -half));
+    return (rg_real)(u * ((h & 1) != 0 ? half : -half));
 }
 
 double rg_statics_rounding(rg_statics *q, rg_real *room, rg_real *change) {
