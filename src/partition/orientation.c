@@ -161,12 +161,19 @@ void rg_orientations_find(const rg_case *c, rg_part *part, MPI_Comm comm) {
     }
 }
 
-rg_material rg_material_turned(const rg_material *m, const double angles[3]) {
+rg_material rg_material_along(const rg_material *m, const double axis[3][3]) {
     rg_material turned = *m;
-    double axis[3][3];
-    if (m->model == RG_MATERIAL_ANISOTROPIC && (angles[0] != 0 || angles[1] != 0 || angles[2] != 0)) {
-        rg_stiffness_axes(angles, axis);
-        rg_stiffness_turn(turned.of.anisotropic.stiffness, (const double(*)[3])axis);
+    if (m->model == RG_MATERIAL_ANISOTROPIC) {
+        rg_stiffness_turn(turned.of.anisotropic.stiffness, axis);
     }
     return turned;
+}
+
+rg_material rg_material_turned(const rg_material *m, const double angles[3]) {
+    double axis[3][3];
+    if (angles[0] == 0 && angles[1] == 0 && angles[2] == 0) {
+        return *m;
+    }
+    rg_stiffness_axes(angles, axis);
+    return rg_material_along(m, (const double(*)[3])axis);
 }

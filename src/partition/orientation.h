@@ -14,6 +14,9 @@ bool rg_orientations_vary(const rg_case *c);
  * mesh file has no such field, or one of another shape, or with what is no number. Collective. */
 void rg_orientations_find(const rg_case *c, rg_part *part, MPI_Comm comm);
 
+/* The material with these axes, rows of unit length, in place of those of the mesh. */
+rg_material rg_material_along(const rg_material *m, const double axis[3][3]);
+
 /* The material with these Euler angles after Bunge (degrees) beside its own. */
 rg_material rg_material_turned(const rg_material *m, const double angles[3]);
 

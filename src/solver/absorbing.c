@@ -5,9 +5,9 @@
 
 #include "base/dense.h"
 #include "base/mem.h"
-#include "base/stiffness.h"
 #include "domain/element.h"
 #include "partition/material.h"
+#include "partition/orientation.h"
 #include "solver/selection.h"
 
 enum { MOST = 3 * RG_NODES }; /* damped components of an element */
@@ -313,15 +313,14 @@ static damping find_faces(const rg_case *c, const rg_domain *d, const rg_part *p
 
 /* The solid of an element along its own axes. */
 static rg_material solid_of(const rg_domain *d, const rg_material *m, size_t slot) {
-    rg_material own = *m;
     double axis[3][3];
-    for (int k = 0; d->turn != NULL && k < RG_TURN; k++) {
+    if (d->turn == NULL) {
+        return *m;
+    }
+    for (int k = 0; k < RG_TURN; k++) {
         axis[k / 3][k % 3] = d->turn[rg_turn_index(slot, k)];
     }
-    if (d->turn != NULL && m->model == RG_MATERIAL_ANISOTROPIC) {
-        rg_stiffness_turn(own.of.anisotropic.stiffness, (const double(*)[3])axis);
-    }
-    return own;
+    return rg_material_along(m, (const double(*)[3])axis);
 }
 
 static void add_side(const rg_absorbing *a, entry *e, int face, const damping *by) {

@@ -474,10 +474,8 @@ rg_ties *rg_ties_make(const rg_case *c, const rg_domain *d, const rg_part *part,
     rg_ties *t = RG_NEW(rg_ties, 1);
     *t = (rg_ties){.domain = d, .bodies = bodies, .comm = comm, .threads = threads, .patterns.mass = c->mass};
     t->tile_begin = RG_NEW(size_t, d->tiles + 1);
-    bool later = false;
     for (int i = 0; i < c->bodies; i++) {
         t->any = t->any || rg_body_is_tied(&c->body[i]);
-        later = later || c->body[i].tied_from > 0;
     }
     if (!t->any) {
         return t;
@@ -508,7 +506,7 @@ rg_ties *rg_ties_make(const rg_case *c, const rg_domain *d, const rg_part *part,
         rg_free(nodes[i]);
     }
     rg_free(nodes);
-    if (later) {
+    if (rg_case_joins(c)) {
         make_joints(t);
     }
     tell_bodies(t);

@@ -45,6 +45,15 @@ def go_on(directory, *arguments, ranks=1, threads=1, expect=0, **environment):
     return Run(directory, process)
 
 
+def gone_on_anywhere(run, case, sets, steps, directory):
+    """Of a case of so many steps: stopped on two ranks before its end, without its last checkpoint, and gone on on three."""
+    stopped = copy(run(case, ranks=2, sets={**sets, "time.steps": steps - 8}), directory)
+    checkpoints(stopped)[-1].unlink()
+    again = go_on(stopped, "--set", "time.steps=100000", ranks=3)
+    assert 0 < again.summary["restarted_from_step"] < steps - 8
+    return again
+
+
 @pytest.fixture(scope="module")
 def whole(run):
     """The run that nothing stopped."""
