@@ -75,15 +75,10 @@ void rg_surface_push(const rg_surface *s, size_t slot, int face, double force[RG
     }
 }
 
-double rg_surface_spring_value(const rg_surface *s) {
+/* By power iteration, from a vector that is no eigenvector. */
+static double largest_eigenvalue(double matrix[RG_FNODES][RG_FNODES]) {
     enum { ITERATIONS = 200 };
-    double matrix[RG_FNODES][RG_FNODES] = {{0}}, x[RG_FNODES] = {1, 2, 3, 5, 7, 11}, largest = 0;
-    for (int i = 0; i < RG_FNODES * RG_FNODES * RG_FNODES * RG_POINTS; i++) {
-        int q = i % RG_POINTS, k = i / RG_POINTS, a = k % RG_FNODES, b = k / RG_FNODES % RG_FNODES,
-            c = k / RG_FNODES / RG_FNODES;
-        matrix[a][b] += s->inverse_mass[rg_face_node[0][a]][rg_face_node[0][c]] * s->weight[q] *
-                        s->shape[q][c] * s->shape[q][b];
-    }
+    double x[RG_FNODES] = {1, 2, 3, 5, 7, 11}, largest = 0;
     for (int k = 0; k < ITERATIONS; k++) {
         double y[RG_FNODES] = {0};
         largest = 0;
@@ -100,10 +95,29 @@ double rg_surface_spring_value(const rg_surface *s) {
     return largest;
 }
 
+/* c += a b, or a b^T. */
+static void add_product(double c[RG_FNODES][RG_FNODES], double a[RG_FNODES][RG_FNODES],
+                        double b[RG_FNODES][RG_FNODES], bool transposed) {
+    for (int n = 0; n < RG_FNODES * RG_FNODES * RG_FNODES; n++) {
+        int i = n / RG_FNODES / RG_FNODES, j = n / RG_FNODES % RG_FNODES, k = n % RG_FNODES;
+        c[i][j] += a[i][k] * (transposed ? b[j][k] : b[k][j]);
+    }
+}
+
+double rg_surface_spring_value(const rg_surface *s) {
+    double matrix[RG_FNODES][RG_FNODES] = {{0}};
+    for (int i = 0; i < RG_FNODES * RG_FNODES * RG_FNODES * RG_POINTS; i++) {
+        int q = i % RG_POINTS, k = i / RG_POINTS, a = k % RG_FNODES, b = k / RG_FNODES % RG_FNODES,
+            c = k / RG_FNODES / RG_FNODES;
+        matrix[a][b] += s->inverse_mass[rg_face_node[0][a]][rg_face_node[0][c]] * s->weight[q] *
+                        s->shape[q][c] * s->shape[q][b];
+    }
+    return largest_eigenvalue(matrix);
+}
+
 double rg_surface_follower_value(const rg_surface *s) {
-    enum { ITERATIONS = 200 };
-    double G[RG_FNODES][RG_FNODES] = {{0}}, B[RG_FNODES][RG_FNODES], x[RG_FNODES] = {1, 2, 3, 5, 7, 11},
-           square = 0;
+    double G[RG_FNODES][RG_FNODES] = {{0}}, B[RG_FNODES][RG_FNODES], half[2][RG_FNODES][RG_FNODES] = {{{0}}},
+           square[RG_FNODES][RG_FNODES] = {{0}};
     for (int i = 0; i < RG_FNODES * RG_FNODES; i++) {
         int a = i / RG_FNODES, b = i % RG_FNODES;
         B[a][b] = s->inverse_mass[rg_face_node[0][a]][rg_face_node[0][b]];
@@ -111,22 +125,8 @@ double rg_surface_follower_value(const rg_surface *s) {
             G[a][b] += s->weight[q] * s->shape[q][a] * s->slope[q][0][b];
         }
     }
-    for (int k = 0; k < ITERATIONS; k++) { /* x of G B G^T B */
-        double y[4][RG_FNODES] = {{0}}, most = 0;
-        for (int n = 0; n < 4; n++) {
-            const double *from = n == 0 ? x : y[n - 1];
-            for (int i = 0; i < RG_FNODES * RG_FNODES; i++) {
-                int a = i / RG_FNODES, b = i % RG_FNODES;
-                y[n][a] += (n % 2 == 0 ? B[a][b] : n == 1 ? G[b][a] : G[a][b]) * from[b];
-            }
-        }
-        for (int a = 0; a < RG_FNODES; a++) {
-            most = fmax(most, fabs(y[3][a]));
-        }
-        square = most;
-        for (int a = 0; a < RG_FNODES; a++) {
-            x[a] = y[3][a] / most;
-        }
-    }
-    return sqrt(square);
+    add_product(half[0], G, B, false);
+    add_product(half[1], half[0], G, true);
+    add_product(square, half[1], B, false);
+    return sqrt(largest_eigenvalue(square));
 }
