@@ -83,8 +83,8 @@ ROOMS = {
               "bench/page.py"],
              """test_plot.py test_page.py test_bench_modules.py test_plot_impact.py test_studies.py test_scripts.py"""),
 }
-ELSEWHERE = ("test_count.py", "test_curves.py", "test_documents.py", "test_figures.py", "test_install.py", "test_mutate.py",
-             "test_perf.py", "test_rooms.py", "test_scaling.py", "test_validate.py")  # tests of no room here
+ELSEWHERE = ("test_count.py", "test_curves.py", "test_documents.py", "test_figures.py", "test_install.py",
+             "test_material_curves.py", "test_mutate.py", "test_perf.py", "test_rooms.py", "test_scaling.py", "test_validate.py")  # tests of no room here
 LEAST = 10  # faults of a room in a campaign: one that survives leaves 90 %
 PASSED_BY = ("src/main.c", "src/gmsh_main.c", "src/usage.c")  # the words of the command line, and nothing else
 

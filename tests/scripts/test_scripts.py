@@ -84,6 +84,14 @@ def test_ceramic_curves(tmp_path):
     assert_pictures(tmp_path, told, "ceramic-curves.png")
 
 
+@pytest.mark.skipif(SINGLE, reason="once is enough")
+def test_material_curves(tmp_path):
+    told, _ = script("bench/studies/material-curves", "neo-hookean", "viscoelastic", "--set", "young=3e9", "--out", tmp_path)
+    assert_pictures(tmp_path, told, "neo-hookean.png", "viscoelastic.png")
+    _, said = script("bench/studies/material-curves", "concrete", expect=2)
+    assert "concrete: no such solid; there are neo-hookean, " in said
+
+
 @pytest.mark.parametrize("kind", ["inp", "vtu"])
 def test_import(tmp_path, kind):
     told, _ = script("bench/studies/import", "--out", tmp_path, "--cells", 4, "--kind", kind)
