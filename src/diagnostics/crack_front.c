@@ -12,6 +12,7 @@
 #include "domain/element.h"
 #include "domain/face.h"
 #include "quadrature.h"
+#include "solver/selection.h"
 #include "solver/tile.h"
 
 /* What is summed at a front: J L; weights of the opening's points, times 1, r, r^2; apparent K of the three
@@ -31,11 +32,11 @@ static const char *const value_name[RG_FRONT_VALUES] = {
 
 typedef struct {
     const rg_crack_front_input *in;
-    double axis[3][3];          /* unit vectors: direction, normal, along the front */
-    double length;              /* under the weight (m) */
-    double plane_strain, shear; /* E/(1 - nu^2) and mu of its solid (Pa) */
-    int tip;                    /* of crack_tips that it moves with; -1: it rests */
-    int64_t elements, faces;    /* at the start, on all ranks; of faces both sides count */
+    double axis[3][3];           /* unit vectors: direction, normal, along the front */
+    double length;               /* under the weight (m) */
+    double plane_strain, shear;  /* E/(1 - nu^2) and mu of its solid (Pa) */
+    int tip;                     /* of crack_tips that it moves with; -1: it rests */
+    rg_selected elements, faces; /* at the start, on all ranks; of faces both sides count */
 } front;
 
 typedef struct {
@@ -382,7 +383,8 @@ static bool is_near(const front *f, const double *corner) {
 
 /* What is near a front at the start. */
 typedef struct {
-    int64_t elements, faces, leaves;
+    uint8_t *elements, *faces; /* bits, as in solver/selection.h */
+    int64_t leaves;
     double most[2]; /* place along the front, of either sign (m) */
     double solid[2];
 } vicinity;
@@ -411,7 +413,7 @@ static void look(const front *f, const rg_solver *s, size_t slot, vicinity *v) {
     double q[4];
     if (find_weights(f, 0, corner, q)) {
         double solid = s->domain->material[slot / RG_LANES];
-        v->elements++;
+        v->elements[slot] = 1;
         v->solid[0] = fmax(v->solid[0], -solid);
         v->solid[1] = fmax(v->solid[1], solid);
         for (int c = 0; c < 4; c++) {
@@ -428,7 +430,7 @@ static void look(const front *f, const rg_solver *s, size_t slot, vicinity *v) {
             double weight, back = behind(f, 0, corner, face, a, &weight);
             any |= back > 0 && weight > 0;
         }
-        v->faces += any;
+        v->faces[slot] |= (uint8_t)(any << face);
     }
 }
 
@@ -444,24 +446,32 @@ static bool has_gas(const rg_case *c) {
 static void survey(rg_crack_fronts *r, const rg_solver *s, int i) {
     front *f = &r->front[i];
     const unsigned by_opening = 1u << RG_FRONT_OPENING | 1u << RG_FRONT_SLIDING | 1u << RG_FRONT_TEARING;
-    vicinity v = {.most = {-DBL_MAX, -DBL_MAX}, .solid = {-DBL_MAX, -DBL_MAX}};
-    for (size_t k = 0; k < r->tile_begin[s->domain->tiles]; k++) {
+    const rg_domain *d = s->domain;
+    vicinity v = {.elements = RG_NEW(uint8_t, d->blocks * RG_LANES + 1),
+                  .faces = RG_NEW(uint8_t, d->blocks * RG_LANES + 1),
+                  .most = {-DBL_MAX, -DBL_MAX},
+                  .solid = {-DBL_MAX, -DBL_MAX}};
+    for (size_t k = 0; k < r->tile_begin[d->tiles]; k++) {
         if (r->entry[k].front == i) {
             look(f, s, (size_t)r->entry[k].slot, &v);
         }
     }
-    MPI_Allreduce(MPI_IN_PLACE, &v.elements, 3, MPI_INT64_T, MPI_SUM, r->comm);
+    f->elements = rg_selection_measure(v.elements, true, s->input, d, r->comm);
+    f->faces = rg_selection_measure(v.faces, false, s->input, d, r->comm);
+    rg_free(v.elements);
+    rg_free(v.faces);
+    MPI_Allreduce(MPI_IN_PLACE, &v.leaves, 1, MPI_INT64_T, MPI_SUM, r->comm);
     MPI_Allreduce(MPI_IN_PLACE, v.most, 4, MPI_DOUBLE, MPI_MAX, r->comm);
     if (has_gas(s->input) && (f->in->values & ~by_opening) != 0) {
         refuse(r, i, "J does not know of a pressure inside cracks; values: KI, KII, KIII");
     }
-    if (v.elements == 0) {
+    if (f->elements.count == 0) {
         refuse(r, i, "no element is within its outer radius");
     }
     if (v.leaves > 0) {
         refuse(r, i, "its outer radius passes a side of the body that is not parallel to the direction");
     }
-    if ((f->in->values & by_opening) != 0 && v.faces == 0) {
+    if ((f->in->values & by_opening) != 0 && f->faces.count == 0) {
         refuse(r, i, "no face in the plane of the crack lies between the radii behind the front");
     }
     const rg_material *m = &s->model->material[(size_t)v.solid[1]];
@@ -469,8 +479,6 @@ static void survey(rg_crack_fronts *r, const rg_solver *s, int i) {
         (v.solid[0] + v.solid[1] > 0 || m->model == RG_MATERIAL_ANISOTROPIC)) {
         refuse(r, i, "stress intensity is known in one isotropic solid only; values: [J]");
     }
-    f->elements = v.elements;
-    f->faces = v.faces;
     f->length = f->in->length > 0 ? 0.5 * f->in->length : v.most[0] + v.most[1];
     f->shear = m->mu;
     f->plane_strain = 4 * m->mu * (m->lambda + m->mu) / (m->lambda + 2 * m->mu);
@@ -564,8 +572,9 @@ void rg_crack_fronts_header(const rg_crack_fronts *r, FILE *out) {
 void rg_crack_fronts_print(const rg_crack_fronts *r, FILE *out) {
     for (int i = 0; i < r->count; i++) {
         const front *f = &r->front[i];
-        fprintf(out, "crack front    %s: %.4g m long, %lld elements, %lld sides of faces behind it\n",
-                f->in->name, f->length, (long long)f->elements, (long long)f->faces);
+        fprintf(out, "crack front    %s: %.4g m long, %lld elements%s, %lld sides of faces behind it%s\n",
+                f->in->name, f->length, (long long)f->elements.count, f->elements.of,
+                (long long)f->faces.count, f->faces.of);
     }
 }
 

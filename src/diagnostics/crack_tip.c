@@ -24,6 +24,7 @@ struct rg_crack_tips {
     MPI_Comm comm;
     int count, threads, samples;
     uint8_t **faces;    /* [count]: bits of the faces of each element that it looks at */
+    rg_selected *on;    /* [count]: these, of one side */
     double (*along)[3]; /* [count]: unit vectors */
     memory *is;         /* [count] */
     double *now;        /* [threads][count]: furthest */
@@ -134,12 +135,16 @@ rg_crack_tips *rg_crack_tips_make(const rg_solver *s) {
                          .count = count,
                          .threads = s->threads,
                          .faces = RG_NEW(uint8_t *, (size_t)count + 1),
+                         .on = RG_NEW(rg_selected, (size_t)count + 1),
                          .along = rg_alloc((size_t)count + 1, sizeof *r->along),
                          .is = RG_NEW(memory, (size_t)count + 1)};
     for (int k = 0; k < count; k++) {
         const rg_crack_tip_input *in = &s->input->output.crack_tip[k];
         rg_selection of = {"output.crack_tips", k, in->set, in->where, true};
         r->faces[k] = rg_selection_faces(&of, s->input, s->domain, s->part, s->comm);
+        r->on[k] = rg_selection_measure(r->faces[k], false, s->input, s->domain, s->comm);
+        r->on[k].count /= 2;
+        r->on[k].size /= 2;
         double length = sqrt(rg_vector_dot(in->direction, in->direction));
         for (int c = 0; c < 3; c++) {
             r->along[k][c] = in->direction[c] / length;
@@ -170,8 +175,10 @@ void rg_crack_tips_header(const rg_crack_tips *r, FILE *out) {
 
 void rg_crack_tips_print(const rg_crack_tips *r, FILE *out) {
     for (int k = 0; k < r->count; k++) {
-        fprintf(out, "crack tip      %s: along (%.4g, %.4g, %.4g)\n", r->input->output.crack_tip[k].name,
-                r->along[k][0], r->along[k][1], r->along[k][2]);
+        char on[200];
+        rg_selected_tell(&r->on[k], false, on, sizeof on);
+        fprintf(out, "crack tip      %s: along (%.4g, %.4g, %.4g), on %s\n",
+                r->input->output.crack_tip[k].name, r->along[k][0], r->along[k][1], r->along[k][2], on);
     }
 }
 
@@ -187,7 +194,7 @@ void rg_crack_tips_free(rg_crack_tips *r) {
         for (int k = 0; k < r->count; k++) {
             rg_free(r->faces[k]);
         }
-        void *blocks[] = {r->faces, r->along, r->is, r->now, r->furthest, r->row, r};
+        void *blocks[] = {r->faces, r->on, r->along, r->is, r->now, r->furthest, r->row, r};
         for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) {
             rg_free(blocks[i]);
         }

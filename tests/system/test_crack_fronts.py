@@ -3,6 +3,7 @@ layout and restarts of J: test_parallel.py, test_restart.py."""
 
 import json
 import math
+import re
 
 import numpy as np
 import pytest
@@ -198,3 +199,17 @@ def test_gas_in_cracks_is_refused(tmp_path):
 def test_check_tells_what_fronts_look_at(tmp_path):
     case = written(tmp_path / "front.yaml", {**PULLED, "output": {"crack_fronts": [{"name": "a", **MOVING, "at": [3e-3, 0, 2e-3]}]}})
     assert "crack front    a: 0.001 m long, " in launch("check", case).stdout
+
+
+def test_check_tells_of_which_materials_tips_and_fronts_are(tmp_path):
+    """A laminate along whose interface the crack lies, of one more solid far from it."""
+    material = {"model": "linear-elastic", "young": 70e9, "poisson": 0.2, "density": 2500}
+    case = {"mesh": {"cells": [6, 2, 4], "size": [6e-3, 1e-3, 4e-3]}, "material": {"name": "glass", **material},
+            "materials": [{"name": "resin", "where": "z > 2e-3", **material, "young": 3e9}, {"name": "far", "where": "x > 4.9e-3", **material}],
+            "interface": {"law": "linear", "strength": 1e8, "energy": 10}, "time": {"end": 1e-6},
+            "output": {"crack_tips": [{"name": "run", "direction": [1, 0, 0], "where": "abs(z - 2e-3) < 1e-5"}, {"name": "low", "direction": [1, 0, 0], "where": "z < 1.9e-3 && x < 4.9e-3"}],
+                       "crack_fronts": [{"name": "a", **MOVING, "at": [3e-3, 0, 2e-3], "values": ["J"]}]}}
+    told = launch("check", written(tmp_path / "laminate.yaml", case)).stdout
+    assert "crack tip      run: along (1, 0, 0), on 6e-06 m2, 24 faces of glass, resin and far\n" in told, told
+    assert re.search(r"crack tip      low: along \(1, 0, 0\), on \S+ m2, \d+ faces of glass\n", told), told
+    assert re.search(r"crack front    a: 0.001 m long, \d+ elements of glass and resin, 12 sides of faces behind it of glass and resin\n", told), told
