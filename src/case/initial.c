@@ -125,7 +125,7 @@ void rg_start_rule(const rg_entry *e) {
                           rg_input_history(rg_case_material(c, i)) > 0);
     }
     bool moves = false;
-    for (int i = 0; i < c->bodies; i++) {
+    for (int i = 0; i < c->bodies && c->start == RG_START_RELAX; i++) {
         const rg_body_input *b = &c->body[i];
         moves = moves || b->motion == RG_MOTION_FREE || (rg_body_is_tied(b) && !(b->tied_from > 0));
     }
@@ -135,7 +135,8 @@ void rg_start_rule(const rg_entry *e) {
         : form == RG_FORM_INCOMPLETE || form == RG_FORM_INTRINSIC
             ? "needs form variational or continuous, whose forces have a potential without a history"
         : flows ? "not with a user's material that has a history: whether it flows on the way is not known"
-        : moves ? "not with bodies that are free or tied: they would have to come to rest with the solid"
+        : moves ? "not with bodies that are free or tied, which its damping does not bring to rest: static "
+                  "does"
         : any_open(c) && c->interface.friction > 0
             ? "needs interface.friction 0 with open faces: where they stick would depend on the way"
             : NULL;

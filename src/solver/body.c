@@ -316,6 +316,7 @@ rg_bodies *rg_bodies_make(const rg_case *c, const rg_domain *d, const rg_part *p
     refuse_lapse(b, c);
     b->sum = RG_NEW(rg_exact_sum, (size_t)(RG_BODY_SUMS * b->count * threads));
     b->total = RG_NEW(rg_exact_sum, (size_t)(RG_BODY_SUMS * b->count));
+    b->noted = rg_alloc((size_t)b->count, sizeof *b->noted);
     b->tile_omega2 = RG_NEW(double, d->tiles + 1);
     b->touching = RG_NEW(bool *, (size_t)b->count);
     for (int i = 0; i < b->count; i++) {
@@ -335,7 +336,8 @@ void rg_bodies_free(rg_bodies *b) {
     for (int i = 0; i < b->count; i++) {
         rg_free(b->touching[i]);
     }
-    void *blocks[] = {b->body, b->tile_begin, b->face, b->touching, b->tile_omega2, b->sum, b->total, b};
+    void *blocks[] = {b->body,  b->tile_begin, b->face, b->touching, b->tile_omega2, b->sum,
+                      b->total, b->noted,      b};
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) {
         rg_free(blocks[i]);
     }

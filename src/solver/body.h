@@ -113,6 +113,7 @@ typedef struct {
     rg_exact_sum *sum;   /* [threads][count][RG_BODY_SUMS] force and moment on each body (N, N m), and what
                             exposed faces add to its squared frequency (1/s^2) */
     rg_exact_sum *total; /* [count][RG_BODY_SUMS] */
+    double (*noted)[6];  /* [count]: force and moment on each (rg_bodies_note) */
     MPI_Request request;
     rg_body_lapse lapse; /* the first; on all ranks the same */
 } rg_bodies;
@@ -137,8 +138,30 @@ double rg_body_depth(const rg_body *b, const double x[3], double normal[3]);
  * all bodies. Threads call it for different tiles. */
 void rg_bodies_touch(rg_bodies *b, size_t tile, const rg_real *u, const rg_push *push, uint8_t *clear);
 
-/* Forgets the forces since the last sum: those of a search for an equilibrium move no body. */
-void rg_bodies_forget(rg_bodies *b);
+/* Notes the force and the moment about its centre on each body since the last sum, which move none: for a
+ * search for an equilibrium. Collective. */
+void rg_bodies_note(rg_bodies *b);
+
+/* Where a body is. */
+typedef struct {
+    double x[3], rotation[4], direction[3];
+} rg_body_place;
+
+/* Places of all bodies, and from them the share of a motion [count][6], velocity and spin, of those that are
+ * free and carry something: for a search for an equilibrium. */
+void rg_bodies_places(const rg_bodies *b, rg_body_place *out);
+void rg_bodies_shift(rg_bodies *b, const rg_body_place *from, const double (*motion)[6], double share);
+
+/* Velocity and spin of what is tied to a body, by an impulse and its moment about the body's centre, as if it
+ * had no mass of its own. */
+void rg_body_carried_motion(const rg_body *b, const double impulse[6], double motion[6]);
+
+/* The angular momentum of the start, where bodies have been turned since. */
+void rg_bodies_settle(rg_bodies *b);
+
+/* Norm, in that of M^-1, of what is noted on the free bodies that nothing holds, and the one with most of it.
+ */
+double rg_bodies_unheld(const rg_bodies *b, const rg_body **which);
 
 /* Adds the contact energy of a tile's faces at displacement u (J) to `energy`. */
 void rg_bodies_energy(const rg_bodies *b, size_t tile, const rg_real *u, const uint8_t *clear,

@@ -299,11 +299,97 @@ void rg_bodies_sum(rg_bodies *b) {
     rg_exact_start_allreduce(b->total, sums, b->comm, &b->request);
 }
 
-void rg_bodies_forget(rg_bodies *b) {
-    int sums = RG_BODY_SUMS * b->count * b->threads;
-    if (sums > 0) {
-        memset(b->sum, 0, (size_t)sums * sizeof *b->sum);
+/* ---- Equilibria ---- */
+
+void rg_bodies_note(rg_bodies *b) {
+    rg_bodies_sum(b);
+    MPI_Wait(&b->request, MPI_STATUS_IGNORE);
+    for (int i = 0; i < 6 * b->count; i++) {
+        b->noted[i / 6][i % 6] = rg_exact_value(&b->total[RG_BODY_SUMS * (i / 6) + i % 6]);
     }
+}
+
+void rg_bodies_places(const rg_bodies *all, rg_body_place *out) {
+    for (int i = 0; i < all->count; i++) {
+        const rg_body *b = &all->body[i];
+        memcpy(out[i].x, b->x, sizeof b->x);
+        memcpy(out[i].rotation, b->turn.rotation, sizeof b->turn.rotation);
+        memcpy(out[i].direction, b->turn.direction, sizeof b->turn.direction);
+    }
+}
+
+void rg_bodies_shift(rg_bodies *all, const rg_body_place *from, const double (*motion)[6], double share) {
+    for (int i = 0; i < all->count; i++) {
+        rg_body *b = &all->body[i];
+        double turn[3], by[4];
+        if (b->input->motion != RG_MOTION_FREE || !b->tied.any) {
+            continue;
+        }
+        for (int c = 0; c < 3; c++) {
+            b->x[c] = from[i].x[c] + share * motion[i][c];
+            turn[c] = share * motion[i][3 + c];
+        }
+        rg_rotation_by(turn, by);
+        rg_rotation_join(by, from[i].rotation, b->turn.rotation);
+        rg_rotation_turn(by, from[i].direction, b->turn.direction);
+    }
+}
+
+/* v and w with m v + w x f = p and f x v + J w = l, by the nodes' first and second moments f and J. */
+void rg_body_carried_motion(const rg_body *b, const double impulse[6], double motion[6]) {
+    double first[3], inertia[3][3], about[9], across[3], rest[3];
+    rg_body_arm(b, b->tied.first, first);
+    tied_inertia(b, inertia);
+    double mass = b->tied.mass, square = rg_vector_dot(first, first);
+    for (int n = 0; n < 9; n++) {
+        int i = n / 3, j = n % 3;
+        about[n] = inertia[i][j] - ((i == j ? square : 0) - first[i] * first[j]) / mass;
+    }
+    rg_dense_invert(3, about);
+    rg_vector_cross(first, impulse, across);
+    for (int c = 0; c < 3; c++) {
+        rest[c] = impulse[3 + c] - across[c] / mass;
+    }
+    for (int c = 0; c < 3; c++) {
+        motion[3 + c] = rg_vector_dot(about + 3 * c, rest);
+    }
+    rg_vector_cross(motion + 3, first, across);
+    for (int c = 0; c < 3; c++) {
+        motion[c] = (impulse[c] - across[c]) / mass;
+    }
+}
+
+void rg_bodies_settle(rg_bodies *all) {
+    for (int i = 0; i < all->count; i++) {
+        rg_body *b = &all->body[i];
+        const double *q = b->turn.rotation, back[4] = {q[0], -q[1], -q[2], -q[3]};
+        double spin[3], momentum[3];
+        if (b->turns && b->input->motion == RG_MOTION_FREE) {
+            rg_rotation_turn(back, b->turn.spin, spin);
+            momentum_of(&b->inertia, spin, momentum);
+            rg_rotation_turn(q, momentum, b->turn.momentum);
+        }
+    }
+}
+
+double rg_bodies_unheld(const rg_bodies *all, const rg_body **which) {
+    double sum = 0, most = 0;
+    for (int i = 0; i < all->count; i++) {
+        const rg_body *b = &all->body[i];
+        const double *noted = all->noted[i];
+        double spin[3] = {0, 0, 0};
+        if (b->input->motion != RG_MOTION_FREE || b->tied.any) {
+            continue;
+        }
+        if (b->turns) {
+            rg_inertia_spin(&b->inertia, b->turn.rotation, noted + 3, spin);
+        }
+        double here = rg_vector_dot(noted, noted) / b->mass + rg_vector_dot(spin, noted + 3);
+        *which = here > most ? b : *which;
+        most = fmax(most, here);
+        sum += here;
+    }
+    return sqrt(sum);
 }
 
 void rg_bodies_kick(rg_bodies *all, double time, double dt_last, double dt_next) {

@@ -251,6 +251,7 @@ rg_coarse *rg_coarse_make(const rg_solver *s) {
     c->sum = RG_NEW(int64_t, (size_t)(s->threads * c->size));
     find_places(c);
     rg_constraints_show(s->constraints, leave_out, c);
+    rg_ties_show(s->ties, leave_out, c);
     MPI_Allreduce(MPI_IN_PLACE, c->out, c->size, MPI_C_BOOL, MPI_LOR, s->comm);
     make_matrix(c);
     return c;

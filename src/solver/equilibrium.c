@@ -31,14 +31,21 @@ static double rounding(void) {
 /* How far the linear system is solved in a step of Newton's: its tangent is that of one state. */
 #define EXACTNESS 1e-2
 
+/* Residual, of the loads, below which the forces on a body are near those of its equilibrium, and tell how
+ * their moments change as it turns. */
+#define BALANCED 0.1
+
 typedef struct {
     rg_statics on;
     rg_coarse *coarse;
     rg_real *start, *internal;  /* u, and the acceleration by internal forces, at the last Newton step */
     rg_real *residual, *change; /* acceleration; sum of the CG's steps */
     rg_real *search, *product, *product_force, *preconditioned;
-    double least; /* edge of the smallest element, about (m) */
-    double nudge; /* largest displacement of a difference (m) */
+    double (*pressed)[6];    /* [bodies]: force and moment of contact on each, at the last Newton step */
+    double (*fall)[6];       /* and what it falls by along `search`, with the moments of what is tied */
+    double (*turning)[3][3]; /* [bodies]: solver/tie.h */
+    double least;            /* edge of the smallest element, about (m) */
+    double nudge;            /* largest displacement of a difference (m) */
 } newton;
 
 /* ---- Supports ---- */
@@ -74,6 +81,7 @@ static bool is_held(const newton *q) {
     }
     rg_constraints_show(q->on.solver->constraints, add_line, &r);
     rg_loads_show(q->on.solver->loads, add_line, &r);
+    rg_ties_show(q->on.solver->ties, add_line, &r);
     rg_exact_allreduce(r.sum, MODES * MODES, q->on.solver->comm);
     double matrix[MODES][MODES], most = 0;
     for (int i = 0; i < MODES * MODES; i++) {
@@ -110,19 +118,29 @@ static void set_nudge(newton *q) {
 
 /* product = M^-1 K search without what is held, by a difference of internal forces. */
 static void apply_tangent(newton *q) {
-    rg_solver *s = q->on.solver;
+    const rg_bodies *bodies = q->on.solver->bodies;
     double scale = q->nudge / rg_statics_largest(&q->on, q->search);
-    rg_statics_copy(&q->on, q->start, s->u);
-    rg_statics_add(&q->on, scale, q->search, 1, s->u);
+    rg_statics_move(&q->on, q->start, scale, q->search);
     rg_statics_accelerate(&q->on, q->product, false);
+    rg_statics_return(&q->on);
     rg_statics_add(&q->on, 1 / scale, q->internal, -1 / scale, q->product);
-    rg_statics_hold(&q->on, q->product);
+    for (int i = 0; i < 6 * bodies->count; i++) {
+        q->fall[i / 6][i % 6] = (q->pressed[i / 6][i % 6] - bodies->noted[i / 6][i % 6]) / scale;
+    }
+    for (int i = 0; i < 3 * bodies->count; i++) {
+        q->fall[i / 3][3 + i % 3] += rg_vector_dot(q->turning[i / 3][i % 3], q->on.motion[i / 3] + 3);
+    }
+    rg_statics_hold(&q->on, (const double(*)[6])q->fall, q->product);
 }
 
-/* preconditioned = (1/omega^2 + P A^-1 P^T M) residual. */
+/* preconditioned = (1/omega^2 + P A^-1 P^T M) residual, as bodies let it: projected in the inner product of
+ * the mass it stays symmetric. */
 static void precondition(newton *q) {
     rg_statics_add(&q->on, 1 / q->on.solver->omega2, q->residual, 0, q->preconditioned);
     rg_coarse_correct(q->coarse, q->on.force, q->preconditioned);
+    if (rg_ties_any(q->on.solver->ties)) {
+        rg_statics_hold(&q->on, NULL, q->preconditioned);
+    }
 }
 
 /* `change` becomes what takes the residual to `goal` in its norm, about. */
@@ -156,17 +174,24 @@ static void solve(newton *q, double goal) {
 static double find_residual(newton *q, double *scale) {
     rg_statics_accelerate(&q->on, q->residual, true);
     double whole = rg_statics_norm(&q->on, q->residual);
-    rg_statics_hold(&q->on, q->residual);
+    rg_solver *s = q->on.solver;
+    if (rg_ties_any(s->ties)) {
+        rg_ties_turning(s->ties, q->residual, q->turning);
+    }
+    rg_statics_hold(&q->on, (const double(*)[6])s->bodies->noted, q->residual);
     *scale = fmax(*scale, whole);
-    return rg_statics_norm(&q->on, q->residual);
+    double left = rg_statics_norm(&q->on, q->residual);
+    if (left > BALANCED * *scale) {
+        memset(q->turning, 0, ((size_t)s->bodies->count + 1) * sizeof *q->turning);
+    }
+    return left;
 }
 
 /* A step along `change` that makes the residual smaller, if there is one; returns its norm. */
 static double step(newton *q, double before, double *scale) {
     double now = INFINITY, share = 1;
     for (int k = 0; k < HALVINGS && !(now < before); k++, share *= 0.5) {
-        rg_statics_copy(&q->on, q->start, q->on.solver->u);
-        rg_statics_add(&q->on, share, q->change, 1, q->on.solver->u);
+        rg_statics_move(&q->on, q->start, share, q->change);
         now = find_residual(q, scale);
     }
     return now;
@@ -187,6 +212,9 @@ static newton make(rg_solver *s) {
     for (size_t i = 0; i < sizeof field / sizeof *field; i++) {
         *field[i] = rg_statics_field(&q.on);
     }
+    q.pressed = rg_alloc((size_t)s->bodies->count + 1, sizeof *q.pressed);
+    q.fall = rg_alloc((size_t)s->bodies->count + 1, sizeof *q.fall);
+    q.turning = rg_alloc((size_t)s->bodies->count + 1, sizeof *q.turning);
     double least = INFINITY; /* volume */
     for (size_t slot = 0; slot < s->domain->blocks * RG_LANES; slot++) {
         least = fmin(least, s->domain->geom[rg_geom_index(slot, RG_GEOM_VOLUME)]);
@@ -197,8 +225,8 @@ static newton make(rg_solver *s) {
 }
 
 static void end(newton *q) {
-    void *blocks[] = {q->start,  q->internal, q->residual,      q->change,
-                      q->search, q->product,  q->product_force, q->preconditioned};
+    void *blocks[] = {q->start,         q->internal,       q->residual, q->change, q->search, q->product,
+                      q->product_force, q->preconditioned, q->pressed,  q->fall,   q->turning};
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) {
         rg_free(blocks[i]);
     }
@@ -212,6 +240,31 @@ static double load_norm(newton *q) {
     rg_statics_accelerate(&q->on, q->internal, false);
     rg_statics_add(&q->on, -1, q->internal, 1, q->residual);
     return rg_statics_norm(&q->on, q->residual);
+}
+
+/* At what a Newton step departs from. */
+static void depart(newton *q) {
+    const rg_bodies *bodies = q->on.solver->bodies;
+    rg_statics_depart(&q->on, q->start);
+    rg_statics_accelerate(&q->on, q->internal, false);
+    for (int i = 0; i < 6 * bodies->count; i++) {
+        q->pressed[i / 6][i % 6] = bodies->noted[i / 6][i % 6];
+    }
+    set_nudge(q);
+}
+
+/* Contact alone would have to hold a free body that carries nothing. */
+static void refuse_unheld(const newton *q, double scale) {
+    const rg_solver *s = q->on.solver;
+    const rg_body *which = NULL;
+    double left = rg_bodies_unheld(s->bodies, &which);
+    if (which != NULL && left > tolerance() * scale) {
+        rg_speak(s->comm);
+        rg_fatal(RG_USAGE,
+                 "%s: start: static: the solid at rest presses %s, a free body with nothing tied to it: only "
+                 "contact would hold it; tie it, prescribe it or leave it a gap",
+                 s->input->path, which->input->name);
+    }
 }
 
 rg_equilibrium rg_equilibrium_find(rg_solver *s, FILE *out) {
@@ -231,9 +284,7 @@ rg_equilibrium rg_equilibrium_find(rg_solver *s, FILE *out) {
             break; /* to rounding */
         }
         last = residual;
-        rg_statics_copy(&q.on, s->u, q.start);
-        rg_statics_accelerate(&q.on, q.internal, false);
-        set_nudge(&q);
+        depart(&q);
         solve(&q, fmax(EXACTNESS * residual, 0.1 * tolerance() * scale));
         scale = loads;
         residual = step(&q, residual, &scale);
@@ -242,8 +293,11 @@ rg_equilibrium rg_equilibrium_find(rg_solver *s, FILE *out) {
     if (!(residual <= rounding() * scale)) {
         refuse(&q, RG_FAILURE, "no equilibrium found");
     }
+    refuse_unheld(&q, scale);
     rg_equilibrium found = {.residual = scale > 0 ? residual / scale : 0, .passes = q.on.passes};
     end(&q);
+    rg_bodies_settle(s->bodies);
+    rg_ties_start(s->ties, s->u, s->velocity);
     rg_limits_refuse(s, "start: static");
     rg_solver_settle(s);
     return found;

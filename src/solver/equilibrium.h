@@ -5,7 +5,12 @@
  * mass, with tangents from differences of the internal forces (loads that follow the surface are held fixed
  * in them), preconditioned by the mass over the highest squared frequency and a coarse space
  * (solver/coarse.h). All sums are exact or of integers: the same bits on any ranks and threads. The cost is
- * one pass over all forces an iteration. */
+ * one pass over all forces an iteration.
+ *
+ * What is tied to a free rigid body moves as that does, six unknowns in place of its nodes': residuals and
+ * what the coarse space brings are projected on such motions in the inner product of the mass, and a step
+ * moves and turns the body, forces of contact on it among those that balance. A free body that carries
+ * nothing stays where it is, so nothing may press it. */
 #ifndef RG_EQUILIBRIUM_H
 #define RG_EQUILIBRIUM_H
 

@@ -46,7 +46,7 @@ static double stable_step(const rg_solver *s) {
 static void evaluate(relaxing *r, bool measured) {
     rg_statics_accelerate(&r->on, r->acceleration, true);
     double whole = measured ? rg_statics_norm(&r->on, r->acceleration) : 0;
-    rg_statics_hold(&r->on, r->acceleration);
+    rg_statics_hold(&r->on, NULL, r->acceleration);
     if (measured) {
         r->scale = fmax(r->loads, whole);
         r->residual = rg_statics_norm(&r->on, r->acceleration);

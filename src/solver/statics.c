@@ -17,6 +17,8 @@ rg_statics rg_statics_make(rg_solver *s) {
         q.mass[i / RG_NODES][i % RG_NODES] = rg_mass_entry(s->input->mass, i / RG_NODES, i % RG_NODES);
     }
     q.sum = RG_NEW(rg_exact_sum, (size_t)s->threads);
+    q.from = RG_NEW(rg_body_place, (size_t)s->bodies->count + 1);
+    q.motion = rg_alloc((size_t)s->bodies->count + 1, sizeof *q.motion);
     return q;
 }
 
@@ -27,6 +29,8 @@ rg_real *rg_statics_field(const rg_statics *q) {
 void rg_statics_free(rg_statics *q) {
     rg_free(q->force);
     rg_free(q->sum);
+    rg_free(q->from);
+    rg_free(q->motion);
 }
 
 void rg_statics_copy(const rg_statics *q, const rg_real *from, rg_real *to) {
@@ -43,11 +47,33 @@ void rg_statics_add(const rg_statics *q, double scale, const rg_real *from, doub
     }
 }
 
-void rg_statics_hold(const rg_statics *q, rg_real *field) {
+void rg_statics_hold(const rg_statics *q, const double (*impulse)[6], rg_real *field) {
 #pragma omp parallel for schedule(static)
     for (size_t t = 0; t < q->solver->domain->tiles; t++) {
         rg_constraints_hold(q->solver->constraints, t, field);
     }
+    rg_ties_motions(q->solver->ties, field, impulse, q->motion);
+    rg_ties_hold(q->solver->ties, (const double(*)[6])q->motion, field);
+}
+
+void rg_statics_depart(const rg_statics *q, rg_real *start) {
+    rg_statics_copy(q, q->solver->u, start);
+    rg_bodies_places(q->solver->bodies, q->from);
+}
+
+void rg_statics_move(const rg_statics *q, const rg_real *start, double share, const rg_real *change) {
+    rg_solver *s = q->solver;
+    rg_statics_copy(q, start, s->u);
+    rg_statics_add(q, share, change, 1, s->u);
+    if (rg_ties_any(s->ties)) {
+        rg_ties_motions(s->ties, change, NULL, q->motion);
+        rg_bodies_shift(s->bodies, q->from, (const double(*)[6])q->motion, share);
+        rg_ties_start(s->ties, s->u, NULL);
+    }
+}
+
+void rg_statics_return(const rg_statics *q) {
+    rg_bodies_shift(q->solver->bodies, q->from, (const double(*)[6])q->motion, 0);
 }
 
 void rg_statics_times_mass(const rg_statics *q, const rg_real *field, rg_real *out) {
@@ -134,7 +160,7 @@ double rg_statics_rounding(rg_statics *q, rg_real *room, rg_real *change) {
     rg_real *moved = RG_NEW(rg_real, q->length + 1);
     rg_statics_accelerate(q, moved, false);
     rg_statics_add(q, -1, moved, 1, change);
-    rg_statics_hold(q, change);
+    rg_statics_hold(q, NULL, change);
     rg_statics_copy(q, room, u);
     rg_free(moved);
     return 0.5 * rg_statics_norm(q, change);

@@ -9,6 +9,8 @@
  * come to rest without any, as one does whose only support was turned. */
 #define RG_STATICS_FIRST 1e-3
 
+/* Bodies that are free and carry something move with it: a field of a displacement, velocity or acceleration
+ * is that of a rigid body on what is tied to one, which is held of all fields. */
 typedef struct {
     rg_solver *solver;
     size_t length;                   /* of the fields */
@@ -16,6 +18,8 @@ typedef struct {
     rg_real *force;                  /* M times a field: room */
     rg_exact_sum *sum;               /* [threads] */
     int64_t passes;                  /* over all forces so far */
+    rg_body_place *from;             /* [bodies]: of the last departure */
+    double (*motion)[6];             /* [bodies]: room */
 } rg_statics;
 
 rg_statics rg_statics_make(rg_solver *s);
@@ -29,8 +33,19 @@ void rg_statics_copy(const rg_statics *q, const rg_real *from, rg_real *to);
 /* to = factor to + scale from */
 void rg_statics_add(const rg_statics *q, double scale, const rg_real *from, double factor, rg_real *to);
 
-/* Takes out what lies along lines that are held at t = 0. */
-void rg_statics_hold(const rg_statics *q, rg_real *field);
+/* Takes out what lies along lines that are held at t = 0, and of what is tied to free bodies all but the
+ * motion of a rigid one, which gets what `impulse` [bodies][6] on the body (and its moment) gives it besides;
+ * NULL: none. Collective. */
+void rg_statics_hold(const rg_statics *q, const double (*impulse)[6], rg_real *field);
+
+/* Notes the solver's displacement in `start`, and where its bodies are. */
+void rg_statics_depart(const rg_statics *q, rg_real *start);
+
+/* Moves displacement and bodies from there by a share of `change`, which is held. Collective. */
+void rg_statics_move(const rg_statics *q, const rg_real *start, double share, const rg_real *change);
+
+/* Puts the bodies back where they were; the displacement stays. */
+void rg_statics_return(const rg_statics *q);
 
 /* out = M field */
 void rg_statics_times_mass(const rg_statics *q, const rg_real *field, rg_real *out);

@@ -501,7 +501,7 @@ void rg_solver_acceleration(rg_solver *s, rg_real *acceleration, bool loaded) {
     }
     publish(s);
     evaluate(s, &(impulse){.velocity = acceleration, .dt = 1, .hold = true, .load = true});
-    rg_bodies_forget(s->bodies);
+    rg_bodies_note(s->bodies);
 }
 
 void rg_solver_loads(rg_solver *s, rg_real *acceleration) {

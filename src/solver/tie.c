@@ -286,15 +286,109 @@ void rg_ties_start(const rg_ties *t, rg_real *u, rg_real *velocity) {
             continue;
         }
         for (int i = 0; i < e->pattern->constrained; i++) {
-            double start[3], to[3], turn[3];
+            double start[3], arm[3], to[3], turn[3];
             arm_at_start(t, e, i, start);
             moved(t, e, i, b->x, b->turn.rotation, to);
-            rg_vector_cross(b->turn.spin, start, turn);
+            rg_body_arm(b, start, arm);
+            rg_vector_cross(b->turn.spin, arm, turn);
             for (int c = 0; c < 3; c++) {
                 size_t at = rg_node_index((size_t)e->slot, e->pattern->node[i], c);
                 u[at] = (rg_real)to[c];
-                velocity[at] = (rg_real)(b->v[c] + turn[c]);
+                if (velocity != NULL) {
+                    velocity[at] = (rg_real)(b->v[c] + turn[c]);
+                }
             }
+        }
+    }
+}
+
+/* ---- Equilibria ---- */
+
+void rg_ties_motions(rg_ties *t, const rg_real *field, const double (*impulse)[6], double (*motion)[6]) {
+    if (!t->any) {
+        return;
+    }
+#pragma omp parallel for schedule(static)
+    for (size_t n = 0; n < t->entries; n++) {
+        double all[JOINING] = {0};
+        add_momenta(t, &t->entry[n], field, all);
+        add_sums(t->sum + SUMS * (omp_get_thread_num() * t->bodies->count + t->entry[n].body), all, SUMS);
+    }
+    close_sums(t, t->sum, SUMS);
+    for (int i = 0; i < t->bodies->count; i++) {
+        const rg_body *b = &t->bodies->body[i];
+        double whole[6];
+        memset(motion[i], 0, sizeof motion[i]);
+        if (b->input->motion != RG_MOTION_FREE || !b->tied.any) {
+            continue;
+        }
+        for (int c = 0; c < 6; c++) {
+            whole[c] = rg_exact_value(&t->sum[SUMS * i + c]) + (impulse != NULL ? impulse[i][c] : 0);
+        }
+        rg_body_carried_motion(b, whole, motion[i]);
+    }
+    forget_sums(t, t->sum, SUMS);
+}
+
+void rg_ties_turning(rg_ties *t, const rg_real *field, double (*stiffness)[3][3]) {
+    rg_exact_sum *sum = RG_NEW(rg_exact_sum, (size_t)(9 * t->bodies->count) + 1);
+    for (size_t n = 0; n < t->entries; n++) {
+        const entry *e = &t->entry[n];
+        double force[RG_NODES][3];
+        momenta(e, field, force);
+        for (int i = 0; i < e->pattern->constrained; i++) {
+            double start[3], arm[3];
+            arm_at_start(t, e, i, start);
+            rg_body_arm(&t->bodies->body[e->body], start, arm);
+            for (int k = 0; k < 9; k++) {
+                rg_exact_add(&sum[9 * e->body + k], arm[k / 3] * force[i][k % 3]);
+            }
+        }
+    }
+    rg_exact_allreduce(sum, 9 * t->bodies->count, t->comm);
+    for (int i = 0; i < t->bodies->count; i++) {
+        double whole[9];
+        for (int k = 0; k < 9; k++) {
+            whole[k] = rg_exact_value(&sum[9 * i + k]);
+        }
+        for (int k = 0; k < 9; k++) {
+            double trace = k % 4 == 0 ? whole[0] + whole[4] + whole[8] : 0;
+            stiffness[i][k / 3][k % 3] = trace - 0.5 * (whole[k] + whole[3 * (k % 3) + k / 3]);
+        }
+    }
+    rg_free(sum);
+}
+
+void rg_ties_hold(const rg_ties *t, const double (*motion)[6], rg_real *field) {
+#pragma omp parallel for schedule(static)
+    for (size_t n = 0; n < t->entries; n++) {
+        const entry *e = &t->entry[n];
+        const rg_body *b = &t->bodies->body[e->body];
+        double target[RG_NODES][3];
+        for (int i = 0; holds(b, 0) && i < e->pattern->constrained; i++) {
+            double start[3], arm[3];
+            arm_at_start(t, e, i, start);
+            rg_body_arm(b, start, arm);
+            rg_vector_cross(motion[e->body] + 3, arm, target[i]);
+            for (int c = 0; c < 3; c++) {
+                target[i][c] += motion[e->body][c];
+            }
+        }
+        if (holds(b, 0)) {
+            bring(e, target, 0, field, NULL);
+        }
+    }
+}
+
+void rg_ties_show(const rg_ties *t, rg_held_line *show, void *to) {
+    for (size_t n = 0; n < t->entries; n++) {
+        const entry *e = &t->entry[n];
+        const rg_body *b = &t->bodies->body[e->body];
+        for (int k = 0;
+             b->input->motion == RG_MOTION_PRESCRIBED && holds(b, 0) && k < 3 * e->pattern->constrained;
+             k++) {
+            const double line[3] = {k % 3 == 0, k % 3 == 1, k % 3 == 2};
+            show(to, (size_t)e->slot, e->pattern->node[k / 3], line);
         }
     }
 }

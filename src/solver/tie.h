@@ -34,8 +34,27 @@ rg_ties *rg_ties_make(const rg_case *c, const rg_domain *d, const rg_part *part,
 /* Whether any is. On all ranks the same. */
 bool rg_ties_any(const rg_ties *t);
 
-/* Puts the nodes where the bodies are at the start, with their velocities. */
+/* Puts the nodes where the bodies are, with their velocities at the start unless `velocity` is NULL. */
 void rg_ties_start(const rg_ties *t, rg_real *u, rg_real *velocity);
+
+/* For equilibria at t = 0, of fields of velocities or accelerations: the motions [bodies][6] of rigid bodies,
+ * velocity and spin about their centres, that are nearest to what the nodes tied to free bodies have, in the
+ * norm of the mass, plus what `impulse` [bodies][6] on a body (and its moment; NULL: none) gives them. A body
+ * has no mass of its own in this, as what is at rest needs none; a prescribed one has no motion. Collective.
+ */
+void rg_ties_motions(rg_ties *t, const rg_real *field, const double (*impulse)[6], double (*motion)[6]);
+
+/* What the moments about the centres of free bodies fall by, by a turn of these and of the nodes tied to
+ * them, as the forces on those keep their direction: with T = sum of a f, a from the centre and f by a field
+ * of accelerations, the symmetric part of tr T 1 - T, all of it where the moments are in balance. Collective.
+ */
+void rg_ties_turning(rg_ties *t, const rg_real *field, double (*stiffness)[3][3]);
+
+/* Gives the nodes these motions; the others of their elements follow (solver/pattern.h). */
+void rg_ties_hold(const rg_ties *t, const double (*motion)[6], rg_real *field);
+
+/* Shows all nodes that are tied to prescribed bodies, along each axis. */
+void rg_ties_show(const rg_ties *t, rg_held_line *show, void *to);
 
 /* Whether nodes become tied in the kick at `time`. On all ranks the same. */
 bool rg_ties_due(const rg_ties *t, double time);

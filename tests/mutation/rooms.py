@@ -45,7 +45,8 @@ ROOMS = {
                   test_equilibrium.py test_invariance.py test_contact.py test_friction.py test_viscosity.py test_bodies.py
                   test_output.py test_continuous.py test_ceramic.py test_laws.py test_ledger.py test_spall.py test_solids.py
                   test_waves.py test_bimaterials.py test_fragments.py test_impact.py test_partition.py test_moments.py
-                  test_open_faces.py test_kept_keys.py test_loads.py test_sides.py test_supports.py test_static.py test_crystals.py
+                  test_open_faces.py test_kept_keys.py test_loads.py test_sides.py test_supports.py test_static.py
+                  test_static_bodies.py test_crystals.py
                   test_fragment_contact.py test_parallel.py test_restart.py"""),
     "diagnostics": (["src/diagnostics/*"],
                     """crack_front files run snapshot summary step exact_sum fragment fragment_table fragment_twin ledger

@@ -45,7 +45,7 @@ static void check_rounding(rg_solver *s, const char *start) {
     rg_statics_copy(&q, s->u, u);
     double left = rg_statics_rounding(&q, room, change);
     rg_statics_copy(&q, change, room);
-    rg_statics_hold(&q, room);
+    rg_statics_hold(&q, NULL, room);
     rg_statics_add(&q, -1, change, 1, room);
     bool free = rg_statics_norm(&q, room) < 1e-6 * left, stays = memcmp(u, s->u, bytes) == 0;
     rg_statics_accelerate(&q, room, true);
