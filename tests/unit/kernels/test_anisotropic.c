@@ -12,6 +12,7 @@
 #include "support/acoustic.h"
 #include "support/dice.h"
 #include "support/kernel_input.h"
+#include "support/sanitized.h"
 
 #define LAMBDA 77.8e9
 #define MU     107.4e9
@@ -45,7 +46,12 @@ static void random_gradient(dice *d, double size, double F[3][3]) {
 
 /* ---- Kernels ---- */
 
-enum { BLOCKS = 64, ELEMENTS = BLOCKS * RG_LANES, ROUNDS = 1000000 / (4 * ELEMENTS) + 1 };
+enum {
+    STATES = RG_SANITIZED ? 100000 : 1000000,
+    BLOCKS = 64,
+    ELEMENTS = BLOCKS * RG_LANES,
+    ROUNDS = STATES / (4 * ELEMENTS) + 1
+};
 
 typedef struct {
     double *force, *traction, *stiffening, *energy, *cauchy;

@@ -18,8 +18,11 @@
 #include "mesh/improve/improve.h"
 #include "mesh/improve/move.h"
 #include "support/dice.h"
+#include "support/sanitized.h"
 
-static const int64_t cells[3] = {6, 5, 8};
+/* Few with sanitizers, which slow everything down. */
+enum { ACROSS = RG_SANITIZED ? 3 : 6, DEEP = RG_SANITIZED ? 3 : 5 };
+static const int64_t cells[3] = {ACROSS, DEEP, 8};
 static const double origin[3] = {0.1, -0.2, 0.3}, size[3] = {0.6, 0.5, 0.8};
 
 static void assert_close(double a, double b, double tolerance) {
@@ -83,8 +86,9 @@ static void test_flat_elements_grow(void **state) {
     rg_improvement done = improve(m);
     assert_close(done.before, before, 1e-12 * before);
     assert_close(done.after, smallest_height(m), 1e-12 * before);
-    /* as far as with the constants that were found best: what changes one gets elsewhere */
-    assert_close(done.after / before, 3.5346, 1e-3);
+    if (!RG_SANITIZED) { /* as far as with the constants found best: what changes one gets elsewhere */
+        assert_close(done.after / before, 3.5346, 1e-3);
+    }
     assert_true(done.moves > 0 && done.edges > 0);
     rg_mesh_free(m);
 }
@@ -123,7 +127,7 @@ static bool in_middle(const rg_mesh *m, rg_gid slot) {
 static rg_mesh *layered(void) {
     rg_mesh *m = jittered();
     for (rg_gid v = 0; v < m->vertices; v++) {
-        if (v / (7 * 6) == 4) {
+        if (v / ((ACROSS + 1) * (DEEP + 1)) == 4) {
             m->x[3 * v + 2] = 0.7;
         }
     }
@@ -745,7 +749,7 @@ static void test_moves(void **state) {
                                          {false, true, false}, {true, true, false}, {false, true, false}};
     for (int kind = 0; kind < PLACES; kind++) {
         double worst = 1;
-        for (uint64_t seed = 1; seed <= 16; seed++) {
+        for (uint64_t seed = 1; seed <= (RG_SANITIZED ? 4 : 16); seed++) {
             double axis[3][3];
             rg_mesh *m = make_star(kind, 50 * (uint64_t)kind + seed, free[kind]);
             turned_axes(seed % 2 == 0, axis);
