@@ -532,10 +532,14 @@ static void test_laws_of_flow(void **state) {
                     "--set material.bulking=2: material.bulking: 2: more than 1\n");
 #define OGDEN "material={model: ogden, density: 1100, bulk: 2e9"
     static const char *const rubber[] = {OGDEN ", alpha_1: 2, mu_1: -1e6}"};
+    static const char *const signs[] = {OGDEN ", alpha_1: -2, mu_1: -1e6, alpha_2: -2, mu_2: 1e6}"};
     static const char *const none[] = {OGDEN "}"};
     expect_messages(1, rubber,
                     "--set " OGDEN ", alpha_1: 2, mu_1: -1e6}: material.mu_1: not a number of the sign of "
                     "material.alpha_1, neither 0\n");
+    expect_messages(1, signs,
+                    "--set " OGDEN ", alpha_1: -2, mu_1: -1e6, alpha_2: -2, mu_2: 1e6}: material.mu_2: not a "
+                    "number of the sign of material.alpha_2, neither 0\n");
     expect_messages(1, none,
                     "--set " OGDEN "}: material.mu_1: missing, and material.mu_2 and material.mu_3 too\n");
     write_changed(elastic, "material:\n  preset: berea-sandstone\n");
