@@ -216,7 +216,7 @@ static double cell_size(const rg_search *by, const rg_exposed_face *face, size_t
         sum[0] += sqrt(rg_vector_distance2(face[i].rest, face[i].rest + 3));
     }
     MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPI_DOUBLE, MPI_SUM, comm);
-    return sum[1] > 0 ? 2 * sum[0] / sum[1] + 2 * by->fat : 1;
+    return 2 * sum[0] / fmax(sum[1], 1) + 2 * by->fat;
 }
 
 /* Whether the boxes meet, and this is the cell of the lowest corner of what they share: only there is the
