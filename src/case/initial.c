@@ -132,13 +132,20 @@ void rg_start_rule(const rg_entry *e) {
     rg_form form = c->interface.form;
     const char *wrong =
         c->start == RG_START_INITIAL ? NULL
-        : form == RG_FORM_INCOMPLETE || form == RG_FORM_INTRINSIC
-            ? "needs form variational or continuous, whose forces have a potential without a history"
+        : form == RG_FORM_INCOMPLETE ? "not with form incomplete, whose forces have no potential: its "
+                                       "tangent is not symmetric, and its "
+                                       "energy grows"
+        : form == RG_FORM_INTRINSIC && c->start == RG_START_RELAX
+            ? "not with form intrinsic: on the way faces could pass the top of their law; static comes to "
+              "rest "
+              "without"
         : flows ? "not with a user's material that has a history: whether it flows on the way is not known"
         : moves ? "not with bodies that are free or tied, which its damping does not bring to rest: static "
                   "does"
-        : any_open(c) && c->interface.friction > 0
-            ? "needs interface.friction 0 with open faces: where they stick would depend on the way"
+        : (any_open(c) || form == RG_FORM_INTRINSIC) && c->interface.friction > 0
+            ? "needs interface.friction 0 with open faces or form intrinsic: where they stick would depend "
+              "on "
+              "the way"
             : NULL;
     if (wrong != NULL) {
         const rg_node *node = rg_entry_given(e, "start");

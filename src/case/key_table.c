@@ -133,7 +133,7 @@ static const char *const shapes_meaning[] = {
 static const char *const starts[] = {"initial", "static", "relax", NULL};
 static const char *const starts_meaning[] = {
     "from the state of `initial`",
-    "from the equilibrium under the loads of t = 0 and what `boundary` prescribes then (places; elsewhere along its lines it holds), with the velocities of `initial`; faces do not break on the way; what is tied to a free body comes to rest with it",
+    "from the equilibrium under the loads of t = 0 and what `boundary` prescribes then (places; elsewhere along its lines it holds), with the velocities of `initial`; faces do not break on the way; what is tied to a free body comes to rest with it; not of form incomplete; of form intrinsic below the top of each law",
     "from the same, to which damping brings the body: it may also buckle on its way, or be free where its loads balance, with interface.penalty isotropic, which leaves it no moment; not with bodies that are free or tied"};
 static const char *const motions[] = {"free", "prescribed", NULL};
 static const char *const motions_meaning[] = {

@@ -35,6 +35,11 @@ static double rounding(void) {
  * their moments change as it turns. */
 #define BALANCED 0.1
 
+/* In form intrinsic a way begins with laws that are straight up to this many times their openings, until the
+ * residual is that small: from where nothing is in balance faces would pass their tops. */
+#define STRAIGHT 1e3
+#define NEAR     1e-2
+
 typedef struct {
     rg_statics on;
     rg_coarse *coarse;
@@ -107,6 +112,13 @@ _Noreturn static void refuse(const newton *q, int status, const char *why) {
     rg_fatal(status, "%s: start: static: %s", q->on.solver->input->path, why);
 }
 
+/* Of form intrinsic, before no equilibrium is blamed on something else: faces beyond the top of their law. */
+static void refuse_opened(const newton *q) {
+    if (q->on.stretch == 1) {
+        rg_limits_refuse_openings(q->on.solver, "start: static");
+    }
+}
+
 /* ---- The linear system ---- */
 
 /* Of the displacement of a difference: so small that few faces come into contact by it or lose it, as long as
@@ -159,6 +171,7 @@ static void solve(newton *q, double goal) {
         rg_statics_times_mass(&q->on, q->product, q->product_force);
         double curvature = rg_statics_dot(&q->on, q->search, q->product_force);
         if (!(curvature > 0)) {
+            refuse_opened(q);
             refuse(q, RG_FAILURE, "no stable equilibrium: a part of the body is not held, or it buckles");
         }
         rg_statics_add(&q->on, now / curvature, q->search, 1, q->change);
@@ -253,6 +266,24 @@ static void depart(newton *q) {
     set_nudge(q);
 }
 
+/* Newton's steps until the residual is `goal` of the loads, or falls no more; returns it, *scale: of loads
+ * and reactions. */
+static double search(newton *q, FILE *out, double goal, double loads, double residual, double *scale) {
+    double last = INFINITY;
+    for (int k = 0; k < NEWTON_STEPS && residual > goal * *scale; k++) {
+        if (residual > 0.5 * last && residual < rounding() * *scale) {
+            break; /* to rounding */
+        }
+        last = residual;
+        depart(q);
+        solve(q, fmax(EXACTNESS * residual, 0.1 * goal * *scale));
+        *scale = loads;
+        residual = step(q, residual, scale);
+        tell(q, out, residual / *scale);
+    }
+    return residual;
+}
+
 /* Contact alone would have to hold a free body that carries nothing. */
 static void refuse_unheld(const newton *q, double scale) {
     const rg_solver *s = q->on.solver;
@@ -276,21 +307,18 @@ rg_equilibrium rg_equilibrium_find(rg_solver *s, FILE *out) {
     }
     q.coarse = rg_coarse_make(s);
     double stress = fmax(s->prestress != NULL ? s->initial_stress.scale : 0, rg_heating_scale(s));
-    double loads = fmax(load_norm(&q), stress), scale = loads, residual = find_residual(&q, &scale),
-           last = INFINITY;
+    q.on.stretch = s->model->law.form == RG_FORM_INTRINSIC ? STRAIGHT : 1;
+    double loads = fmax(load_norm(&q), stress), scale = loads, residual = find_residual(&q, &scale);
     loads = fmax(loads, RG_STATICS_FIRST * scale);
-    for (int k = 0; k < NEWTON_STEPS && residual > tolerance() * scale; k++) {
-        if (residual > 0.5 * last && residual < rounding() * scale) {
-            break; /* to rounding */
-        }
-        last = residual;
-        depart(&q);
-        solve(&q, fmax(EXACTNESS * residual, 0.1 * tolerance() * scale));
+    if (q.on.stretch > 1) {
+        search(&q, out, NEAR, loads, residual, &scale);
+        q.on.stretch = 1;
         scale = loads;
-        residual = step(&q, residual, &scale);
-        tell(&q, out, residual / scale);
+        residual = find_residual(&q, &scale);
     }
+    residual = search(&q, out, tolerance(), loads, residual, &scale);
     if (!(residual <= rounding() * scale)) {
+        refuse_opened(&q);
         refuse(&q, RG_FAILURE, "no equilibrium found");
     }
     refuse_unheld(&q, scale);
@@ -299,6 +327,7 @@ rg_equilibrium rg_equilibrium_find(rg_solver *s, FILE *out) {
     rg_bodies_settle(s->bodies);
     rg_ties_start(s->ties, s->u, s->velocity);
     rg_limits_refuse(s, "start: static");
+    rg_limits_refuse_openings(s, "start: static");
     rg_solver_settle(s);
     return found;
 }
@@ -317,6 +346,7 @@ double rg_equilibrium_of_stress(rg_solver *s, FILE *out) {
         fflush(out);
     }
     rg_statics_copy(&q.on, q.start, s->u);
+    rg_statics_forget(&q.on);
     end(&q);
     return share;
 }

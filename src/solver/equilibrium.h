@@ -7,6 +7,9 @@
  * (solver/coarse.h). All sums are exact or of integers: the same bits on any ranks and threads. The cost is
  * one pass over all forces an iteration.
  *
+ * In form intrinsic the laws of the faces answer along their first curves, which have a potential up to the
+ * top of each (solver/statics.h).
+ *
  * What is tied to a free rigid body moves as that does, six unknowns in place of its nodes': residuals and
  * what the coarse space brings are projected on such motions in the inner product of the mass, and a step
  * moves and turns the body, forces of contact on it among those that balance. A free body that carries

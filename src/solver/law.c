@@ -75,6 +75,30 @@ double rg_law_steps(const rg_cohesive *law) {
     return (facts_of(law).forms & RG_LIMITS_STEP) != 0 ? law->shape[RG_LIMITER_STEPS] : 0;
 }
 
+/* Of pure opening; the files of the laws say where that is (kernels/cohesive/). */
+double rg_law_top(const rg_cohesive *law) {
+    double top = INFINITY; /* over the critical opening */
+    switch (law->law) {
+    case RG_LAW_BILINEAR:
+        top = law->shape[0];
+        break;
+    case RG_LAW_TVERGAARD:
+    case RG_LAW_POLYNOMIAL:
+        top = 1. / 3;
+        break;
+    case RG_LAW_NEEDLEMAN:
+        top = 9 / (16 * exp(1));
+        break;
+    case RG_LAW_EXPONENTIAL:
+    case RG_LAW_XU_NEEDLEMAN:
+        top = 1;
+        break;
+    default: /* none that starts with a slope and has one */
+        break;
+    }
+    return top / facts_of(law).separation;
+}
+
 size_t rg_crack_stride(const rg_cohesive *law) {
     size_t friction = law->sliding == RG_SLIDING_COULOMB ? RG_FRICTION_BLOCK : 0;
     size_t bond = law->shear == RG_SHEAR_FADING ? RG_BOND_BLOCK : 0;

@@ -18,6 +18,9 @@ double rg_law_steps(const rg_cohesive *law);
 /* Values of crack state, memory and friction of a block of interfaces. */
 size_t rg_crack_stride(const rg_cohesive *law);
 
+/* Opening from which on the traction of a law falls, over that of full separation. */
+double rg_law_top(const rg_cohesive *law);
+
 /* In the intrinsic form every point follows its law from the start, on the total jump. Faces that the case
  * has open are fully separated. */
 void rg_law_start(rg_solver *s);

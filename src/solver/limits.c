@@ -5,8 +5,11 @@
 #include "base/error.h"
 #include "base/first_bad.h"
 #include "base/mem.h"
+#include "quadrature.h"
+#include "solver/law.h"
 #include "solver/step.h"
 #include "solver/stepper.h"
+#include "solver/tile.h"
 
 /* A step so long that no rate counts; and one in which what goes on in time stands still (s). */
 static const double slow = 1e9, at_once = 1e-15;
@@ -92,5 +95,47 @@ void rg_limits_refuse(rg_solver *s, const char *what) {
             "%s: %s: beyond the limit of what flows in element %lld at (%g, %g, %g): how it flowed on the "
             "way would matter",
             s->input->path, what, (long long)where.which, where.x[0], where.x[1], where.x[2]);
+    }
+}
+
+/* Notes a face with a point beyond the top of its law, at its middle. */
+static void note_opening(const rg_solver *s, const rg_tile *t, size_t i, double top, rg_first_bad *where) {
+    size_t link = (size_t)s->domain->side[0][i], slot = t->begin * RG_LANES + link / RG_FACES;
+    const double *corner = s->domain->corner + 12 * slot;
+    const int *node = rg_face_node[link % RG_FACES];
+    double middle[3];
+    for (int c = 0; c < 3; c++) {
+        middle[c] = (corner[3 * node[0] + c] + corner[3 * node[1] + c] + corner[3 * node[2] + c]) / 3;
+    }
+    for (int q = 0; q < RG_POINTS; q++) {
+        double opening = *rg_crack_value(s, i, q, RG_CRACK_OPENING), most = top * rg_separation(s, i, q);
+        if (opening > most) {
+            rg_first_bad_note(where, 0, middle, opening / most);
+        }
+    }
+}
+
+void rg_limits_refuse_openings(const rg_solver *s, const char *what) {
+    const rg_domain *d = s->domain;
+    const rg_cohesive *law = &s->model->law;
+    rg_first_bad where = {.which = RG_NOWHERE};
+    if (law->form != RG_FORM_INTRINSIC) {
+        return;
+    }
+    double top = rg_law_top(law);
+    for (size_t t = 0; t < d->tiles; t++) {
+        for (size_t i = d->tile[t].ibegin * RG_LANES; i < d->tile[t].iend * RG_LANES; i++) {
+            double normal[3];
+            if (rg_interface_area(d, i, normal) > 0 && !rg_face_is_open(s, i)) {
+                note_opening(s, &d->tile[t], i, top, &where);
+            }
+        }
+    }
+    if (rg_first_bad_lowest(&where, s->comm)) {
+        rg_speak(s->comm);
+        rg_fatal(RG_USAGE,
+                 "%s: %s: the face at (%g, %g, %g) has opened %.3g times as far as the top of its law, from "
+                 "where on it would go on under less load",
+                 s->input->path, what, where.x[0], where.x[1], where.x[2], where.value);
     }
 }

@@ -10,4 +10,8 @@
  * materials. The state stays. Collective. */
 void rg_limits_refuse(rg_solver *s, const char *what);
 
+/* In form intrinsic, where a point of a face has opened beyond the top of its law: less than the load could
+ * have opened it on the way. Open faces do not count. Collective. */
+void rg_limits_refuse_openings(const rg_solver *s, const char *what);
+
 #endif

@@ -9,9 +9,10 @@
 #include "base/mem.h"
 #include "domain/element.h"
 #include "solver/step.h"
+#include "solver/tile.h"
 
 rg_statics rg_statics_make(rg_solver *s) {
-    rg_statics q = {.solver = s, .length = s->domain->blocks * RG_NODE_BLOCK};
+    rg_statics q = {.solver = s, .length = s->domain->blocks * RG_NODE_BLOCK, .stretch = 1};
     q.force = rg_statics_field(&q);
     for (int i = 0; i < RG_NODES * RG_NODES; i++) {
         q.mass[i / RG_NODES][i % RG_NODES] = rg_mass_entry(s->input->mass, i / RG_NODES, i % RG_NODES);
@@ -19,6 +20,14 @@ rg_statics rg_statics_make(rg_solver *s) {
     q.sum = RG_NEW(rg_exact_sum, (size_t)s->threads);
     q.from = RG_NEW(rg_body_place, (size_t)s->bodies->count + 1);
     q.motion = rg_alloc((size_t)s->bodies->count + 1, sizeof *q.motion);
+    q.cracks = s->model->law.form == RG_FORM_INTRINSIC ? s->domain->iblocks * s->model->crack_stride : 0;
+    q.crack = RG_NEW(rg_real, q.cracks + 1);
+    for (size_t i = 0; q.cracks > 0 && i < s->domain->iblocks * RG_LANES; i++) {
+        for (int k = 0; rg_face_is_open(s, i) && k < RG_CRACK * RG_POINTS; k++) {
+            size_t at = i / RG_LANES * s->model->crack_stride + (size_t)k * RG_LANES + i % RG_LANES;
+            q.crack[at] = s->crack[at];
+        }
+    }
     return q;
 }
 
@@ -29,6 +38,7 @@ rg_real *rg_statics_field(const rg_statics *q) {
 void rg_statics_free(rg_statics *q) {
     rg_free(q->force);
     rg_free(q->sum);
+    rg_free(q->crack);
     rg_free(q->from);
     rg_free(q->motion);
 }
@@ -167,6 +177,14 @@ double rg_statics_rounding(rg_statics *q, rg_real *room, rg_real *change) {
 }
 
 void rg_statics_accelerate(rg_statics *q, rg_real *out, bool loaded) {
-    rg_solver_acceleration(q->solver, out, loaded);
+    rg_statics_forget(q);
+    rg_solver_acceleration(q->solver, out, loaded, q->stretch);
     q->passes++;
+}
+
+void rg_statics_forget(const rg_statics *q) {
+#pragma omp parallel for schedule(static)
+    for (size_t i = 0; i < q->cracks; i++) {
+        q->solver->crack[i] = q->crack[i];
+    }
 }

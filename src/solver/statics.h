@@ -18,6 +18,9 @@ typedef struct {
     rg_real *force;                  /* M times a field: room */
     rg_exact_sum *sum;               /* [threads] */
     int64_t passes;                  /* over all forces so far */
+    size_t cracks;                   /* values of crack state; 0 but in form intrinsic */
+    rg_real *crack;                  /* as it is before any face of a law has opened */
+    double stretch;                  /* of laws (rg_solver_acceleration): 1 at first */
     rg_body_place *from;             /* [bodies]: of the last departure */
     double (*motion)[6];             /* [bodies]: room */
 } rg_statics;
@@ -63,7 +66,12 @@ double rg_statics_norm(const rg_statics *q, const rg_real *field);
  * each last digit. `room`, `change`: fields. Collective. */
 double rg_statics_rounding(rg_statics *q, rg_real *room, rg_real *change);
 
-/* Of the forces at the solver's displacement, with the loads of t = 0 or without (rg_solver_acceleration). */
+/* Of the forces at the solver's displacement, with the loads of t = 0 or without (rg_solver_acceleration). In
+ * form intrinsic openings on the way leave no trace: each law answers along its first curve, and the largest
+ * opening of a point is then that of this displacement. */
 void rg_statics_accelerate(rg_statics *q, rg_real *out, bool loaded);
+
+/* Takes back what that has left in crack state. */
+void rg_statics_forget(const rg_statics *q);
 
 #endif

@@ -26,6 +26,7 @@ typedef struct {
     bool constrain; /* prescribed motions, loads and bodies act */
     bool advance;   /* the history of the material goes on by the step that led here: once for each state */
     bool hold;      /* no face breaks */
+    double stretch; /* cohesive laws have the same first slope up to openings so many times as large; 0: 1 */
     bool load;      /* of what acts from outside, loads alone do */
     bool apart;     /* velocity is that of elements that do not know yet that they share nodes */
 } impulse;
@@ -112,6 +113,11 @@ static rg_interface_args interfaces_of(const rg_solver *s, const rg_tile *t, con
                                        const impulse *p) {
     rg_interface_args args = rg_tile_interfaces(s, t, w);
     args.law.strength = p->hold ? INFINITY : args.law.strength;
+    if (p->stretch > 0) {
+        args.law.strength *= p->stretch;
+        args.law.opening *= p->stretch;
+        args.law.separation *= p->stretch;
+    }
     return args;
 }
 
@@ -489,7 +495,7 @@ void rg_solver_impulse(rg_solver *s, rg_real *velocity, double dt) {
     evaluate(s, &(impulse){.velocity = velocity, .dt = dt});
 }
 
-void rg_solver_acceleration(rg_solver *s, rg_real *acceleration, bool loaded) {
+void rg_solver_acceleration(rg_solver *s, rg_real *acceleration, bool loaded, double stretch) {
 #pragma omp parallel for schedule(static)
     for (size_t i = 0; i < s->domain->blocks * RG_NODE_BLOCK; i++) {
         acceleration[i] = 0;
@@ -500,7 +506,11 @@ void rg_solver_acceleration(rg_solver *s, rg_real *acceleration, bool loaded) {
         rg_loads_set_springs(s->loads);
     }
     publish(s);
-    evaluate(s, &(impulse){.velocity = acceleration, .dt = 1, .hold = true, .load = true});
+    bool laws = s->model->law.form == RG_FORM_INTRINSIC;
+    evaluate(
+        s,
+        &(impulse){
+            .velocity = acceleration, .dt = 1, .hold = !laws, .stretch = laws ? stretch : 0, .load = true});
     rg_bodies_note(s->bodies);
 }
 

@@ -32,8 +32,9 @@ void rg_solver_step(rg_solver *s, double dt);
 void rg_solver_impulse(rg_solver *s, rg_real *velocity, double dt);
 
 /* M^-1 (all forces of u) of faces that cannot break yet, with bodies where they are, with the loads of t = 0
- * or those of foundations alone, and no constraints: for equilibria. The state stays. Collective. */
-void rg_solver_acceleration(rg_solver *s, rg_real *acceleration, bool loaded);
+ * or those of foundations alone, and no constraints: for equilibria. The state stays, but for that of cracks
+ * in form intrinsic, whose laws have their first slopes up to `stretch` times larger openings. Collective. */
+void rg_solver_acceleration(rg_solver *s, rg_real *acceleration, bool loaded, double stretch);
 
 /* M^-1 (loads of t = 0 at the present displacement) but for foundations, of elements that do not know that
  * they share nodes. */

@@ -372,6 +372,69 @@ def test_stress_inside_has_the_same_bits_anywhere_and_in_a_restart(run, bar):
     assert f'"state_hash": "{one.summary["state_hash"]}"' in (shorter.dir / "summary.json").read_text()
 
 
+# ---- Form intrinsic ----
+
+STRENGTH, WORK, STIFF = 400e6, 34, 260e9
+# Traction over strength at an opening over the critical one, work of separation over strength and critical opening, where the traction is largest
+CURVES = {"exponential": (lambda x: np.e * x * np.exp(-x), np.e, 1), "xu-needleman": (lambda x: np.e * x * np.exp(-x), np.e, 1),
+          "bilinear": (lambda x: np.where(x < 0.5, 2 * x, 2 - 2 * x), 0.5, 0.5), "tvergaard": (lambda x: 6.75 * x * (1 - x) ** 2, 0.5625, 1 / 3)}
+CUBE = 10e-6
+
+
+def springs(law, cubes, **more):
+    """A row of cubes with a law between them; inside them it is 10,000 times as stiff. No strain across."""
+    return {"mesh": {"cells": [1, 1, cubes], "size": [CUBE, CUBE, cubes * CUBE]}, "material": {"model": "linear-elastic", "young": STIFF, "poisson": 0, "density": 3690},
+            "interface": {"form": "intrinsic", "law": law, "strength": STRENGTH, "energy": WORK, "sets": [{"where": "abs(nz) < 0.99", "strength": 100 * STRENGTH}], **({"bilinear": {"ascent": 0.5}} if law == "bilinear" else {})},
+            "output.probes": [{"name": "end", "at": [CUBE / 2, CUBE / 2, cubes * CUBE]}], **more}
+
+
+@DOUBLE
+@pytest.mark.parametrize("law", CURVES)
+def test_faces_of_the_intrinsic_form_open_as_their_law_says(run, figure, bar, law):
+    """Under half of their strength; then 1000 steps of rest."""
+    curve, work, top = CURVES[law]
+    share = np.linspace(0, top, 100001)
+    opening = np.interp(0.5, curve(share), share) * WORK / (work * STRENGTH)
+    done = run(bar, sets=springs(law, 6, loads=[{"name": "pull", "set": "z+", "traction": {"z": STRENGTH / 2}}]))
+    theory = 5 * opening + STRENGTH / 2 * 6 * CUBE / STIFF
+    figure(f"springs by law {law}: displacement of the end", done.history["end_uz"][0], theory=theory, bound=1e-3, unit="m", relative=True, why="the faces inside cubes give a little")
+    assert done.summary["static_residual"] < 1e-6 and done.energy["kinetic"].max() < 1e-10 * done.energy["bulk"][0]
+
+
+@DOUBLE
+@pytest.mark.parametrize("law", CURVES)
+def test_faces_beyond_the_top_of_their_law_are_refused(bar, tmp_path, law):
+    """Two cubes so small that their face opens steadily as the end is moved, also where its traction falls."""
+    curve, work, top = CURVES[law]
+    for share in (0.95, 1.1):
+        opening = share * top * WORK / (work * STRENGTH)
+        end = {"set": "z+", "component": "z", "displacement": opening + curve(share * top) * STRENGTH * 2 * CUBE / STIFF}
+        said = launch("run", bar, "-q", "-o", tmp_path / "out", *overrides(springs(law, 2, boundary=[*SIDES, end], **{"time.steps": 1})))
+        assert said.returncode == (0 if share < 1 else 2), said.stderr
+        if share > 1:
+            found = re.search(r"start: static: the face at \((\S+), (\S+), 1e-05\) has opened (\S+) times as far as the top of its law, from where on it would go on under less load\n", said.stderr)
+            assert found and float(found[3]) == pytest.approx(1.1, abs=0.01), said.stderr
+
+
+@pytest.mark.parametrize("law", ["exponential", "polynomial"])
+def test_the_intrinsic_form_has_the_same_bits_anywhere_and_in_a_restart(run, bar, law):
+    """Bent, with a crack that is there, strengths that differ and a body that is tied; the load grows until faces separate."""
+    crack = {"where": "abs(z - 0.75e-3) < 5e-5 && abs(nz) > 0.8 && x > 0.25e-3", "open": True}
+    head = {"name": "head", "shape": "none", "motion": "free", "at": [0.2e-3, 0.2e-3, 1.5e-3], "mass": 1e-6, "inertia": [1e-12, 1e-12, 1e-12, 0, 0, 0], "tied": ["z+"]}
+    sets = {"mesh": TILES, "output.probes": [], "material.poisson": 0.3, "interface": {"form": "intrinsic", "law": law, "strength": 1e8, "energy": 10, "weibull": {"modulus": 20, "area": 1e-9}, "sets": [crack]}, "boundary": CLAMP, "bodies": [head],
+            "loads": [{"set": "z+", "traction": {"x": "2e5 + 1e16*t", "z": "4e6 + 1e17*t"}}], "time": {"end": 1, "steps": 40, "safety": 0.9}, "output.interval": 10, "checkpoint.steps": 20}
+    one = run(bar, sets=sets)
+    assert one.summary["static_residual"] < rounding(1e-6, 1e-2) and one.energy["cohesive"][0] > 0
+    for ranks, threads in ((1, 2), (2, 1), (3, 1)):
+        other = run(bar, ranks=ranks, threads=threads, sets=sets)
+        assert (one.summary["state_hash"], one.summary["static_passes"]) == (other.summary["state_hash"], other.summary["static_passes"])
+        assert (one.dir / "energy.csv").read_bytes() == (other.dir / "energy.csv").read_bytes()
+    shorter = run(bar, ranks=2, sets={**sets, "time": {**sets["time"], "steps": 25}})
+    again = launch("run", "--restart", shorter.dir, "-q", "--set", "time.steps=40", ranks=3)
+    assert again.returncode == 0, again.stderr
+    assert f'"state_hash": "{one.summary["state_hash"]}"' in (shorter.dir / "summary.json").read_text()
+
+
 # ---- Stress from the fields of an earlier run ----
 
 PULLED = {"loads": [{"name": "pull", "set": "z+", "traction": {"z": 1e6}}], "material.poisson": 0.3, "output.fields": ["stress"]}
@@ -452,8 +515,11 @@ def test_a_run_without_stress_is_refused(run, bar):
     # it can turn about the edge along z: none of the six motions by itself, but a sum of three
     ({"boundary": [{"set": "y-", "component": "x", "displacement": 0}, {"set": "x-", "component": "y", "displacement": 0}, SIDES[2]]}, 2,
      "start: static: what `boundary` prescribes at t = 0 does not hold the body: it can still move or turn"),
-    ({"interface.form": "intrinsic", "interface.law": "xu-needleman", "interface.strength": 1e8, "interface.energy": 30}, 2,
-     "start: static: needs form variational or continuous, whose forces have a potential without a history"),
+    ({"interface": {"form": "incomplete", "law": "none", "beta_s": 20}}, 2, "start: static: not with form incomplete, whose forces have no potential: its tangent is not symmetric, and its energy grows"),
+    ({"start": "relax", "interface": {"form": "intrinsic", "law": "xu-needleman", "strength": 1e8, "energy": 30}}, 2,
+     "start: relax: not with form intrinsic: on the way faces could pass the top of their law; static comes to rest without"),
+    ({"interface": {"form": "intrinsic", "law": "exponential", "strength": 1e8, "energy": 30, "friction": 0.3}}, 2,
+     "start: static: needs interface.friction 0 with open faces or form intrinsic: where they stick would depend on the way"),
     pytest.param({"material": {"model": "j2", "young": 70e9, "poisson": 0.3, "density": 2700, "yield_stress": 1e8}, "loads": [{"set": "z+", "traction": {"z": 1.01e8}}]}, 2,
                  "start: static: beyond the limit of what flows in element 0 at (0, 0, 0): how it flowed on the way would matter", marks=DOUBLE),
     pytest.param({"material": CONCRETE, "loads": [{"set": "z+", "traction": {"z": -5.2e7}}]}, 2,

@@ -77,6 +77,39 @@ static void test_intrinsic(void **state) {
     assert_true(law.beta == 2 && rg_law_steps(&law) == 12);
 }
 
+/* Traction of pure opening over the strength, at an opening over the critical one. */
+static double curve(rg_law law, double x) {
+    double z = 16 * exp(1) / 9;
+    switch (law) {
+    case RG_LAW_BILINEAR:
+        return x < 0.25 ? x / 0.25 : (1 - x) / 0.75;
+    case RG_LAW_TVERGAARD:
+    case RG_LAW_POLYNOMIAL:
+        return 6.75 * x * (1 - x) * (1 - x);
+    case RG_LAW_NEEDLEMAN:
+        return 0.5625 * z * z * x * exp(-z * x);
+    default:
+        return exp(1) * x * exp(-x);
+    }
+}
+
+/* Of laws with a slope: up to the top the traction grows to the strength, and falls from there. */
+static void test_top(void **state) {
+    (void)state;
+    static const rg_law laws[] = {RG_LAW_BILINEAR,  RG_LAW_TVERGAARD,   RG_LAW_POLYNOMIAL,
+                                  RG_LAW_NEEDLEMAN, RG_LAW_EXPONENTIAL, RG_LAW_XU_NEEDLEMAN};
+    for (size_t k = 0; k < sizeof laws / sizeof *laws; k++) {
+        rg_case c = make_case(laws[k], RG_FORM_INTRINSIC);
+        rg_cohesive law = rg_law_make(&c);
+        double top = rg_law_top(&law) * law.separation / law.opening;
+        assert_near(curve(laws[k], top), 1);
+        assert_true(curve(laws[k], 0.99 * top) < 1 && curve(laws[k], 1.01 * top) < 1);
+    }
+    rg_case c = make_case(RG_LAW_FREE, RG_FORM_INTRINSIC);
+    rg_cohesive free = rg_law_make(&c);
+    assert_true(!(rg_law_top(&free) < INFINITY));
+}
+
 /* Strength and energy that are expressions are 1 in the law, but numbers written as such are themselves. */
 static void test_expressions(void **state) {
     (void)state;
@@ -148,6 +181,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_linear), cmocka_unit_test(test_intrinsic), cmocka_unit_test(test_expressions),
         cmocka_unit_test(test_none),   cmocka_unit_test(test_friction),  cmocka_unit_test(test_stride),
+        cmocka_unit_test(test_top),
     };
     return cmocka_run_group_tests_name("law", tests, NULL, NULL);
 }
