@@ -66,6 +66,7 @@ ENVIRONMENT = {
     "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
     "OMPI_MCA_rmaps_base_oversubscribe": "1",
     "OMPI_MCA_mpi_yield_when_idle": "1",
+    "OMPI_MCA_pml": "ob1",  # as in tests/run
     "OMP_WAIT_POLICY": "passive",
 }
 SINGLE = "single precision" in subprocess.run([PROGRAM, "--version"], env={**os.environ, **ENVIRONMENT},

@@ -21,6 +21,7 @@ ENVIRONMENT = {
     "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
     "OMPI_MCA_rmaps_base_oversubscribe": "1",
     "OMPI_MCA_mpi_yield_when_idle": "1",
+    "OMPI_MCA_pml": "ob1",  # as in tests/run
     "OMP_WAIT_POLICY": "passive",
     "PYTHONDONTWRITEBYTECODE": "1",
     "RHEGMA_TIMEOUT": "200",
