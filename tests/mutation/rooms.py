@@ -77,7 +77,7 @@ ROOMS = {
                 h5_parallel rebalance slab checksum writer fragment verify checkpoint_file fragment_table fragment_twin
                 ledger probe summary checkpoint step tie sides heat assembly materials material material_map attitude
                 contact_twin load snapshot opening spectrum coarse crack_front estimate initial mesh_damage mesh_case crack
-                fuzz-checkpoint fuzz-inp fuzz-vtk fuzz-mesh case_anisotropic case_rules part_read import sets test_keys.py
+                fuzz-checkpoint fuzz-inp fuzz-vtk fuzz-mesh case_anisotropic case_rules part_read import sets test_parts.py test_keys.py
                 test_user_materials.py test_output.py test_mesh_faults.py test_faults.py test_cli.py test_fragments.py
                 test_meshes.py test_partition.py test_restart.py"""),
     "plot": (["bench/plot", "bench/drawing.py", "bench/theory.py", "bench/rhegma.py",

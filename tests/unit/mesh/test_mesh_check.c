@@ -134,7 +134,7 @@ static void check_changed(void) {
 
 static void test_changes(void **state) {
     (void)state;
-    const change cases[][4] = {
+    const change cases[][8] = {
         {{'c', 3, 6, "element 71: there is no vertex 6\n"}},
         {{'c', 4, -1, "element 72: there is no vertex -1\n"}},
         {{'c', 7, 3,
@@ -176,14 +176,23 @@ static void test_changes(void **state) {
           "neighbour: element 71 takes element 73 for its neighbour across face 1, but they do not share it\n"
           "neighbour: element 73 takes element 71 for its neighbour across face 2, but they do not share "
           "it\n"}},
+        {{'c', 12, 3, ""}, /* agree, but one of them is behind the last element */
+         {'c', 13, 4, ""},
+         {'c', 14, 5, ""},
+         {'n', 15, 2, ""},
+         {'f', 15, 0, ""},
+         {'f', 8, 3, ""},
+         {'n', 8, 3,
+          "neighbour: element 73 takes element 3 for its neighbour across face 0, but they do not share "
+          "it\n"}},
     };
     planted = (const change[]){{.what = '\0'}};
     expect_said(check_changed, RG_OK, "");
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        change list[5] = {{.what = '\0'}};
+        change list[9] = {{.what = '\0'}};
         char said[1000] = "";
         int n = 0;
-        for (; n < 4 && cases[i][n].what != '\0'; n++) {
+        for (; n < 8 && cases[i][n].what != '\0'; n++) {
             list[n] = cases[i][n];
         }
         planted = list;
