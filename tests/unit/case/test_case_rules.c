@@ -219,28 +219,28 @@ static const mistake starts[] = {
      "  friction: 0.1\n"
      "  sets: [{where: 1, beta: 1}, {where: 2, open: true}]\n"
      "start: static\n",
-     ":15:8: start: static: needs interface.friction 0 with open faces: where they stick would depend on the "
-     "way\n"},
+     ":15:8: start: static: needs interface.friction 0 with open faces or form intrinsic: where they stick "
+     "would depend on the way\n"},
     {"  energy: 34\n",
      "  energy: 34\n"
      "  form: incomplete\n"
      "start: relax\n",
-     ":14:8: start: relax: needs form variational or continuous, whose forces have a potential without a "
-     "history\n"},
+     ":14:8: start: relax: not with form incomplete, whose forces have no potential: its tangent is not "
+     "symmetric, and its energy grows\n"},
     {"  energy: 34\n",
      "  energy: 34\n"
      "start: relax\n"
      "bodies:\n"
      "  - {name: a, shape: plane, motion: prescribed, at: [0, 0, 9], normal: [0, 0, 1]}\n"
      "  - {name: b, shape: sphere, motion: free, at: [0, 0, 9], radius: 1, mass: 1}\n",
-     ":13:8: start: relax: not with bodies that are free or tied: they would have to come to rest with the "
-     "solid\n"},
+     ":13:8: start: relax: not with bodies that are free or tied, which its damping does not bring to rest: "
+     "static does\n"},
     {"  energy: 34\n",
      "  energy: 34\n"
-     "start: static\n"
+     "start: relax\n"
      "bodies: [{name: a, shape: none, motion: prescribed, at: [0, 0, 9], tied: [z+]}]\n",
-     ":13:8: start: static: not with bodies that are free or tied: they would have to come to rest with the "
-     "solid\n"},
+     ":13:8: start: relax: not with bodies that are free or tied, which its damping does not bring to rest: "
+     "static does\n"},
 };
 
 static const mistake law_and_form[] = {
