@@ -119,35 +119,28 @@ void rg_temperature_rule(const rg_entry *e) {
 
 void rg_start_rule(const rg_entry *e) {
     const rg_case *c = e->ck->c;
-    bool flows = false;
-    for (int i = 0; i <= c->others; i++) {
-        flows = flows || (rg_case_material(c, i)->model == RG_MATERIAL_USER &&
-                          rg_input_history(rg_case_material(c, i)) > 0);
-    }
-    bool moves = false;
-    for (int i = 0; i < c->bodies && c->start == RG_START_RELAX; i++) {
+    bool moves = false, relaxes = c->start == RG_START_RELAX;
+    for (int i = 0; i < c->bodies && relaxes; i++) {
         const rg_body_input *b = &c->body[i];
         moves = moves || b->motion == RG_MOTION_FREE || (rg_body_is_tied(b) && !(b->tied_from > 0));
     }
     rg_form form = c->interface.form;
-    const char *wrong =
-        c->start == RG_START_INITIAL ? NULL
-        : form == RG_FORM_INCOMPLETE ? "not with form incomplete, whose forces have no potential: its "
-                                       "tangent is not symmetric, and its "
-                                       "energy grows"
-        : form == RG_FORM_INTRINSIC && c->start == RG_START_RELAX
-            ? "not with form intrinsic: on the way faces could pass the top of their law; static comes to "
-              "rest "
-              "without"
-        : flows ? "not with a user's material that has a history: whether it flows on the way is not known"
-        : moves ? "not with bodies that are free or tied, which its damping does not bring to rest: static "
-                  "does"
-        : (any_open(c) || form == RG_FORM_INTRINSIC) && c->interface.friction > 0
-            ? "needs interface.friction 0 with open faces or form intrinsic: where they stick would depend "
-              "on "
-              "the way"
-            : NULL;
-    if (wrong != NULL) {
+    bool sticks = any_open(c) || form == RG_FORM_INTRINSIC;
+    const char *wrong = NULL;
+    if (form == RG_FORM_INCOMPLETE) {
+        wrong = "not with form incomplete, whose forces have no potential: its tangent is not symmetric, and "
+                "its energy grows";
+    } else if (form == RG_FORM_INTRINSIC && relaxes) {
+        wrong = "not with form intrinsic: on the way faces could pass the top of their law; static comes to "
+                "rest without";
+    } else if (moves) {
+        wrong =
+            "not with bodies that are free or tied, which its damping does not bring to rest: static does";
+    } else if (sticks && c->interface.friction > 0) {
+        wrong = "needs interface.friction 0 with open faces or form intrinsic: where they stick would depend "
+                "on the way";
+    }
+    if (wrong != NULL && c->start != RG_START_INITIAL) {
         const rg_node *node = rg_entry_given(e, "start");
         rg_entry_wrong(e, "start", node->at, (rg_subject){.value = node->text}, wrong);
     }

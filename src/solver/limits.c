@@ -14,8 +14,8 @@
 /* A step so long that no rate counts; and one in which what goes on in time stands still (s). */
 static const double slow = 1e9, at_once = 1e-15;
 
-/* Values of a point's history that grow where it flows or its pores close, and nowhere else: the first ones.
- */
+/* Values of a point's history that grow where it flows or its pores close, and nowhere else: the first ones;
+ * of a user's material all, as nothing is known of them. */
 static int flow_values(const rg_material *m) {
     switch (m->model) {
     case RG_MATERIAL_J2:
@@ -26,6 +26,8 @@ static int flow_values(const rg_material *m) {
         return RG_HJC_CLOSED + 1;
     case RG_MATERIAL_DRUCKER_PRAGER:
         return RG_DP_RISE + 1;
+    case RG_MATERIAL_USER:
+        return rg_material_values(m);
     default:
         return 0;
     }

@@ -67,6 +67,22 @@ def test_history_goes_through_a_restart(run, library, tmp_path, ranks, threads):
 
 
 @double_only
+@pytest.mark.parametrize("start", ["static", "relax"])
+def test_a_history_starts_from_rest(run, library, tmp_path, start):
+    """As that of the program's own metal: within its limit, and refused beyond it."""
+    sets = {**FRAGMENTS, "mesh.cells": [2, 2, 4], "mesh.size": [0.4e-3, 0.4e-3, 0.8e-3], "output.probes": [{"name": "a", "at": [1e-5, 3e-5, -1e-3]}], "time.steps": 10, "start": start, "initial.velocity": {"x": 0, "y": 0, "z": 0}, "interface": {"law": "none"},
+            "boundary": [{"set": "z-", "component": component, "displacement": 0} for component in "xyz"]}
+    load = lambda pull: [{"set": "z+", "traction": {"x": 0.01 * pull, "z": pull}}]  # noqa: E731
+    mine = {**sets, **user(library("j2"), **{"yield": 300e6}, **METAL)}
+    one = run(CASES / "fragments.yaml", sets={**sets, "loads": load(1e8), "material": {"model": "j2", "yield_stress": 300e6, **METAL}})
+    other = run(CASES / "fragments.yaml", ranks=2, sets={**mine, "loads": load(1e8)})
+    assert one.energy["bulk"][0] > 0 and one.energy["plastic"][-1] == 0
+    assert_same_bits(one, other)
+    refused = launch("run", CASES / "fragments.yaml", "-q", *overrides({**mine, "loads": load(4e8)}), "-o", tmp_path / "out")
+    assert refused.returncode == 2 and f"start: {start}: beyond the limit of what flows in element" in refused.stderr, refused.stderr
+
+
+@double_only
 def test_a_restart_wants_the_same_library(run, library, tmp_path):
     copy = shutil.copy(library("j2"), tmp_path / "mine.so")
     sets = {**FRAGMENTS, "time.steps": 4, "checkpoint.steps": 2, **user(copy, **{"yield": 300e6}, **METAL)}
