@@ -397,7 +397,7 @@ def test_faces_of_the_intrinsic_form_open_as_their_law_says(run, figure, bar, la
     opening = np.interp(0.5, curve(share), share) * WORK / (work * STRENGTH)
     done = run(bar, sets=springs(law, 6, loads=[{"name": "pull", "set": "z+", "traction": {"z": STRENGTH / 2}}]))
     theory = 5 * opening + STRENGTH / 2 * 6 * CUBE / STIFF
-    figure(f"springs by law {law}: displacement of the end", done.history["end_uz"][0], theory=theory, bound=1e-3, unit="m", relative=True, why="the faces inside cubes give a little")
+    figure(f"springs by law {law}: displacement of the end", done.history["end_uz"][0], theory=theory, bound=4e-4, unit="m", relative=True, why="the faces inside cubes give a little")
     assert done.summary["static_residual"] < 1e-6 and done.energy["kinetic"].max() < 1e-10 * done.energy["bulk"][0]
 
 
