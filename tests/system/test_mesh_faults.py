@@ -200,6 +200,16 @@ def test_header_and_graph_that_are_not_those_of_the_elements(tmp_path):
         "tile_neighbour: not the neighbours of tile 1, or not as many faces"]
 
 
+@pytest.mark.parametrize("end, axis", [(end, axis) for end in range(2) for axis in range(3)])
+def test_a_box_with_one_wrong_side(tmp_path, end, axis):
+    path = write(tmp_path / "strip.h5", *strip(5))
+    with h5py.File(path, "r+") as file:
+        box = file.attrs["box"]
+        box[end][axis] += 1e-9
+        file.attrs["box"] = box
+    assert refused(path, tmp_path) == ["box: is not that of the vertices"]
+
+
 def test_header_that_claims_more_than_memory(tmp_path):
     path = write(tmp_path / "strip.h5", *strip(5))
     with h5py.File(path, "r+") as file:
