@@ -241,7 +241,7 @@ void rg_inp_allow(rg_inp_lines *l, const char *names) {
         bool exact = false;
         for (const char *name = names; *name != '\0' && !exact; name += strspn(name, " ")) {
             size_t size = strcspn(name, " ");
-            if (length > 0 && length <= size && strncmp(name, given, length) == 0) {
+            if (length > 0 && strncmp(name, given, length) == 0) { /* no word has a blank */
                 exact = length == size;
                 fits = exact ? 1 : fits + 1;
                 memcpy(fit, name, size);
