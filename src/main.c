@@ -241,8 +241,6 @@ int main(int argc, char **argv) {
     /* HDF5 would lock the files that rank 0 opens alone, which file systems of clusters often refuse; each is
      * written under a name that nobody else opens. */
     setenv("HDF5_USE_FILE_LOCKING", "FALSE", 0);
-    /* Without mpirun Open MPI would start a daemon beside each process, which takes longer than all else. */
-    setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
     rg_interrupt_listen();
     int provided, rank;
     MPI_Init_thread(&argc, &argv, MPI_THREAD_FUNNELED, &provided);
