@@ -306,15 +306,20 @@ static void put_consequence(writer *w, const char *name, const rg_key_table *tab
     close_group(w, '}');
 }
 
+/* The key has this value, or is not there. */
+static void put_choice(writer *w, const char *name, const char *word) {
+    open_group(w, "properties", '{');
+    open_group(w, name, '{');
+    put_text(w, "const", word);
+    close_group(w, '}');
+    close_group(w, '}');
+}
+
 /* "if" a key of the section is given, or is one of its choices (`word` NULL: is given at all). */
 static void put_if(writer *w, const char *name, const char *word, bool also_absent) {
     open_group(w, "if", '{');
     if (word != NULL) {
-        open_group(w, "properties", '{');
-        open_group(w, name, '{');
-        put_text(w, "const", word);
-        close_group(w, '}');
-        close_group(w, '}');
+        put_choice(w, name, word);
     }
     if (!also_absent) {
         put_words(w, "required", &name, 1);
@@ -330,10 +335,49 @@ static effect of_model(const void *model, const rg_key *key) {
                                                            : IS_UNUSED;
 }
 
+/* Keys that a solid must have, but for those that a preset gives. */
+static const char *const without_preset[] = {"model", "density"};
+enum { WITHOUT_PRESET = sizeof without_preset / sizeof *without_preset };
+
+static bool is_material(const rg_key_table *table, const char *section) {
+    return table == &rg_material_table || strcmp(section, "material.") == 0;
+}
+
+static bool may_be_of_preset(const rg_key_table *table, const char *section, const char *child) {
+    bool found = false;
+    for (int i = 0; i < WITHOUT_PRESET; i++) {
+        found = found || strcmp(without_preset[i], child) == 0;
+    }
+    return found && is_material(table, section);
+}
+
+/* A preset, or all keys that are required without. */
+static void put_preset(writer *w) {
+    static const char *const preset[] = {"preset"};
+    open_group(w, NULL, '{');
+    open_group(w, "anyOf", '[');
+    open_group(w, NULL, '{');
+    put_words(w, "required", preset, 1);
+    close_group(w, '}');
+    open_group(w, NULL, '{');
+    put_words(w, "required", without_preset, WITHOUT_PRESET);
+    close_group(w, '}');
+    close_group(w, ']');
+    close_group(w, '}');
+}
+
+/* What follows from a model, where no preset gives the rest. */
 static void put_models(writer *w, const rg_key_table *table, const char *section) {
+    static const char *const preset[] = {"preset"};
     for (int model = 0; model <= RG_MATERIAL_USER; model++) {
         open_group(w, NULL, '{');
-        put_if(w, "model", rg_material_word((rg_material_model)model), false);
+        open_group(w, "if", '{');
+        put_choice(w, "model", rg_material_word((rg_material_model)model));
+        put_words(w, "required", without_preset, 1);
+        open_group(w, "not", '{');
+        put_words(w, "required", preset, 1);
+        close_group(w, '}');
+        close_group(w, '}');
         put_consequence(w, "then", table, section, of_model, &model);
         close_group(w, '}');
     }
@@ -390,12 +434,13 @@ static void put_presence(writer *w, const char *section, const char *name, rg_ke
 
 /* What follows in a section from the keys that are given in it. */
 static void put_conditions(writer *w, const rg_key_table *table, const char *section) {
-    bool material = table == &rg_material_table || strcmp(section, "material.") == 0;
+    bool material = is_material(table, section);
     bool interface = strcmp(section, "interface.") == 0;
     if (material || interface) {
         open_group(w, "allOf", '[');
     }
     if (material) {
+        put_preset(w);
         put_models(w, table, section);
     } else if (interface) {
         put_choices(w, "interface.law",
@@ -479,7 +524,7 @@ static void put_children(writer *w, const rg_key_table *table, const char *secti
         snprintf(last, sizeof last, "%.*s", (int)size, part);
         char *inner = part[size] == '\0' ? NULL : rg_text_format("%s%s.", section, last);
         if (!values) {
-            put_required(w, last, inner, table, key);
+            may_be_of_preset(table, section, last) ? (void)0 : put_required(w, last, inner, table, key);
         } else if (inner == NULL) {
             put_key(w, last, key);
         } else {

@@ -164,6 +164,8 @@ def changed(path, changes):
     (SPALL, {"mesh.size": None}, {"mesh"}),
     (SPALL, {"material.young": None}, {"material"}),
     (SPALL, {"material.density": None}, {"material"}),
+    (SPALL, {"material": {"model": "j2", "density": 1}}, {"material"}),
+    (SPALL, {"material": {"young": 1e9}}, {"material"}),
     (SPALL, {"interface.law": None}, {"interface"}),
     (SPALL, {"interface.strength": None}, {"interface"}),
     (SPALL, {"interface.energy": None}, {"interface"}),
@@ -201,6 +203,9 @@ def test_mistakes_are_found(path, changes, places):
     (SPALL, {"interface.weibull": {"modulus": 10, "area": 1e-9, "keep": "opening"}}),
     (SPALL, {"interface.sets": [{"between": ["a", "b"], "where": "z"}, {"where": 1}]}),
     (SPALL, {"materials": [{"name": "s", "set": "a", "model": "j2", "young": 1, "poisson": 0, "density": 1, "yield_stress": 1}]}),
+    (SPALL, {"material": {"preset": "concrete-hjc"}}),
+    (SPALL, {"material": {"preset": "alumina-ad995", "model": "neo-hookean", "density": 3800}}),
+    (SPALL, {"materials": [{"name": "s", "set": "a", "preset": "concrete-hjc"}]}),
 ])
 def test_what_the_program_takes_is_valid(path, changes):
     assert wrong(changed(path, changes)) == set()
