@@ -306,20 +306,15 @@ static void put_consequence(writer *w, const char *name, const rg_key_table *tab
     close_group(w, '}');
 }
 
-/* The key has this value, or is not there. */
-static void put_choice(writer *w, const char *name, const char *word) {
-    open_group(w, "properties", '{');
-    open_group(w, name, '{');
-    put_text(w, "const", word);
-    close_group(w, '}');
-    close_group(w, '}');
-}
-
 /* "if" a key of the section is given, or is one of its choices (`word` NULL: is given at all). */
 static void put_if(writer *w, const char *name, const char *word, bool also_absent) {
     open_group(w, "if", '{');
     if (word != NULL) {
-        put_choice(w, name, word);
+        open_group(w, "properties", '{');
+        open_group(w, name, '{');
+        put_text(w, "const", word);
+        close_group(w, '}');
+        close_group(w, '}');
     }
     if (!also_absent) {
         put_words(w, "required", &name, 1);
@@ -351,36 +346,26 @@ static bool may_be_of_preset(const rg_key_table *table, const char *section, con
     return found && is_material(table, section);
 }
 
-/* A preset, or all keys that are required without. */
-static void put_preset(writer *w) {
-    static const char *const preset[] = {"preset"};
-    open_group(w, NULL, '{');
-    open_group(w, "anyOf", '[');
-    open_group(w, NULL, '{');
-    put_words(w, "required", preset, 1);
-    close_group(w, '}');
-    open_group(w, NULL, '{');
-    put_words(w, "required", without_preset, WITHOUT_PRESET);
-    close_group(w, '}');
-    close_group(w, ']');
-    close_group(w, '}');
-}
-
-/* What follows from a model, where no preset gives the rest. */
 static void put_models(writer *w, const rg_key_table *table, const char *section) {
-    static const char *const preset[] = {"preset"};
     for (int model = 0; model <= RG_MATERIAL_USER; model++) {
         open_group(w, NULL, '{');
-        open_group(w, "if", '{');
-        put_choice(w, "model", rg_material_word((rg_material_model)model));
-        put_words(w, "required", without_preset, 1);
-        open_group(w, "not", '{');
-        put_words(w, "required", preset, 1);
-        close_group(w, '}');
-        close_group(w, '}');
+        put_if(w, "model", rg_material_word((rg_material_model)model), false);
         put_consequence(w, "then", table, section, of_model, &model);
         close_group(w, '}');
     }
+}
+
+/* What a solid must have and must not have, where no preset gives the rest. */
+static void put_solid(writer *w, const rg_key_table *table, const char *section) {
+    open_group(w, NULL, '{');
+    put_if(w, "preset", NULL, false);
+    open_group(w, "else", '{');
+    put_words(w, "required", without_preset, WITHOUT_PRESET);
+    open_group(w, "allOf", '[');
+    put_models(w, table, section);
+    close_group(w, ']');
+    close_group(w, '}');
+    close_group(w, '}');
 }
 
 /* A case of which one choice is made, and the groups of keys on which that decides. */
@@ -440,8 +425,7 @@ static void put_conditions(writer *w, const rg_key_table *table, const char *sec
         open_group(w, "allOf", '[');
     }
     if (material) {
-        put_preset(w);
-        put_models(w, table, section);
+        put_solid(w, table, section);
     } else if (interface) {
         put_choices(w, "interface.law",
                     1U << RG_GROUP_COHESIVE | 1U << RG_GROUP_ENERGY | 1U << RG_GROUP_SHEAR |
@@ -523,8 +507,10 @@ static void put_children(writer *w, const rg_key_table *table, const char *secti
         }
         snprintf(last, sizeof last, "%.*s", (int)size, part);
         char *inner = part[size] == '\0' ? NULL : rg_text_format("%s%s.", section, last);
-        if (!values) {
-            may_be_of_preset(table, section, last) ? (void)0 : put_required(w, last, inner, table, key);
+        if (!values && !may_be_of_preset(table, section, last)) {
+            put_required(w, last, inner, table, key);
+        } else if (!values) {
+            /* put_solid says when */
         } else if (inner == NULL) {
             put_key(w, last, key);
         } else {
