@@ -100,7 +100,35 @@ static void tied_inertia(const rg_body *b, double out[3][3]) {
     }
 }
 
-/* Likewise that of the body, and with what is tied to it, as it answers to moments. */
+/* Inverse of the inertia J about a centre, as what has a mass and first moments there answers to moments. */
+static void invert_inertia(double mass, const double first[3], double J[3][3], double out[9]) {
+    double square = rg_vector_dot(first, first);
+    for (int n = 0; n < 9; n++) {
+        int i = n / 3, j = n % 3;
+        out[n] = J[i][j] - ((i == j ? square : 0) - first[i] * first[j]) / mass;
+    }
+    rg_dense_invert(3, out);
+}
+
+/* The rigid motion of momentum p and angular momentum l about a centre: v and w with m v + w x f = p and
+ * f x v + J w = l, f the first moments; by that inverse. */
+static void motion_of(double mass, const double first[3], const double inverse[9], const double p[3],
+                      const double l[3], double v[3], double spin[3]) {
+    double across[3], rest[3];
+    rg_vector_cross(first, p, across);
+    for (int c = 0; c < 3; c++) {
+        rest[c] = l[c] - across[c] / mass;
+    }
+    for (int c = 0; c < 3; c++) {
+        spin[c] = rg_vector_dot(inverse + 3 * c, rest);
+    }
+    rg_vector_cross(spin, first, across);
+    for (int c = 0; c < 3; c++) {
+        v[c] = (p[c] - across[c]) / mass;
+    }
+}
+
+/* In space, at present: the inertia of the body, and that inverse of it with what is tied to it. */
 static void inertias(const rg_body *b, double own[3][3], double all[9]) {
     double first[3], tied[3][3];
     memset(own, 0, 9 * sizeof(double));
@@ -113,12 +141,10 @@ static void inertias(const rg_body *b, double own[3][3], double all[9]) {
     }
     rg_body_arm(b, b->tied.first, first);
     tied_inertia(b, tied);
-    double mass = b->mass + b->tied.mass, square = rg_vector_dot(first, first);
     for (int n = 0; n < 9; n++) {
-        int i = n / 3, j = n % 3;
-        all[n] = own[i][j] + tied[i][j] - ((i == j ? square : 0) - first[i] * first[j]) / mass;
+        tied[n / 3][n % 3] += own[n / 3][n % 3];
     }
-    rg_dense_invert(3, all);
+    invert_inertia(b->mass + b->tied.mass, first, tied, all);
 }
 
 /* Twice the kinetic energy of what is tied to it, as it moves with v and spin. */
@@ -138,8 +164,7 @@ static double tied_energy(const rg_body *b, const double v[3], const double spin
  * kick, and what is tied to it from then on become one. */
 static double joined_free(const rg_body *b, const double v[3], const double momentum[3]) {
     const rg_body_motion *nodes = &b->tied.before;
-    double own[3][3], inverse[9], first[3], p[3], l[3], rest[3], spin[3] = {0, 0, 0}, own_spin[3], across[3];
-    double mass = b->mass + b->tied.mass;
+    double own[3][3], inverse[9], first[3], p[3], l[3], velocity[3], spin[3], own_spin[3];
     inertias(b, own, inverse);
     rg_body_arm(b, b->tied.first, first);
     rg_inertia_spin(&b->inertia, b->turn.rotation, momentum, own_spin);
@@ -147,19 +172,9 @@ static double joined_free(const rg_body *b, const double v[3], const double mome
         p[c] = b->mass * v[c] + nodes->momentum[c];
         l[c] = momentum[c] + nodes->angular[c];
     }
-    rg_vector_cross(first, p, across);
-    for (int c = 0; c < 3; c++) {
-        rest[c] = l[c] - across[c] / mass;
-    }
-    for (int n = 0; n < 9; n++) {
-        spin[n / 3] += inverse[n] * rest[n % 3];
-    }
-    rg_vector_cross(spin, first, across);
-    for (int c = 0; c < 3; c++) {
-        rest[c] = (p[c] - across[c]) / mass; /* velocity after it */
-    }
+    motion_of(b->mass + b->tied.mass, first, inverse, p, l, velocity, spin);
     return nodes->energy + 0.5 * (b->mass * rg_vector_dot(v, v) + rg_vector_dot(momentum, own_spin) -
-                                  rg_vector_dot(p, rest) - rg_vector_dot(l, spin));
+                                  rg_vector_dot(p, velocity) - rg_vector_dot(l, spin));
 }
 
 /* Likewise of one whose motion is prescribed: less what it does in it. */
@@ -335,28 +350,12 @@ void rg_bodies_shift(rg_bodies *all, const rg_body_place *from, const double (*m
     }
 }
 
-/* v and w with m v + w x f = p and f x v + J w = l, by the nodes' first and second moments f and J. */
 void rg_body_carried_motion(const rg_body *b, const double impulse[6], double motion[6]) {
-    double first[3], inertia[3][3], about[9], across[3], rest[3];
+    double first[3], inertia[3][3], inverse[9];
     rg_body_arm(b, b->tied.first, first);
     tied_inertia(b, inertia);
-    double mass = b->tied.mass, square = rg_vector_dot(first, first);
-    for (int n = 0; n < 9; n++) {
-        int i = n / 3, j = n % 3;
-        about[n] = inertia[i][j] - ((i == j ? square : 0) - first[i] * first[j]) / mass;
-    }
-    rg_dense_invert(3, about);
-    rg_vector_cross(first, impulse, across);
-    for (int c = 0; c < 3; c++) {
-        rest[c] = impulse[3 + c] - across[c] / mass;
-    }
-    for (int c = 0; c < 3; c++) {
-        motion[3 + c] = rg_vector_dot(about + 3 * c, rest);
-    }
-    rg_vector_cross(motion + 3, first, across);
-    for (int c = 0; c < 3; c++) {
-        motion[c] = (impulse[c] - across[c]) / mass;
-    }
+    invert_inertia(b->tied.mass, first, inertia, inverse);
+    motion_of(b->tied.mass, first, inverse, impulse, impulse + 3, motion, motion + 3);
 }
 
 void rg_bodies_settle(rg_bodies *all) {
